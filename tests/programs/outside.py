@@ -123,20 +123,21 @@ class Outside:
             if not isinstance(joint, POINTS):
                 way = max(abs(now[0] - angle), dt * abs(spin), dt * abs(now[2]))
             total += joint.max_force * way if nearly else 0.0
-        total += self._carried(report)
+        total += self._carried(report, dt)
         if not nearly:
             fastest = self.fastest(total, dt)
             total += sum(c.max_force * dt * fastest * rate for c, _ in self.bounded for rate in _per_root_energy(c))
         return SLACK * total
 
-    def _carried(self, report: ep.StepReport) -> float:
-        """The most that contacts with surfaces that move can do."""
+    def _carried(self, report: ep.StepReport, dt: float) -> float:
+        """The most that contacts with surfaces that move can do: the box goes on while it turns."""
         if not self.belt and not self.speed and not self.spin:
             return 0.0
         contacts = report.contacts
         box = contacts.bodies.index(self.box)
         carried = (contacts.body_a == box) | (contacts.body_b == box)
-        fast = self.belt + carried * (self.speed + self.spin * np.hypot(*(contacts.point - self.place).T))
+        far = np.hypot(*(contacts.point - self.place).T) + self.speed * dt
+        fast = self.belt + carried * (self.speed + self.spin * far)
         total = float(np.hypot(report.impulse, report.friction) @ fast)
         weight = sum(b.mass for b in self.space.bodies if b is not self.box) * self.space.gravity.length
         return total + weight * max(self.depth, -min(contacts.gap, default=0.0))
