@@ -68,6 +68,12 @@ def smaller(A: Scene, a: int, b: int) -> float:
 
 
 @nonallocating
+def held_side(A: Scene, a: int, b: int) -> float:
+    """Distance of cores (length) up to which the memory determines the side of shapes that forces hold in contact."""
+    return INTERVAL_WAY * smaller(A, a, b)
+
+
+@nonallocating
 def note_side(A: Scene, a: int, b: int, nx: float, ny: float, held: bool) -> None:
     """Remember the normal n from shape a to shape b; `held` if forces hold them in contact."""
     if not remembers(A, a, b):
@@ -77,7 +83,7 @@ def note_side(A: Scene, a: int, b: int, nx: float, ny: float, held: bool) -> Non
     key = pair_number(A, a, b)
     side = A.SIDE[side_row(A, key)]
     side.key, side.nx, side.ny = key, nx, ny
-    side.deep = INTERVAL_WAY * smaller(A, a, b) if held else 0.0
+    side.deep = held_side(A, a, b) if held else 0.0
 
 
 @nonallocating
@@ -190,7 +196,7 @@ def closest_on_side(
     d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q = closest(P, p, Q, q)
     if not remembers(A, a, b):
         return d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q
-    deep = INTERVAL_WAY * smaller(A, a, b)
+    deep = held_side(A, a, b)
     end = -1
     if q == 2:
         end, mx, my = corner_of(A, Q, b, a, x + d * nx, y + d * ny, deep)

@@ -10,7 +10,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..geometry.gap import gap_at
-from ..geometry.sides import half_width, remembers, smaller
+from ..geometry.sides import half_width, held_side, remembers, smaller
 from ..model.contacts import Row
 from ..model.islands import Island
 from ..model.parameters.intervals import (
@@ -18,7 +18,6 @@ from ..model.parameters.intervals import (
     INTERVAL_DEPTH_LEAST,
     INTERVAL_DEPTH_WIDTH,
     INTERVAL_RETRY,
-    INTERVAL_WAY,
 )
 from ..model.scene import Scene
 from ..rows.build import normal_rate
@@ -53,7 +52,7 @@ def known_depth(A: Scene, a: int, b: int) -> float:
     """Depth (length) up to which the gap of shapes a and b tells on which side of each other they are: to the middle of
     both, or, in contact, as far as the memory of thin ones reaches."""
     if remembers(A, a, b):
-        return INTERVAL_WAY * smaller(A, a, b)
+        return held_side(A, a, b)
     return half_width(A, a) + half_width(A, b)
 
 

@@ -46,6 +46,12 @@ def shorten_both(A: Scene, J: Joints, one: int, other: int, t: float) -> int:
 
 
 @kernel
+def either_apart(A: Scene, J: Joints, roots: tuple[int, int]) -> bool:
+    """Whether joints do not hold at the end of the interval of either island."""
+    return bool(left_apart(A, J, roots[0]) or left_apart(A, J, roots[1]))
+
+
+@kernel
 def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
     """Bring the islands of shapes a and b, which are seen to meet at instant t, to the instant at which they do; that
     instant, and whether they are apart there.
@@ -105,7 +111,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
             crossed, before = True, -1.0
             t = through if apart < through < t else 0.5 * (apart + t)
             continue
-        if g > 0.0 and not (left_apart(A, J, roots[0]) or left_apart(A, J, roots[1])):
+        if g > 0.0 and not either_apart(A, J, roots):
             apart = t
         # The islands end where they were brought last.
         if not slope < 0.0 or tries + 1 == MEET_SECANTS:
@@ -120,7 +126,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
     if loaded == 0 and rate >= 0.0 and g < -MEET_MANY * small:
         crosses = True  # what joints bring together again meets before secants come to
     for _ in range(MEET_HALVINGS):
-        if not (crosses or left_apart(A, J, roots[0]) or left_apart(A, J, roots[1])):
+        if not (crosses or either_apart(A, J, roots)):
             break
         crossed, t = True, 0.5 * (apart + t)
         shorten_both(A, J, roots[0], roots[1], t)
