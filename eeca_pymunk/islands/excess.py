@@ -1,27 +1,29 @@
 """Intervals that are cut short give no energy.
 
-Forces of an interval are right for the whole of it: a soft landing pushes before the shapes touch. Cut after s, the
-impulses have lost D = W - dE, with the work W of bodies without mobility and moving surfaces. If that is negative, the
-impulses on bodies that they connect, and that have given energy, are scaled by one q, which conserves momenta: with
-w = (a - a_free) s for each body, and velocities v at the start,
+Forces of an interval are right for the whole of it: a soft landing pushes before the shapes touch. Cut after s, an
+impulse J with the mean relative velocity u has lost D = -J.u, and has given energy if that is negative. Then each
+impulse of the island is scaled by a factor f of its own, from 0 to 1, such that they minimise
 
-    dE(q) = q B + q^2 C,   B = sum m (v + a_free s / 2) . w,   C = sum m w^2 / 2,   W(q) = q W,
+    sum f J.u_free + (1/4) (f J).A (f J),    u(f) = u_free + (1/2) A f J,
 
-so that D(q) = 0 for q = (W - B) / C, or 0 if that is negative. What no impulse connects with these bodies keeps its
-forces: with less, what rests would sink into its support.
+with the velocities u_free without impulses and the response A of the bodies. The derivative by f is J.u(f): at the
+minimum no impulse gives energy, and none that is smaller than it was would lose any. What bears a load keeps as much of
+its force as the load has kept; momenta are conserved. The minimum is approached by sweeps over the contacts, from f = 0
+for those that have given energy, and f = 1 for the others. If they still give E = sum f J.u(f) > 0, one more factor q =
+1 - E / C removes that, common to all: with the changes of velocity w that they cause, C = sum m w^2 / 2, q times these
+impulses give q (E - C) + q^2 C.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import IntArray
+from ..arrays import FloatArray
 from ..compiled import inlined, kernel, nonallocating
 from ..compiled.records import Rows, empty
 from ..contacts.single import move_to
-from ..joints.plan import root as set_of
-from ..model.islands import CONNECTED_WORK, ConnectedWork
-from ..model.parameters.intervals import REPAY_ROUND_OFF
+from ..model.islands import PART, Part
+from ..model.parameters.intervals import REPAY_ROUND_OFF, REPAY_STEP, REPAY_SWEEPS
 from ..model.scene import Scene
 
 
@@ -48,92 +50,130 @@ def gives(A: Scene, root: int, t: float) -> bool:
     return lost < -REPAY_ROUND_OFF * size
 
 
-@nonallocating
-def body_in(A: Scene, root: int, c: int) -> tuple[int, int]:
-    """The bodies of an island that contact c connects: one, and the other, or the same one again."""
-    i, j = A.LINK[A.PUSHED_BY[c].a].owner, A.LINK[A.PUSHED_BY[c].b].owner
-    if A.BODY[i].inv_mass == 0.0 or A.STATE[i].island != root:
-        return j, j
-    if A.BODY[j].inv_mass == 0.0 or A.STATE[j].island != root:
-        return i, i
-    return i, j
-
-
-@nonallocating
-def connect(A: Scene, root: int, SET: IntArray, SUMS: Rows[ConnectedWork]) -> None:
-    """Make the sets of bodies of an island that impulses connect (`SET`, a forest), with sums of 0."""
-    i = root
-    while i >= 0:
-        SET[i] = i
-        one = SUMS[i]
-        one.lost = one.size = one.work = one.linear = one.square = 0.0
-        i = A.MEMBER[i].following
+@kernel
+def parts_of(A: Scene, root: int, t: float) -> Rows[Part]:
+    """The impulses of an island's contacts up to instant t, all of them left but those that have given energy."""
+    m = 0
     for c in range(A.COUNT.pushes):
-        if A.PUSHED_BY[c].root == root and (A.PUSHED[c].normal != 0.0 or A.PUSHED[c].tangential != 0.0):
-            i, j = body_in(A, root, c)
-            SET[set_of(SET, i)] = set_of(SET, j)
-
-
-@nonallocating
-def share(one: ConnectedWork) -> float:
-    """The factor q of the impulses of a connected set that have given energy."""
-    return min(max((one.work - one.linear) / one.square, 0.0), 1.0)
-
-
-@nonallocating
-def scale_forces(A: Scene, root: int, SET: IntArray, SUMS: Rows[ConnectedWork]) -> None:
-    """Scale the impulses of the sets of an island that have given energy, whose bodies are at the start of its
-    interval, and set their losses to 0."""
-    BODY, PULL = A.BODY, A.PULL
-    i = root
-    while i >= 0:
-        one = SUMS[set_of(SET, i)]
-        if one.square > 0.0:
-            q = share(one)
-            BODY[i].ax = PULL[i, 0] + q * (BODY[i].ax - PULL[i, 0])
-            BODY[i].ay = PULL[i, 1] + q * (BODY[i].ay - PULL[i, 1])
-            BODY[i].angular = PULL[i, 2] + q * (BODY[i].angular - PULL[i, 2])
-        i = A.MEMBER[i].following
+        m += A.PUSHED_BY[c].root == root
+    found, m = empty(m, PART), 0
     for c in range(A.COUNT.pushes):
         if A.PUSHED_BY[c].root != root:
             continue
-        one = SUMS[set_of(SET, body_in(A, root, c)[0])]
-        if one.square > 0.0:
-            R, q = A.PUSHED[c], share(one)
-            R.normal, R.tangential, R.work, R.change = q * R.normal, q * R.tangential, q * R.work, q * R.change
-            R.un_before, R.un_after, R.ut_before, R.ut_after = 0.0, 0.0, 0.0, 0.0
+        R, one = A.PUSHED[c], found[m]
+        over = (t - R.start) / R.length
+        one.contact, one.a, one.b = c, A.LINK[A.PUSHED_BY[c].a].owner, A.LINK[A.PUSHED_BY[c].b].owner
+        n, tangent = over * R.normal, over * R.tangential
+        one.x, one.y = n * R.nx - tangent * R.ny, n * R.ny + tangent * R.nx
+        one.turn_a, one.turn_b = n * R.arm_na + tangent * R.arm_ta, n * R.arm_nb + tangent * R.arm_tb
+        a, b = A.BODY[one.a], A.BODY[one.b]
+        one.mass_a = one.inertia_a = one.mass_b = one.inertia_b = 0.0
+        if A.STATE[one.a].island == root:
+            one.mass_a, one.inertia_a = a.inv_mass, a.inv_inertia
+        if A.STATE[one.b].island == root:
+            one.mass_b, one.inertia_b = b.inv_mass, b.inv_inertia
+        normal, tangential = losses(A, c, t)
+        one.slope = -normal - tangential
+        one.left = 1.0 if one.slope <= REPAY_ROUND_OFF * (abs(normal) + abs(tangential)) else 0.0
+        one.curvature = (one.mass_a + one.mass_b) * (one.x * one.x + one.y * one.y)
+        one.curvature += one.inertia_a * one.turn_a * one.turn_a + one.inertia_b * one.turn_b * one.turn_b
+        one.curvature *= 0.5
+        m += 1
+    return found
+
+
+@inlined
+def work(one: Part, W: FloatArray) -> float:
+    """J.u of a contact at velocities W (n, 3) of the bodies."""
+    a, b = one.a, one.b
+    along = one.x * (W[b, 0] - W[a, 0]) + one.y * (W[b, 1] - W[a, 1])
+    turning: float = one.turn_b * W[b, 2] - one.turn_a * W[a, 2]
+    return along + turning
+
+
+@inlined
+def power(one: Part, W: FloatArray) -> float:
+    """J.u of a contact up to the cut (energy), after changes W (n, 3) of the velocities at the cut."""
+    return one.slope + 0.5 * work(one, W)
+
+
+@inlined
+def push(one: Part, part: float, W: FloatArray) -> None:
+    """Add to W (n, 3) the changes of velocity by a part of the impulse of a contact."""
+    a, b = one.a, one.b
+    W[a, 0] -= one.mass_a * part * one.x
+    W[a, 1] -= one.mass_a * part * one.y
+    W[a, 2] -= one.inertia_a * part * one.turn_a
+    W[b, 0] += one.mass_b * part * one.x
+    W[b, 1] += one.mass_b * part * one.y
+    W[b, 2] += one.inertia_b * part * one.turn_b
+
+
+@nonallocating
+def reduce_parts(PARTS: Rows[Part], W: FloatArray) -> None:
+    """Change the parts that are left as in the docstring of the module. W (n, 3): the changes of velocity at the cut by
+    what is taken away."""
+    for z in range(len(PARTS)):
+        push(PARTS[z], PARTS[z].left - 1.0, W)
+    for _ in range(REPAY_SWEEPS):
+        worst = 0.0
+        for z in range(len(PARTS)):
+            one = PARTS[z]
+            if one.curvature > 0.0:
+                left = min(max(one.left - power(one, W) / one.curvature, 0.0), 1.0)
+                worst = max(worst, abs(left - one.left))
+                push(one, left - one.left, W)
+                one.left = left
+        if worst < REPAY_STEP:
+            return
+
+
+@nonallocating
+def common_factor(PARTS: Rows[Part], W: FloatArray, U: FloatArray) -> float:
+    """The factor q of all that is left of impulses, as in the docstring of the module; W (n, 3) as in `reduce_parts`, U
+    (n, 3) zeros."""
+    gain, size, square = 0.0, 0.0, 0.0
+    for z in range(len(PARTS)):
+        one = PARTS[z]
+        gain += one.left * power(one, W)
+        size += one.left * abs(one.slope)
+        push(one, one.left, U)
+    for z in range(len(PARTS)):
+        square += 0.5 * PARTS[z].left * work(PARTS[z], U)
+    if gain <= REPAY_ROUND_OFF * size or square <= 0.0:
+        return 1.0
+    return max(1.0 - gain / square, 0.0)
 
 
 @kernel
 def repay(A: Scene, root: int, t: float) -> None:
-    """Before the interval of an island ends at instant t: scale the impulses that have given energy up to t, as in the
-    docstring of the module."""
+    """Before the interval of an island ends at instant t: if its contacts have given energy up to t, scale their
+    impulses as in the docstring of the module."""
     if not gives(A, root, t):
         return
-    BODY, PULL, start = A.BODY, A.PULL, t
-    SET, SUMS = np.empty(len(BODY), np.int64), empty(len(BODY), CONNECTED_WORK)
-    connect(A, root, SET, SUMS)
-    for c in range(A.COUNT.pushes):
-        if A.PUSHED_BY[c].root == root:
-            R, one = A.PUSHED[c], SUMS[set_of(SET, body_in(A, root, c)[0])]
-            start = R.start
-            normal, tangential = losses(A, c, t)
-            one.lost += normal + tangential
-            one.size += abs(normal) + abs(tangential)
-            one.work += (t - R.start) / R.length * R.work
-    s, i = t - start, root
+    BODY, PARTS = A.BODY, parts_of(A, root, t)
+    start, length = A.PUSHED[PARTS[0].contact].start, A.PUSHED[PARTS[0].contact].length
+    W, U = np.zeros((len(BODY), 3)), np.zeros((len(BODY), 3))
+    reduce_parts(PARTS, W)
+    q = common_factor(PARTS, W, U)
+    W[:] = 0.0
+    for z in range(len(PARTS)):
+        PARTS[z].left *= q
+        push(PARTS[z], PARTS[z].left - 1.0, W)
+    more = length / (t - start)  # the change of velocity at the end of the interval, to that at the cut
+    for z in range(len(PARTS)):
+        one, R = PARTS[z], A.PUSHED[PARTS[z].contact]
+        R.normal, R.tangential, R.work, R.change = (
+            one.left * R.normal, one.left * R.tangential, one.left * R.work, one.left * R.change,
+        )  # fmt: skip
+        x, y = W[one.b, 0] - W[one.a, 0], W[one.b, 1] - W[one.a, 1]
+        R.un_after += more * (R.nx * x + R.ny * y + R.arm_nb * W[one.b, 2] - R.arm_na * W[one.a, 2])
+        R.ut_after += more * (R.nx * y - R.ny * x + R.arm_tb * W[one.b, 2] - R.arm_ta * W[one.a, 2])
+    i = root
     while i >= 0:
-        one = SUMS[set_of(SET, i)]
-        if one.lost < -REPAY_ROUND_OFF * one.size:
-            # Tests whether contacts persist may have moved the body along its path, to an instant within the interval.
-            move_to(BODY, i, start)
-            body = BODY[i]
-            wx, wy, turn = (body.ax - PULL[i, 0]) * s, (body.ay - PULL[i, 1]) * s, (body.angular - PULL[i, 2]) * s
-            along = (body.vx + 0.5 * PULL[i, 0] * s) * wx + (body.vy + 0.5 * PULL[i, 1] * s) * wy
-            one.linear += along / body.inv_mass
-            one.square += 0.5 * (wx * wx + wy * wy) / body.inv_mass
-            if body.inv_inertia > 0.0:
-                one.linear += (body.spin + 0.5 * PULL[i, 2] * s) * turn / body.inv_inertia
-                one.square += 0.5 * turn * turn / body.inv_inertia
+        # Tests whether contacts persist may have moved the body along its path, to an instant within the interval.
+        move_to(BODY, i, start)
+        BODY[i].ax += W[i, 0] / (t - start)
+        BODY[i].ay += W[i, 1] / (t - start)
+        BODY[i].angular += W[i, 2] / (t - start)
         i = A.MEMBER[i].following
-    scale_forces(A, root, SET, SUMS)

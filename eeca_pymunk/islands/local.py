@@ -129,6 +129,8 @@ def open_contacts(
         )  # fmt: skip
         pushed.held = 0.0
         pushed.nx, pushed.ny = ROWS[z].nx, ROWS[z].ny
+        pushed.arm_na, pushed.arm_nb = ROWS[z].arm_na, ROWS[z].arm_nb
+        pushed.arm_ta, pushed.arm_tb = ROWS[z].arm_ta, ROWS[z].arm_tb
         # The point from its arms: r = arm_t n - arm_n t.
         x, y = isle.POSE[P[z], 0] + 0.5 * h * isle.V[P[z], 0], isle.POSE[P[z], 1] + 0.5 * h * isle.V[P[z], 1]
         pushed.px = x + ROWS[z].arm_ta * ROWS[z].nx + ROWS[z].arm_na * ROWS[z].ny

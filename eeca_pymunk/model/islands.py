@@ -49,16 +49,24 @@ class IslandContacts(NamedTuple):
     OUT: Rows[Solved]
 
 
-class ConnectedWork(Record):
-    """What the impulses on bodies that they connect have done up to the end of an interval, in the row of one of them;
-    B and C as in `..islands.excess`, with units of energy."""
+class Part(Record):
+    """The part of a contact's impulse that is left when its interval is cut, see `..islands.excess`."""
 
-    lost: float  # energies: losses, and the sum of their sizes
-    size: float
-    work: float  # of bodies that impulses do not move, and of moving surfaces
-    linear: float  # B
-    square: float  # C; 0 if they have given no energy
+    contact: int  # row of PUSHED
+    a: int  # its bodies, rows of BODY
+    b: int
+    left: float  # 0 to 1
+    x: float  # impulse over the whole interval: mass length/time
+    y: float
+    turn_a: float  # moment of it about the centres of mass: mass length²/time
+    turn_b: float
+    mass_a: float  # inverse masses and moments; 0 for bodies that are not of the island
+    inertia_a: float
+    mass_b: float
+    inertia_b: float
+    slope: float  # J.u and J.A J / 2 up to the cut, at first: energies
+    curvature: float
 
 
-CONNECTED_WORK = kind_of(ConnectedWork)
+PART = kind_of(Part)
 island_of, contacts_of = Opener(Island), Opener(IslandContacts)
