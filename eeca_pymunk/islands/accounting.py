@@ -1,9 +1,8 @@
 """The end of an island's interval: the works of its contacts up to there enter the ledger. They are exact, as forces
 are constant and velocities linear.
 
-If an interval is cut, its forces up to there may have given energy, since a soft landing pushes before the shapes
-touch. This energy is owed (`Rest.lost` < 0) and taken out by later solves. They may also have changed the angular
-momentum, since the arms are those of the middle of the whole interval.
+If an interval is cut, its forces up to there may have given energy: then they are replaced (`excess.py`). They may also
+have changed the angular momentum, since the arms are those of the middle of the whole interval.
 """
 
 from __future__ import annotations

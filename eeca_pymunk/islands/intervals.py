@@ -135,7 +135,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
     spend(A, 2 * p, m, OUT[0].sweeps, OUT[0].direct)
     COUNT.direct += OUT[0].direct
     TOUCHED = np.zeros(k, np.uint8)
-    open_contacts(A, isle, contacts, VN, m, t, h, TOUCHED)
+    open_contacts(A, isle, contacts, VN, m, COUNT.pushes, t, h, TOUCHED)
     lost, hits = A.RESTING[root].lost, MEMBER[root].hits
     head, tail, size = -1, -1, 0
     set_lifts(A, MINE, n, JUMP)
@@ -160,7 +160,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
         MEMBER[head].with_supports = with_supports
         A.RESTING[head].payable, A.RESTING[head].lost = payable, lost
         open_until(A, head, t + h)
-        own_contacts(A, head, m)
+        own_contacts(A, head, COUNT.pushes, m)
         if at_rest:
             put_to_rest(A, head)
     return DONE, 0.0

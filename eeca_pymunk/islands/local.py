@@ -104,12 +104,13 @@ def local_island(A: Scene, MINE: IntArray, n: int, found: IntArray, t: float) ->
 
 @kernel
 def open_contacts(
-    A: Scene, isle: Island, contacts: IslandContacts, VN: FloatArray, m: int, t: float, h: float, TOUCHED: FlagArray
-) -> None:
-    """Append the m contacts of an interval of length h from instant t to PUSHED and PUSHED_BY, and flag their pairs. VN
-    (k, 3): velocities at its end. TOUCHED (k,): out, 1 for bodies that have contacts."""
+    A: Scene, isle: Island, contacts: IslandContacts, VN: FloatArray, m: int, first: int, t: float, h: float,
+    TOUCHED: FlagArray,
+) -> None:  # fmt: skip
+    """Write the m contacts of an interval of length h from instant t to PUSHED and PUSHED_BY, from row `first` on, and
+    flag their pairs. VN (k, 3): velocities at its end. TOUCHED (k,): out, 1 for bodies that have contacts."""
     P, Q, ROWS, KEY, L = contacts.A, contacts.B, contacts.ROWS, contacts.KEY, contacts.L
-    shapes, first = A.SHAPE.shape[0], A.COUNT.pushes
+    shapes = A.SHAPE.shape[0]
     for z in range(m):
         pair = KEY[z] >> 1
         a, b = pair // shapes, pair % shapes
@@ -129,8 +130,6 @@ def open_contacts(
         )  # fmt: skip
         pushed.held = 0.0
         pushed.nx, pushed.ny = ROWS[z].nx, ROWS[z].ny
-        pushed.arm_na, pushed.arm_nb = ROWS[z].arm_na, ROWS[z].arm_nb
-        pushed.arm_ta, pushed.arm_tb = ROWS[z].arm_ta, ROWS[z].arm_tb
         # The point from its arms: r = arm_t n - arm_n t.
         x, y = isle.POSE[P[z], 0] + 0.5 * h * isle.V[P[z], 0], isle.POSE[P[z], 1] + 0.5 * h * isle.V[P[z], 1]
         pushed.px = x + ROWS[z].arm_ta * ROWS[z].nx + ROWS[z].arm_na * ROWS[z].ny
@@ -140,8 +139,8 @@ def open_contacts(
 
 
 @nonallocating
-def own_contacts(A: Scene, root: int, m: int) -> None:
-    """Let the m contacts that `open_contacts` has appended be those of an island."""
-    for z in range(m):
-        A.PUSHED_BY[A.COUNT.pushes + z].root = root
-    A.COUNT.pushes += m
+def own_contacts(A: Scene, root: int, first: int, m: int) -> None:
+    """Let the m contacts that `open_contacts` has written from row `first` on be those of an island."""
+    for c in range(first, first + m):
+        A.PUSHED_BY[c].root = root
+    A.COUNT.pushes = max(A.COUNT.pushes, first + m)

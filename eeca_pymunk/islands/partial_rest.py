@@ -86,8 +86,8 @@ def test_rest(A: Scene, MINE: IntArray, n: int, V0: FloatArray, with_supports: i
             stop(A, MINE[q])
             A.RESTING[MINE[q]].rest_timer = 1.0
         return True
-    open_contacts(A, isle, contacts, contacts.VN, m, 0.0, dt, np.zeros(len(isle.WHO), np.uint8))
-    own_contacts(A, root, m)
+    open_contacts(A, isle, contacts, contacts.VN, m, A.COUNT.pushes, 0.0, dt, np.zeros(len(isle.WHO), np.uint8))
+    own_contacts(A, root, A.COUNT.pushes, m)
     A.MEMBER[root].open, A.RESTING[root].until, A.MEMBER[root].with_supports = 1, math.inf, with_supports
     for q in range(n):
         A.MEMBER[MINE[q]].busy = 0

@@ -15,7 +15,15 @@ from ..contacts.unmet import note_unmet
 from ..contacts.works import moved
 from ..islands.candidates import before_end, pairs_within
 from ..islands.depths import driven
-from ..islands.local import clear_places, local_island, needs_memory, number_bodies, open_contacts, open_until
+from ..islands.local import (
+    clear_places,
+    local_island,
+    needs_memory,
+    number_bodies,
+    open_contacts,
+    open_until,
+    own_contacts,
+)
 from ..islands.membership import lossy
 from ..model.islands import Island
 from ..model.joint_steps import ELASTIC
@@ -183,14 +191,13 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
         HELD = fit(A, J, interval, L, t + h, slow + pull * h)
     clear_places(A, MINE, n)
     first = COUNT.pushes
-    open_contacts(A, isle, contacts, motion.V, m, t, h, np.zeros(k, np.uint8))
+    open_contacts(A, isle, contacts, motion.V, m, first, t, h, np.zeros(k, np.uint8))
     for z in range(m):
         R = A.PUSHED[first + z]
         R.un_before = R.un_after = normal_rate(P, Q, ROWS, motion.WAY, z) / h
         R.ut_before = R.ut_after = slip_of(P, Q, ROWS, motion.WAY, z, h) / h
         R.held = HELD[z]
-        A.PUSHED_BY[first + z].root = root
-    COUNT.pushes += m
+    own_contacts(A, root, first, m)
     for q in range(n):
         set_path(A, MINE[q], h, WHERE[q], motion.END[q], motion.V[q])
     open_until(A, root, t + h)

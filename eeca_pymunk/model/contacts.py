@@ -53,10 +53,6 @@ class Pushed(Record):
     ny: float
     px: float  # point, length
     py: float
-    arm_na: float  # arms, see `Row`: length
-    arm_nb: float
-    arm_ta: float
-    arm_tb: float
     change: float  # of the normal velocity by the impulse alone, length/time
     gap: float  # length, at the start of the step; nan if the interval began later
 

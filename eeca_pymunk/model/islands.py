@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import Opener
-from ..compiled.records import Record, Rows, kind_of
+from ..compiled.records import Rows
 from .contacts import Row, Solved
 
 
@@ -49,24 +49,4 @@ class IslandContacts(NamedTuple):
     OUT: Rows[Solved]
 
 
-class Part(Record):
-    """The part of a contact's impulse that is left when its interval is cut, see `..islands.excess`."""
-
-    contact: int  # row of PUSHED
-    a: int  # its bodies, rows of BODY
-    b: int
-    left: float  # 0 to 1
-    x: float  # impulse over the whole interval: mass length/time
-    y: float
-    turn_a: float  # moment of it about the centres of mass: mass length²/time
-    turn_b: float
-    mass_a: float  # inverse masses and moments; 0 for bodies that are not of the island
-    inertia_a: float
-    mass_b: float
-    inertia_b: float
-    slope: float  # J.u and J.A J / 2 up to the cut, at first: energies
-    curvature: float
-
-
-PART = kind_of(Part)
 island_of, contacts_of = Opener(Island), Opener(IslandContacts)

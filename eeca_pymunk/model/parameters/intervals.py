@@ -106,5 +106,3 @@ CORRECTION_SHARE = accuracy(
 REPAY_ROUND_OFF = round_off(
     1e-13, "of the energies", "Energy gain of a shortened interval below which its forces are not scaled."
 )
-REPAY_SWEEPS = work(20, "sweeps", "Sweeps that reduce the forces of a shortened interval until they give no energy.")
-REPAY_STEP = accuracy(1e-3, "of a force", "Largest change by the last of these sweeps; one factor removes the rest.")
