@@ -18,8 +18,8 @@ class Unmet(NamedTuple):
     Attributes:
         name: "impacts" (number for a body in a step; further ones are ignored and may penetrate), "hits" (number on an
             island; likewise, until the next step), "impact" (residual velocity of a simultaneous impact, length/time),
-            "solves" (bodies of all solves; the step ends early), "contacts" (of jointed bodies; no numbers), "joints"
-            (status of their solve).
+            "solves" (bodies of all solves; the step ends early), "contacts" (that persist: residual velocity,
+            length/time, of up to 40 contacts; of jointed bodies no numbers), "joints" (status of their solve).
         value: reached.
         limit: largest allowed; nan if there is no such number.
         bodies: those concerned, as far as they are known.

@@ -17,12 +17,15 @@ from ..model.parameters.intervals import (
     INTERVAL_RESIDUAL,
     INTERVAL_RESIDUAL_MOVING,
     INTERVAL_RESIDUAL_SPEED,
+    INTERVAL_UNMET,
     LARGE_ISLAND,
 )
+from ..model.parameters.joints import COLUMN_CONTACTS
 from ..model.scene import scene_of
 from ..rows.blocks import clear_report
 from ..rows.build import conserves, rates
 from ..rows.energy import lock, works
+from ..rows.gentle import excessive, sweep_gently
 from ..rows.inplace import copy
 from ..rows.sweeps import velocities
 from .geometry import gather
@@ -155,11 +158,16 @@ def step_island(
         sweeps, polishes, worst = relax(
             problem, L, VN, FREE, rounds, INTERVAL_RESIDUAL * scale, coarse, S.RESTING[isle.WHO[0]], most
         )  # fmt: skip
+        if excessive(L, m, IM, n, fast + pull * h):
+            L[:] = 0.0
+            copy(VN, FREE)
+            worst = sweep_gently(problem, L, VN)
         # Velocities are computed again from the impulses, without the round-off of many sweeps.
         velocities(problem, L, FREE, VN)
         OUT[0].sweeps += sweeps
         OUT[0].direct += polishes
         OUT[0].residual = worst
+        OUT[0].tolerance = INTERVAL_UNMET * scale if few and m <= COLUMN_CONTACTS else np.inf
         OUT[0].lock, OUT[0].owed = lock(problem, L, VN, FREE, owed, elastic)
         OUT[0].restitution, OUT[0].friction = works(problem, L, VN)
         remember_loads(ROWS, contacts.KEY, L, m, h, S.KEYS, S.FORCES, S.COUNT, S.PAR.stamp)

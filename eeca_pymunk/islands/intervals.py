@@ -11,7 +11,7 @@ from ..compiled import kernel, nonallocating
 from ..contacts.correction import budget_of, least_of, lifting
 from ..contacts.geometry import gather
 from ..contacts.interval import make_contacts, step_island
-from ..contacts.unmet import spend
+from ..contacts.unmet import note_unmet, spend
 from ..contacts.works import moved
 from ..model.bodies import MOVED
 from ..model.contacts import Problem
@@ -19,7 +19,7 @@ from ..model.islands import Island, IslandContacts
 from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, LARGE_ISLAND, SMALL_SWEEPS
 from ..model.scene import Scene
-from ..model.step import AGAIN, DONE, PUSHES_FULL
+from ..model.step import AGAIN, CONTACTS, DONE, PUSHES_FULL
 from ..rows.build import rates
 from .at_rest import put_to_rest
 from .candidates import (
@@ -130,6 +130,8 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
         if abs(OUT[0].lock - 1.0) > abs(A.PAR.lock - 1.0):
             A.PAR.lock = OUT[0].lock
     at_rest = OUT[0].at_rest > 0
+    if OUT[0].residual > OUT[0].tolerance:
+        note_unmet(A, CONTACTS, isle.PAIRS[0, 0], isle.PAIRS[0, 1], OUT[0].residual, OUT[0].tolerance)
     COUNT.solves += 1
     COUNT.solved += n
     spend(A, 2 * p, m, OUT[0].sweeps, OUT[0].direct)

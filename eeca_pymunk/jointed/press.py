@@ -47,12 +47,13 @@ from ..model.parameters.joints import (
 from ..model.scene import Scene
 from ..rows.build import conserves, rates, rubs
 from ..rows.columns import push_columns
+from ..rows.gentle import excessive
 from ..rows.inplace import copy
 from ..rows.laws import give_slips, solve_columns, solve_wedged, take_slips
 from .advance import Interval, advance, advance_aligned, align, farthest_apart
 from .bounded import make_bounded, settle_bounded, with_bounded
 from .columns import fill_free, leave_out, weigh
-from .gentle import excessive, solve_gently
+from .gentle import solve_gently
 from .groups import Groups, hangs
 from .lock import lock, lost, work_error
 from .secant import fit_columns
@@ -186,10 +187,10 @@ def press(
         converged = (converged and off <= agree) or (best <= AGREE * scale and some_give(J, groups))
     quick = fast + max(pull * h, h * farthest_apart(EFFECT, np.zeros_like(EFFECT), isle.EXTENT, n))
     # Impulses that are no solution may take any work from walls.
-    if excessive(interval, L, quick) or (not converged and m <= COLUMN_CONTACTS):
+    if excessive(L, m, isle.IM, n, quick) or (not converged and m <= COLUMN_CONTACTS):
         solve_gently(A, J, interval, L, B, free)
         converged, bent = False, np.inf if free else 0.0
-        if excessive(interval, L, quick):
+        if excessive(L, m, isle.IM, n, quick):
             for k in range(L.shape[0]):
                 L[k, 0] = L[k, 1] = 0.0
             advance(A, J, interval, L, B, False, UNKNOWN)

@@ -70,6 +70,7 @@ MIDPOINT_SAME = round_off(
 )
 MANIFOLD_ROUND_OFF = round_off(1e-09, "of the smaller shape", "Tolerance of a manifold.")
 INTERVAL_RESIDUAL = accuracy(1e-12, "of |a| h", "Residual of islands near rest and of elastic islands.")
+INTERVAL_UNMET = accuracy(1e-06, "of |a| h", "Residual beyond which few contacts count as unsolved in reports.")
 INTERVAL_RESIDUAL_MOVING = accuracy(1e-07, "of |a| h", "Residual of a large moving island.")
 INTERVAL_RESIDUAL_SPEED = accuracy(
     0.0001, "of its speed", "The same, relative to its speed; and of impacts on it, relative to the approach speed."

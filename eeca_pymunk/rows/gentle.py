@@ -1,0 +1,37 @@
+"""Impulses where there is no solution, or one that makes no sense: they gain nothing however far they are from solved.
+
+Rows that contradict one another (what is jammed between walls), or that friction alone holds (what is wedged in a
+corner), let impulses grow without bound; the work of what they lean on, and its round-off, are then without bound too.
+Sweeps from no impulses are descents of (1/2) lam.A lam + lam.(u - b), so that what is left of them is between nothing
+and the solution.
+"""
+
+from __future__ import annotations
+
+from ..arrays import FloatArray
+from ..compiled import nonallocating
+from ..model.contacts import AnyProblem
+from ..model.parameters.joints import EXCESSIVE_IMPULSE, GENTLE_SWEEPS
+from .sweeps import sweep
+
+
+@nonallocating
+def excessive(L: FloatArray, m: int, IM: FloatArray, n: int, speed: float) -> bool:
+    """Whether the impulses L of m contacts are beyond all that n bodies of such a speed need: larger by
+    EXCESSIVE_IMPULSE than their momenta; not finite ones are, too. IM (n,): inverse masses."""
+    mass, largest = 0.0, 0.0
+    for q in range(n):
+        mass += 1.0 / IM[q]
+    for i in range(m):
+        largest = max(largest, abs(L[i, 0]) + abs(L[i, 1]))
+    return not largest <= EXCESSIVE_IMPULSE * mass * speed
+
+
+@nonallocating
+def sweep_gently(problem: AnyProblem, L: FloatArray, V: FloatArray) -> float:
+    """Impulses L by GENTLE_SWEEPS sweeps from those given, which are none of contacts; V (k, 3) are the velocities
+    under them. Returns the largest change of a contact's velocity in the last sweep."""
+    worst = 0.0
+    for _ in range(GENTLE_SWEEPS):
+        worst = sweep(problem, L, V)
+    return worst
