@@ -11,6 +11,7 @@ from ..compiled import Table, kernel, nonallocating
 from ..compiled.records import Rows, empty, zeros
 from ..model.contacts import ROW, SOLVED, Force, Problem
 from ..model.islands import IslandContacts, contacts_of, island_of
+from ..model.parameters.impulses import WEDGED
 from ..model.parameters.intervals import (
     DIRECT,
     DIRECT_MOVING,
@@ -25,7 +26,7 @@ from ..model.scene import scene_of
 from ..rows.blocks import clear_report
 from ..rows.build import conserves, rates
 from ..rows.energy import lock, works
-from ..rows.gentle import excessive, sweep_gently
+from ..rows.gentle import excessive, unwedge
 from ..rows.inplace import copy
 from ..rows.sweeps import velocities
 from .geometry import gather
@@ -158,17 +159,17 @@ def step_island(
         sweeps, polishes, worst = relax(
             problem, L, VN, FREE, rounds, INTERVAL_RESIDUAL * scale, coarse, S.RESTING[isle.WHO[0]], most
         )  # fmt: skip
-        if excessive(L, m, IM, n, fast + pull * h):
-            L[:] = 0.0
-            copy(VN, FREE)
-            worst = sweep_gently(problem, L, VN)
         # Velocities are computed again from the impulses, without the round-off of many sweeps.
         velocities(problem, L, FREE, VN)
+        quick, most_contacts = fast + pull * h, COLUMN_CONTACTS if few else 0
+        wedged = worst > WEDGED * scale or excessive(L, m, IM, n, quick)
+        OUT[0].lock, OUT[0].owed = lock(problem, L, VN, FREE, owed, elastic)
+        if m <= most_contacts and (wedged or OUT[0].lock < 1.0 - WEDGED):
+            worst = unwedge(problem, L, VN, FREE, INTERVAL_RESIDUAL * scale, quick)
+            OUT[0].lock, OUT[0].owed = lock(problem, L, VN, FREE, owed, elastic)
         OUT[0].sweeps += sweeps
         OUT[0].direct += polishes
-        OUT[0].residual = worst
-        OUT[0].tolerance = INTERVAL_UNMET * scale if few and m <= COLUMN_CONTACTS else np.inf
-        OUT[0].lock, OUT[0].owed = lock(problem, L, VN, FREE, owed, elastic)
+        OUT[0].residual, OUT[0].tolerance = worst, INTERVAL_UNMET * scale if m <= most_contacts else np.inf
         OUT[0].restitution, OUT[0].friction = works(problem, L, VN)
         remember_loads(ROWS, contacts.KEY, L, m, h, S.KEYS, S.FORCES, S.COUNT, S.PAR.stamp)
     else:

@@ -102,12 +102,15 @@ def lawful(problem: JointedProblem, L: FloatArray, V: FloatArray, i: int) -> tup
 @nonallocating
 def breach(problem: JointedProblem, L: FloatArray, V: FloatArray) -> float:
     """The largest velocity by which impulses L and velocities V break the laws of contacts and bounded rows; inf if
-    there are discs. The change of velocity in a sweep is no such measure: where an impulse of friction could open its
+    there are discs. Inactive contacts break theirs beyond the velocity that activates them. The change of velocity in a sweep is no such measure: where an impulse of friction could open its
     contact, a_nn < mu |a_nt|, a contact by itself has several solutions, among which a sweep may change."""
     A, B, ROWS, C, D, m = problem
     worst = 0.0
     for i in range(m):
-        if C.OUT[i] != 0 or ROWS[i].wake < np.inf:
+        if C.OUT[i] != 0:
+            continue
+        if ROWS[i].wake < np.inf:
+            worst = max(worst, ROWS[i].wake - normal_rate(A, B, ROWS, V, i))
             continue
         lam, beta, mu = L[i, 0], L[i, 1], ROWS[i].friction
         un = normal_rate(A, B, ROWS, V, i) - ROWS[i].target

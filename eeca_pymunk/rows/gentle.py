@@ -9,10 +9,13 @@ and the solution.
 from __future__ import annotations
 
 from ..arrays import FloatArray
-from ..compiled import nonallocating
-from ..model.contacts import AnyProblem
-from ..model.parameters.joints import EXCESSIVE_IMPULSE, GENTLE_SWEEPS
-from .sweeps import sweep
+from ..compiled import kernel, nonallocating
+from ..model.contacts import AnyProblem, Problem
+from ..model.parameters.joints import COLUMN_SWEEPS_AFTER, EXCESSIVE_IMPULSE, GENTLE_SWEEPS
+from .columns import as_columns
+from .inplace import copy
+from .laws import solve_wedged
+from .sweeps import sweep, velocities
 
 
 @nonallocating
@@ -34,4 +37,18 @@ def sweep_gently(problem: AnyProblem, L: FloatArray, V: FloatArray) -> float:
     worst = 0.0
     for _ in range(GENTLE_SWEEPS):
         worst = sweep(problem, L, V)
+    return worst
+
+
+@kernel
+def unwedge(problem: Problem, L: FloatArray, V: FloatArray, FREE: FloatArray, tolerance: float, speed: float) -> float:
+    """Impulses L (m, 2) and velocities V (k, 3) of contacts that are wedged: without friction, which their rows lose;
+    or gentle ones, if these are excessive for such a speed, too. FREE (k, 3): velocities without impulses. Returns how
+    far from solved they are (velocity)."""
+    worst = solve_wedged(as_columns(problem), L, V, tolerance, COLUMN_SWEEPS_AFTER)
+    if excessive(L, problem.m, problem.IM, problem.n, speed):
+        L[:] = 0.0
+        copy(V, FREE)
+        worst = sweep_gently(problem, L, V)
+    velocities(problem, L, FREE, V)
     return worst
