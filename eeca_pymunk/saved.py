@@ -137,14 +137,13 @@ class Sides:
             world.STATES[LEFT, kept, :3] = world.state[kept, :3]
             nudged = {i for i, far in zip(at, way, strict=True) if far > 0.0}
             world.BODY["due"][[rows[i] for i in kept]] = [NUDGED if i in nudged else ANEW for i in kept]
-        if self._sided and len(loop.scene.SIDE):
+        if self._sided and loop.thin:
             keep_sides(loop.table, self._known, np.array(of, np.int64))
 
 
 def sides_of(world: World, loop: EventLoop) -> Sides | None:
     """The remembered sides, None if there are none, nor a kinematic body."""
-    SIDE = loop.scene.SIDE
-    sided = len(SIDE) > 0 and bool((SIDE["key"] > 0).any())
+    sided = loop.thin and bool((loop.scene.SIDE["key"] > 0).any())
     return Sides(world, loop, sided) if sided or world.bodies.kinematic else None
 
 

@@ -50,6 +50,7 @@ TABLES = {
 }
 
 ENTRIES = {
+    "compiled.layouts:lay_out": "i8[2] i8[1] i8[1] i8",
     "geometry.gap:gaps": "{Scene} i8[2] f8[2] f8[2] f8[2]",
     "pairs.grid:build": "{Scene} f8",
     "pairs.grid:relist": "{Scene}",
@@ -74,15 +75,14 @@ ENTRIES = {
     "world_rows:write_rows": "BodyValues[1] ShapeValues[1] f8[2] Body[1] Shape[1] Link[1] f8[2] i8[1]",
     "rehearsing:changed": "f8[3] f8[2] f8[2]",
     "impacts.new_scene:measure_scene": "Shape[1] Link[1] f8[2] i8[1] i8",
-    "impacts.new_scene:begin_scene": "{Scene}",
-    "impacts.new_scene:tie_components": "Member[1] i8[1]",
+    "impacts.new_scene:begin_scene": "{Scene} i8 i8 i8 i8 i8",
+    "impacts.new_scene:tie_components": "{Scene} {Joints}",
     "islands.accounting:flag_pairs": "{Scene}",
     "impacts.step:step": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 i8",
     "impacts.run:run": "{Scene} {Joints} {RunArrays} f8[3] i8[2] f8[2] f8[1]",
-    "joints.plan:make_plan": "Body[1] Joint[1] Component[1] ComponentBody[1] Coupling[1] i8[1]",
-    "joints.plan:measure_plan": "Component[1] i8[1] i8",
+    "joints.workspace:plan_components": "{Joints} Body[1] i8[1] i8",
     "joints.held:may_hold": "Joint[1] i8[1] i8",
-    "joints.held:find_held": "Body[1] Joint[1] i8[1] i8[1] i8[1]",
+    "joints.held:find_held": "Body[1] Body[1] Joint[1] i8[1] i8[1] i8[1]",
     # Only tests call these, which solve single islands and components: some hundred times slower as plain Python.
     "joints.world:step_all": "{Joints} Body[1] f8",
     "contacts.interval:step_island": "{Scene} {Island} {IslandContacts} i8 f8 i8 f8 f8 f8",

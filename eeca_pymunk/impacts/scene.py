@@ -14,7 +14,6 @@ from ..compiled.records import R, Rows, columns, from_bytes, put, rows
 from ..contacts.memory import forget
 from ..islands.accounting import flag_pairs
 from ..joints.held import held_bodies
-from ..joints.workspace import make_joints
 from ..layout import NOW as READ
 from ..model.bodies import CHECK, Body
 from ..model.contacts import Force, Impulse
@@ -26,7 +25,7 @@ from ..pairs.setup import with_more_room
 from ..report import Details, of_events
 from ..transfer import FORCES
 from .new_scene import tie_components
-from .remembering import Remembering
+from .remembering import UNBOUND, Remembering
 from .run import ROOM_FOR_IMPACTS, run
 from .run_buffers import RunBuffers
 from .scene_memory import ORDER, RULE_COLUMNS, SceneMemory
@@ -63,6 +62,9 @@ class EventLoop(Remembering):
         together: whether all contacts of a step act together at its middle, instead of at their instants.
         still: (x,) 1 for rows of PARTNER that never move; None: all.
         memory: of the scene before, which is lost; None: new.
+
+    Attributes:
+        thin: whether thin shapes may meet, whose sides are remembered.
     """
 
     def __init__(
@@ -75,15 +77,14 @@ class EventLoop(Remembering):
         self.joint, self.partner = _NO_JOINTS if joint is None else joint, BODY[:0] if PARTNER is None else PARTNER
         self._still: IntArray = np.ones(len(self.partner), np.int64) if still is None else still
         HELD = self._hold(BODY, SHAPE, LINK)
-        scene, self.table = memory.scene(BODY, SHAPE, LINK, VERTEX, HELD)
-        self.scene, self._in_memory = scene, (scene, memory.own)
-        COUNT = scene.COUNT
-        COUNT.limit, COUNT.disks, COUNT.together = limit, disks, together
-        COUNT.budget = STEP_LOOKS + STEP_LOOKS_BODY * n * max(n, MANY_BODIES) // MANY_BODIES
+        budget = STEP_LOOKS + STEP_LOOKS_BODY * n * max(n, MANY_BODIES) // MANY_BODIES
+        self.table = memory.scene(BODY, SHAPE, LINK, VERTEX, HELD, limit, disks, together, budget)
+        (self._par, self._count, self._log), self._bound = memory.records(), UNBOUND
+        self._laid, self._memory, self.thin, self._ruled = self.table, memory, memory.thin > 0, False
         if self.jointed:
-            self.plan()
+            self._plan(BODY)
         else:
-            self._joints, self.ties = memory.unjointed(n)
+            self.ties = memory.unjointed(n)
 
     def _hold(self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link]) -> Rows[Held]:
         """The bodies that straight chains of joints hold, which lose their mobilities."""
@@ -105,8 +106,12 @@ class EventLoop(Remembering):
 
     def plan(self) -> None:
         """Find the components again: after changes of joints' kinds, bodies, eccentric anchors, or of mobilities."""
-        self.joints = make_joints(self.scene.BODY, self.joint, self.partner, ORDER)
-        tie_components(self.scene.MEMBER, self.joints.OF)
+        self._memory = self.__dict__.get("_memory") or SceneMemory()
+        self._plan(self.scene.BODY)
+
+    def _plan(self, BODY: Rows[Body]) -> None:
+        self.ties, self._bound = self._memory.joints.plan(BODY, self.joint, self.partner, ORDER), UNBOUND
+        tie_components(self.table, self.ties)
 
     def holds_others(self) -> bool:
         """Whether straight chains of joints hold other bodies than those of HELD, after changes of joints or of their
@@ -194,6 +199,9 @@ class EventLoop(Remembering):
     def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
         """Set the law of pairs of shapes a < b: elasticity (below 0: they pass through each other), friction and
         surface velocity (2)."""
+        if not (rules or self._ruled):
+            return
+        self._ruled = len(rules) > 0
         table = np.array([(*pair, *what) for pair, what in rules.items()], float).reshape(-1, RULE_COLUMNS)
         if not np.array_equal(table, self.scene.RULE):
             self.scene = self.scene._replace(RULE=table)

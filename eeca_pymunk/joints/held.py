@@ -85,11 +85,13 @@ def fix_chain(
 
 
 @kernel
-def find_held(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, spins: IntArray, held: IntArray) -> int:
+def find_held(
+    BODY: Rows[Body], PARTNER: Rows[Body], joint: Rows[Joint], still: IntArray, spins: IntArray, held: IntArray
+) -> int:
     """Find the bodies of straight chains between fixed points.
 
     Args:
-        bodies (n,): at their present poses, with those that joints cannot move.  joint (j,).
+        BODY, PARTNER (n together): at their present poses; the latter cannot be moved by joints.  joint (j,).
         still (n,): 1 for bodies that never move.
         spins (n,): 1 for bodies that contacts do not turn; those that joints turn are set to 0.
         held (n,): out, FREE, WHOLLY, or CENTRE for a body that is held at its centre of mass and spins on.
@@ -97,6 +99,7 @@ def find_held(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, spins: In
     Returns:
         the number of bodies that are held.
     """
+    bodies = together(BODY, PARTNER)
     points, n = 2 * len(joint), len(bodies)
     X, LENGTH = np.empty((points, 2)), np.empty(points)
     HEAD, NEXT = np.full(n, -1, np.int64), np.full(points, -1, np.int64)
@@ -181,7 +184,7 @@ def held_bodies(
         return rows(Held, 0)
     fixed = np.concatenate((np.zeros(n, np.int64), still))
     kind = np.zeros(len(fixed), np.int64)
-    find_held(together(bodies, partner), joint, fixed, np.concatenate((smooth, 0 * still)), kind)
+    find_held(bodies, partner, joint, fixed, np.concatenate((smooth, 0 * still)), kind)
     if not kind.any():
         return rows(Held, 0)
     at = np.flatnonzero(kind)
