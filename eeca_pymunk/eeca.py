@@ -64,7 +64,8 @@ class EECA(RunningStepper):
             self._use(saved.method)
             return
         sides = None if past is None or (loop := self.event_loop) is None else sides_of(past, loop)
-        world.load(mobilities=world is past)
+        if world is past:
+            world.load(mobilities=True)
         self._use(self.closure.prepare(world))
         loop = self.event_loop
         if self._patches and world.joints is None and loop is not None:

@@ -144,7 +144,7 @@ class Sides:
 def sides_of(world: World, loop: EventLoop) -> Sides | None:
     """The remembered sides, None if there are none, nor a kinematic body."""
     sided = loop.thin and bool((loop.scene.SIDE["key"] > 0).any())
-    return Sides(world, loop, sided) if sided or world.bodies.kinematic else None
+    return Sides(world, loop, sided) if sided or len(world.BODY) - 1 > world.dynamic else None
 
 
 def _outline(record: Record | None) -> object:

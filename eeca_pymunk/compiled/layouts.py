@@ -14,7 +14,7 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
-from ..arrays import LINE, AnyArray, IntArray, Memory, address_of
+from ..arrays import LINE, AnyArray, IntArray, Memory, address_of, lengths
 from .backend import start
 from .entries import table_fields
 from .kernels import nonallocating
@@ -29,9 +29,9 @@ def lay_out(PLAN: IntArray, NUMBERS: IntArray, TABLE: IntArray, address: int) ->
     """Write the words of arrays.
 
     Args:
-        PLAN (a, 4): of each array, its first word; bytes and numbers of a row; its last length, COUNT for the number of
-            rows, 0 of a record.  NUMBERS (a + g,): numbers of rows; then the addresses of the last g arrays.
-            TABLE: out, the words.  address: of the memory in which the others lie side by side.
+        PLAN (a, 5): of each array, its first word; bytes and numbers of a row; two lengths, COUNT for the rows.
+        NUMBERS (a + g,): numbers of rows; then the addresses of the last g arrays.  TABLE: out, the words.
+        address: of the memory in which the others lie side by side.
 
     Returns:
         the bytes of that memory.
@@ -39,10 +39,11 @@ def lay_out(PLAN: IntArray, NUMBERS: IntArray, TABLE: IntArray, address: int) ->
     arrays, at = PLAN.shape[0], 0
     own = 2 * arrays - NUMBERS.shape[0]
     for a in range(arrays):
-        word, count, last = PLAN[a, 0], NUMBERS[a], PLAN[a, 3]
+        word, count = PLAN[a, 0], NUMBERS[a]
         TABLE[word] = NUMBERS[arrays + a - own] if a >= own else address + at
         TABLE[word + 1] = count * PLAN[a, 2]
-        TABLE[word + 2], TABLE[word + 3] = count if last != 0 else 0, count if last == COUNT else last
+        for k in range(2):
+            TABLE[word + 2 + k] = count if PLAN[a, 3 + k] == COUNT else PLAN[a, 3 + k]
         at += (count * PLAN[a, 1] + LINE - 1) // LINE * LINE if a < own else 0
     return at
 
@@ -66,12 +67,13 @@ class Layout(Generic[T]):
         self._first_word = {name: WORDS * i for i, (name, *_) in enumerate(fields)}
         self._dtypes = {name: dtype for name, dtype, _ in fields}
         self._dimensions = {name: dimensions.get(name, (COUNT,) * many) for name, _, many in fields}
-        plan, words = np.zeros((0, 4), np.int64), np.zeros(WORDS * len(fields), np.int64)
+        words = np.zeros(WORDS * len(fields), np.int64)
+        rows = []
         for name in (*own, *elsewhere):
             shape, dtype = self._dimensions[name], self._dtypes[name]
             width = math.prod(length for length in shape if length != COUNT)
-            row = self._first_word[name], width * dtype.itemsize, width, shape[-1] if shape else 0
-            plan = np.vstack((plan, row))
+            rows.append((self._first_word[name], width * dtype.itemsize, width, *lengths(shape)))
+        plan = np.array(rows, np.int64)
         for name, array in constant.items():
             words[self._first_word[name] :][:WORDS] = words_of(array)
         self._words, self._table = words, words.data
@@ -82,8 +84,8 @@ class Layout(Generic[T]):
         self._memory, self._plain = Memory(), not start().entries
 
     def lay(self, counts: Sequence[int], *elsewhere: AnyArray) -> Table:
-        """The table of arrays with so many rows; the last table is lost. Records have one row."""
-        self._put(self._into, 0, *counts, *map(len, elsewhere), *map(address_of, elsewhere))
+        """The table of arrays with so many rows, 1 of records, also of those elsewhere; the last table is lost."""
+        self._put(self._into, 0, *counts, *map(address_of, elsewhere))
         memory = self._memory
         address = memory.address
         total = self._write(address)
@@ -94,13 +96,15 @@ class Layout(Generic[T]):
 
     def _arrays(self, elsewhere: Sequence[AnyArray]) -> T:
         """The arrays of the last table."""
-        found: dict[str, Any] = {**self._constant, **dict(zip(self._elsewhere, elsewhere, strict=True))}
-        for name, count in zip(self._own, self._numbers.tolist(), strict=False):
-            shape = tuple([count if length == COUNT else length for length in self._dimensions[name]])
-            at = self._table[self._first_word[name]] - self._memory.address
-            array = self._memory.array(shape or (1,), self._dtypes[name], at)
-            found[name] = array if shape else array[0]
-        return self._kind(**found)
+        others = dict(zip(self._elsewhere, elsewhere, strict=True))
+        return self._kind(**self._constant, **others, **{name: self.array(name) for name in self._own})
+
+    def array(self, name: str) -> Any:
+        """An array of this memory in the last table."""
+        count, at = self._into[self._own.index(name)], self._table[self._first_word[name]] - self._memory.address
+        shape = tuple([count if length == COUNT else length for length in self._dimensions[name]])
+        array = self._memory.array(shape or (1,), self._dtypes[name], at)
+        return array if shape else array[0]
 
     def floats(self, name: str) -> memoryview:
         """The numbers of an array of this memory in the last table."""

@@ -65,7 +65,7 @@ class SceneMemory:
             (
                 1, 1, 1, n, n, n, n, moving, moving, moving, pool, pool, heads, corners, side_rows(self.thin, k),
                 n, n, 8 * n + 64, 8 * n + 64, n, k - moving, 4 * k if self.thin else 0, _MISSED,
-                4 * n + 64, 4 * room, 4 * room, room, room,
+                4 * n + 64, 4 * room, 4 * room, room, room, n, k, k, len(VERTEX), len(HELD),
             ),
             BODY, SHAPE, LINK, VERTEX, HELD,
         )  # fmt: skip

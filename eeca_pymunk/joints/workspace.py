@@ -85,7 +85,8 @@ class JointMemory:
         """
         j = len(JOINT)
         while True:
-            table = self._layout.lay((1, 1, 1, 6, j, 2 * j, j, j, j, len(BODY), *self._most), JOINT, PARTNER)
+            counts = 1, 1, 1, 6, j, 2 * j, j, j, j, len(BODY), *self._most, j, len(PARTNER)
+            table = self._layout.lay(counts, JOINT, PARTNER)
             if plan_components(table, BODY, self._room, order):
                 return table
             self._most = tuple(map(max, self._room.tolist(), self._most))

@@ -14,10 +14,6 @@ from ..arrays import FloatArray, IntArray
 from ..compiled.records import Rows
 from ..layout import (
     ANEW,
-    BODY_ROW,
-    COG_X,
-    COG_Y,
-    ECCENTRIC,
     END,
     END_COLUMNS,
     EXTRA_COLUMNS,
@@ -28,13 +24,12 @@ from ..layout import (
     PULL,
     PUSH_TWIST,
     PUSH_X,
-    SPECIAL,
     SPEED,
     STATE_COLUMNS,
-    STEERED,
     STILL,
 )  # fmt: skip
 from ..model.bodies import Body
+from ..model.values import STATIC
 from ..rehearsing import alter_end, as_read, copy_start
 from ..transfer import FORCES, TURNS, place_anew, write_ends, write_still_ends
 from . import private_batch
@@ -70,10 +65,14 @@ class Crossing:
             angle: its pose is written a second time, by the new angle.
     """
 
-    def __init__(self, space: pymunk.Space, bodies: Bodies, BODY: Rows[Body], row: IntArray, state: FloatArray) -> None:
-        """Room for `bodies` that have these rows (N,) of BODY and this (N, 9) state."""
-        self.space, self.bodies, self.BODY = space, bodies, BODY
-        N = len(bodies)
+    bodies: Bodies
+    BODY: Rows[Body]
+    eccentric: bool
+
+    def __init__(self, space: pymunk.Space) -> None:
+        """Room for the bodies of a space, and their state now in STATES[NOW]."""
+        self.space = space
+        N = len((*space.bodies, space.static_body))  # which exists from its first access on
         # Room for one body more: pymunk replaces memory that is too small by its own. After additions the ids differ at
         # once, and new memory is made.
         floats, ids = np.zeros(max(2 * N, N + 1) * STATE_COLUMNS), np.zeros(max(4 * N, N + 1), np.int64)
@@ -81,17 +80,9 @@ class Crossing:
         self.WALK: IntArray = ids[: 4 * N].reshape(4, N)
         self.EXTRA: FloatArray = np.zeros((N, EXTRA_COLUMNS))
         self.ENDS: FloatArray = np.zeros(END_COLUMNS * N)
-        self.WALK[KNOWN] = bodies.ids
-        self.WALK[BODY_ROW] = row
-        self.eccentric = np.count_nonzero(bodies.center_of_gravity) > 0
-        if self.eccentric:
-            self.WALK[SPECIAL] = ECCENTRIC * bodies.center_of_gravity.any(axis=1)
-            self.EXTRA[:, COG_X : COG_Y + 1] = bodies.center_of_gravity
-        if len(bodies.velocity_hooks):
-            self.WALK[SPECIAL, bodies.velocity_hooks] |= STEERED
-        self.STATES[LEFT].fill(np.nan)
-        np.copyto(self.STATES[LEFT], state, where=bodies.static[:, None])
         self.gather = private_batch.reader(space, STATE_FIELDS, floats, ids)
+        self.gather()
+        self.WALK[KNOWN] = self.WALK[FOUND]
         self._scatter = _Writers(self, _WHOLE, END)
         self._scatter_still, self._scatter_speed = _Writers(self, _WHOLE, STILL), _Writers(self, _SPEEDS, SPEED)
 
@@ -179,11 +170,13 @@ class Crossing:
 
     def recall(self, before: Crossing) -> None:
         """Copy STATES[LEFT] of bodies whose mass, moment and centre of gravity have not changed."""
-        new, old = self.bodies, before.bodies
-        at = np.array([old.row.get(body, -1) for body in new.items])
-        same = (at >= 0) & ~new.static & (new.mass == old.mass[at]) & (new.moment == old.moment[at])
-        same &= (new.center_of_gravity == old.center_of_gravity[at]).all(axis=1)
-        self.STATES[LEFT, same] = before.STATES[LEFT, at[same]]
+        old, known = before.bodies.row, before.bodies.inertia
+        at = [(i, old.get(body, -1)) for i, body in enumerate(self.bodies.items)]
+        kinds, inertia = self.bodies.VALUES["kind"].tolist(), self.bodies.inertia
+        same = [(i, j) for i, j in at if j >= 0 and kinds[i] != STATIC and inertia[i] == known[j]]
+        if same:
+            to, of = zip(*same, strict=True)
+            self.STATES[LEFT, to] = before.STATES[LEFT, of]
 
     def with_turns(self, status: int) -> int:
         """Write the end of the step to ENDS with angles and spins, if they were left out; returns its status bits."""

@@ -13,7 +13,7 @@ import pymunk
 from ..arrays import BoolArray, IntArray
 from ..compiled.records import Rows, rows
 from ..impacts.scene_memory import SceneMemory
-from ..layout import BODY_ROW
+from ..layout import BODY_ROW, KNOWN
 from ..model.bodies import Body
 from ..report import Details, nothing
 from ..transfer import take
@@ -69,23 +69,26 @@ class World(Crossing):
         stale = None if past is None else past.stale()
         known = None if stale is None else past
         self.read_at = clock()
-        bodies = Bodies(space, sleeps, None if known is None else known.bodies, stale or ())
-        state = bodies.start
-        bodies.check_finite(state)
+        super().__init__(space)
+        bodies = Bodies(space, sleeps, None if known is None else known.bodies, stale or (), self.WALK[KNOWN])
+        self.bodies = bodies
         self.records: Records
         self.records, count = records_of(space, bodies, {} if known is None else known.records, stale or ())
         self.objects_read = bodies.fresh + count
         self.memory: SceneMemory = SceneMemory() if past is None else past.memory
         self.frictionless = "friction" in ignore
         self.lacks_friction = self.frictionless and has_friction([s for s, r in self.records.items() if r is not None])
-        self.packed = packed = Packed(bodies, state, self.records)
-        super().__init__(space, bodies, packed.BODY, packed.row, state)
+        packed: Packed = Packed(bodies, self, self.records, None if past is None else past.packed)
+        self.packed = packed
+        if packed.status < 0:
+            bodies.check_finite(self.state)
         self.shapes, self.owner = packed.shapes, packed.owner
-        self.SHAPE, self.LINK, self.VERTEX = packed.SHAPE, packed.LINK, packed.VERTEX
+        self.BODY, self.SHAPE, self.LINK, self.VERTEX = packed.BODY, packed.SHAPE, packed.LINK, packed.VERTEX
         if self.frictionless:
             self.SHAPE["friction"] = 0.0
             self.BODY["friction"] = 0.0
-        self.disks, self.dynamic = packed.disks, packed.dynamic
+        self.disks, self.dynamic, self._carried, _, eccentric, *self._functions = packed.told
+        self.eccentric = eccentric > 0
         self.patches = 0
         self.parted: set[tuple[int, int]] = set()
         self.rules = Rules()
@@ -105,7 +108,7 @@ class World(Crossing):
         self._known = self._edits.in_place
         self.collisions = bool(private.handlers(self.space))
         self._forget_rules()
-        self.hooks = Hooks(self.space, self.bodies, self.joints)
+        self.hooks = Hooks(self.space, self.bodies, self.joints, *self._functions)
         self.hooked = self.collisions or self.hooks.some or self.damping == 0.0
         self.plain = not self.hooked and self.joints is None
         self.current = private.watch(self.space, self._edits, self._seen)
@@ -144,9 +147,17 @@ class World(Crossing):
         """The number of shapes of each body that is not static."""
         return shape_counts(self.bodies, self.records)
 
+    @property
+    def carried(self) -> int:
+        """Number of shapes of bodies that are not static."""
+        return self._carried if len(self.shapes) == len(self.records) else sum(self.shape_counts.values())
+
     @cached_property
     def movers(self) -> list[Any]:
         """Pointers to the Chipmunk bodies that are not static and have shapes."""
+        if len(self.shapes) == len(self.records):
+            items = self.bodies.items
+            return private.pointers([items[i] for i in sorted(set(self.owner[: self._carried].tolist()))])
         return private.pointers(body for body, count in self.shape_counts.items() if count)
 
     @cached_property
