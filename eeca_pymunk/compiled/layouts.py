@@ -76,12 +76,13 @@ class Layout(Generic[T]):
         plan = np.array(rows, np.int64)
         for name, array in constant.items():
             words[self._first_word[name] :][:WORDS] = words_of(array)
-        self._words, self._table = words, words.data
+        self._table = words.data
         self._end = self._first_word[own[zeros]] if zeros < len(own) else None
         self._numbers = np.zeros(len(plan) + len(elsewhere), np.int64)
         self._put, self._into = struct.Struct(f"{len(self._numbers)}q").pack_into, self._numbers.data
         self._write = lay_out.bind(plan, self._numbers, words)
-        self._memory, self._plain = Memory(), not start().entries
+        self._memory = Memory()
+        self._pointers = Pointers(tuple, words) if start().entries else None
 
     def lay(self, counts: Sequence[int], *elsewhere: AnyArray) -> Table:
         """The table of arrays with so many rows, 1 of records, also of those elsewhere; the last table is lost."""
@@ -92,7 +93,10 @@ class Layout(Generic[T]):
         memory.provide(total if self._end is None else self._table[self._end] - address, total)
         if memory.address != address:
             self._write(memory.address)
-        return self._arrays(elsewhere) if self._plain else Pointers(partial(self._arrays, elsewhere), self._words)
+        if self._pointers is None:
+            return self._arrays(elsewhere)
+        self._pointers.make_by(partial(self._arrays, elsewhere))
+        return self._pointers
 
     def _arrays(self, elsewhere: Sequence[AnyArray]) -> T:
         """The arrays of the last table."""

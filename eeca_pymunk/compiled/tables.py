@@ -28,9 +28,15 @@ class Pointers:
 
     __slots__ = ("_arrays", "_make", "address", "words")
 
+    _arrays: Any
+
     def __init__(self, make: Callable[[], Any], words: Any) -> None:
-        self._make, self.words, self.address = make, words, address_of(words)
-        self._arrays: Any = None
+        self.words, self.address = words, address_of(words)
+        self.make_by(make)
+
+    def make_by(self, make: Callable[[], Any]) -> None:
+        """Let `make` make the arrays."""
+        self._make, self._arrays = make, None
 
     @property
     def arrays(self) -> Any:

@@ -96,6 +96,7 @@ class Remembering:
 
     def __setstate__(self, state: dict[str, object]) -> None:
         self.__dict__.update(state)
+        self._memory = SceneMemory()
         self.scene, self.joints = self.__dict__.pop("_arrays")
 
     def keep_fresh(self) -> None:

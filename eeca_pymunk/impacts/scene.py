@@ -13,7 +13,7 @@ from ..compiled.library import check
 from ..compiled.records import R, Rows, columns, from_bytes, put, rows
 from ..contacts.memory import forget
 from ..islands.accounting import flag_pairs
-from ..joints.held import held_bodies
+from ..joints.held import held_bodies, may_hold, smooth
 from ..layout import NOW as READ
 from ..model.bodies import CHECK, Body
 from ..model.contacts import Force, Impulse
@@ -76,7 +76,8 @@ class EventLoop(Remembering):
         self.jointed, self.together = joint is not None, together
         self.joint, self.partner = _NO_JOINTS if joint is None else joint, BODY[:0] if PARTNER is None else PARTNER
         self._still: IntArray = np.ones(len(self.partner), np.int64) if still is None else still
-        HELD = self._hold(BODY, SHAPE, LINK)
+        self._mobility: FloatArray | None = None  # of bodies, if joints hold any
+        HELD = self._hold(BODY, SHAPE, LINK) if self.jointed else _NO_HELD
         budget = STEP_LOOKS + STEP_LOOKS_BODY * n * max(n, MANY_BODIES) // MANY_BODIES
         self.table = memory.scene(BODY, SHAPE, LINK, VERTEX, HELD, limit, disks, together, budget)
         (self._par, self._count, self._log), self._bound = memory.records(), UNBOUND
@@ -88,25 +89,22 @@ class EventLoop(Remembering):
 
     def _hold(self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link]) -> Rows[Held]:
         """The bodies that straight chains of joints hold, which lose their mobilities."""
-        if not self.jointed:
+        if not may_hold(self.joint, self._still, len(BODY)):
             return _NO_HELD
-        # `_smooth` is 1 for the bodies that have no shape with friction.
-        self._mobility: FloatArray = columns(BODY, "inv_mass", "inv_inertia")
-        self._smooth: IntArray = np.ones(len(BODY), np.int64)
-        self._smooth[LINK["owner"][SHAPE["friction"] > 0.0]] = 0
-        HELD = held_bodies(BODY, self.joint, self.partner, self._still, self._smooth)
+        HELD = held_bodies(BODY, self.joint, self.partner, self._still, smooth(BODY, SHAPE, LINK))
         if len(HELD):
+            self._mobility = columns(BODY, "inv_mass", "inv_inertia")
             BODY["inv_mass"][HELD["body"]] = BODY["inv_inertia"][HELD["body"]] = 0.0
         return HELD
 
     @property
     def mobility(self) -> FloatArray:
         """(n, 2) 1/mass and 1/moment of bodies, also of those that joints hold."""
-        return self._mobility if self.jointed else columns(self.scene.BODY, "inv_mass", "inv_inertia")
+        found = self._mobility
+        return columns(self.scene.BODY, "inv_mass", "inv_inertia") if found is None else found
 
     def plan(self) -> None:
         """Find the components again: after changes of joints' kinds, bodies, eccentric anchors, or of mobilities."""
-        self._memory = self.__dict__.get("_memory") or SceneMemory()
         self._plan(self.scene.BODY)
 
     def _plan(self, BODY: Rows[Body]) -> None:
@@ -116,10 +114,13 @@ class EventLoop(Remembering):
     def holds_others(self) -> bool:
         """Whether straight chains of joints hold other bodies than those of HELD, after changes of joints or of their
         ends."""
-        BODY = self.scene.BODY.copy()
-        put(BODY, self._mobility, "inv_mass", "inv_inertia")
-        HELD = held_bodies(BODY, self.joint, self.partner, self._still, self._smooth)
-        return HELD.tobytes() != self.scene.HELD.tobytes()
+        scene = self.scene
+        BODY = scene.BODY.copy()
+        put(BODY, self.mobility, "inv_mass", "inv_inertia")
+        HELD = _NO_HELD
+        if may_hold(self.joint, self._still, len(BODY)):
+            HELD = held_bodies(BODY, self.joint, self.partner, self._still, smooth(BODY, scene.SHAPE, scene.LINK))
+        return HELD.tobytes() != scene.HELD.tobytes()
 
     def rebind(self, joint: Rows[Joint], PARTNER: Rows[Body]) -> None:
         """Use other arrays of joints with the same values."""
@@ -170,6 +171,7 @@ class EventLoop(Remembering):
         scene = self.scene
         if wish == ROOM_FOR_EVENTS:
             self.scene = scene._replace(LOG=_longer(scene.LOG, int(scene.COUNT.logged)))
+            self._memory.log = len(self.scene.LOG)
             return
         if wish == ROOM_FOR_CONTACTS:
             size, count = len(scene.KEYS), int(scene.COUNT.remembered)

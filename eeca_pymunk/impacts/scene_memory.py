@@ -32,7 +32,7 @@ class SceneMemory:
     """Memory for the scenes of one stepper: each replaces the one before, whose arrays it overwrites.
 
     Attributes:
-        joints: for their joints.
+        joints: for their joints.  log: number of rows that LOG has at least, as an earlier scene needed them.
         thin: number of thin shapes that move in the last scene, 0 if no thin shapes may meet.
     """
 
@@ -45,7 +45,7 @@ class SceneMemory:
             {"CORE": (2, COUNT, 4), "PULL": (COUNT, 3), "BEGAN": (COUNT, 3), "BOX": (COUNT, 4), "VERTEX": (COUNT, 4)},
         )  # fmt: skip
         self._sizes: IntArray = np.zeros(MEASURES, np.int64)
-        self.joints = JointMemory()
+        self.joints, self.log = JointMemory(), 0
         self._unjointed: tuple[Table, int] = None, 0
 
     def scene(
@@ -65,7 +65,7 @@ class SceneMemory:
             (
                 1, 1, 1, n, n, n, n, moving, moving, moving, pool, pool, heads, corners, side_rows(self.thin, k),
                 n, n, 8 * n + 64, 8 * n + 64, n, k - moving, 4 * k if self.thin else 0, _MISSED,
-                4 * n + 64, 4 * room, 4 * room, room, room, n, k, k, len(VERTEX), len(HELD),
+                max(4 * n + 64, self.log), 4 * room, 4 * room, room, room, n, k, k, len(VERTEX), len(HELD),
             ),
             BODY, SHAPE, LINK, VERTEX, HELD,
         )  # fmt: skip

@@ -24,6 +24,7 @@ from ..compiled.records import Rows, rows
 from ..model.bodies import Body
 from ..model.joints import PIN, PIVOT, SLIDE, Held, Joint
 from ..model.parameters.joints import STRAIGHT_CHAIN
+from ..model.shapes import Link, Shape
 from .plan import together, turning
 
 FREE, WHOLLY, CENTRE = 0, 1, 2  # what of a body a straight chain holds
@@ -170,18 +171,23 @@ def may_hold(joint: Rows[Joint], still: IntArray, n: int) -> bool:
     return ends >= 2
 
 
+def smooth(bodies: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link]) -> IntArray:
+    """(n,) 1 for the bodies that have no shape with friction, which contacts do not turn."""
+    found: IntArray = np.ones(len(bodies), np.int64)
+    found[LINK["owner"][SHAPE["friction"] > 0.0]] = 0
+    return found
+
+
 def held_bodies(
     bodies: Rows[Body], joint: Rows[Joint], partner: Rows[Body], still: IntArray, smooth: IntArray
 ) -> Rows[Held]:
-    """The bodies that straight chains hold, see `find_held`.
+    """The bodies that straight chains hold, see `find_held`; none unless `may_hold`.
 
     Args:
         bodies: (n,) those of the scene, with their mobilities.  joint: (j,).  partner: (x,) bodies that joints cannot
             move, of which `still` (x,) never move.  smooth: (n,) 1 for bodies that contacts do not turn.
     """
     n = len(bodies)
-    if not may_hold(joint, still, n):
-        return rows(Held, 0)
     fixed = np.concatenate((np.zeros(n, np.int64), still))
     kind = np.zeros(len(fixed), np.int64)
     find_held(bodies, partner, joint, fixed, np.concatenate((smooth, 0 * still)), kind)

@@ -206,7 +206,7 @@ class Bodies:
         """Function that returns whether the space still has these bodies, and the same ones of them sleep."""
         return private_batch.ordered(self.space, self.ids)
 
-    @cached_property
+    @property
     def reached(self) -> tuple[pymunk.Body, ...] | None:
         """The bodies that can be written without waking any, None for all. Sleeping bodies are last in pymunk's
         order."""

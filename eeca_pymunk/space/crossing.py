@@ -5,6 +5,7 @@ from __future__ import annotations
 import weakref
 from collections.abc import Callable
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import pymunk
@@ -43,13 +44,17 @@ _SPEEDS = {0: _F.VELOCITY, TURNS: _F.VELOCITY | _F.ANGULAR_VELOCITY}
 
 
 class _Writers(dict[int, Callable[[], None]]):
-    """Functions that write a table of ENDS that begins at `start` N, by the bit TURNS; made at the first use."""
+    """Functions that write a table of ENDS that begins at `start` N, by the bit TURNS; made at the first use, from
+    those of `past`, which are lost."""
 
-    def __init__(self, of: Crossing, fields: dict[int, batch.BodyFields], start: int) -> None:
+    def __init__(
+        self, of: Crossing, fields: dict[int, batch.BodyFields], start: int, past: _Writers | None
+    ) -> None:  # fmt: skip
         self._of, self._fields, self._start = weakref.proxy(of), fields, start
+        self._past: dict[int, Callable[[], None]] = {} if past is None else {**past._past, **past}
 
     def __missing__(self, turns: int) -> Callable[[], None]:
-        write: Callable[[], None] = self._of.writer(self._fields[turns], self._start)
+        write: Callable[[], None] = self._of.writer(self._fields[turns], self._start, self._past.get(turns))
         self[turns] = write
         return write
 
@@ -68,9 +73,14 @@ class Crossing:
     bodies: Bodies
     BODY: Rows[Body]
     eccentric: bool
+    gather: Callable[[], None]
+    _scatter: _Writers
+    _scatter_still: _Writers
+    _scatter_speed: _Writers
 
-    def __init__(self, space: pymunk.Space) -> None:
-        """Room for the bodies of a space, and their state now in STATES[NOW]."""
+    def __init__(self, space: pymunk.Space, past: Crossing | None) -> None:
+        """Room for the bodies of a space, and their state now in STATES[NOW]. `past`: of the same space before, which
+        can no more be used to read and write."""
         self.space = space
         N = len((*space.bodies, space.static_body))  # which exists from its first access on
         # Room for one body more: pymunk replaces memory that is too small by its own. After additions the ids differ at
@@ -80,20 +90,23 @@ class Crossing:
         self.WALK: IntArray = ids[: 4 * N].reshape(4, N)
         self.EXTRA: FloatArray = np.zeros((N, EXTRA_COLUMNS))
         self.ENDS: FloatArray = np.zeros(END_COLUMNS * N)
-        self.gather = private_batch.reader(space, STATE_FIELDS, floats, ids)
+        self.gather = private_batch.reader(space, STATE_FIELDS, floats, ids, None if past is None else past.gather)
         self.gather()
         self.WALK[KNOWN] = self.WALK[FOUND]
-        self._scatter = _Writers(self, _WHOLE, END)
-        self._scatter_still, self._scatter_speed = _Writers(self, _WHOLE, STILL), _Writers(self, _SPEEDS, SPEED)
+        self._scatter = _Writers(self, _WHOLE, END, None if past is None else past._scatter)
+        self._scatter_still = _Writers(self, _WHOLE, STILL, None if past is None else past._scatter_still)
+        self._scatter_speed = _Writers(self, _SPEEDS, SPEED, None if past is None else past._scatter_speed)
 
     @cached_property
     def reset_forces(self) -> Callable[[], None]:
         """Function that writes the forces at the end of the step."""
         return self.writer(_FORCES, PULL)
 
-    def writer(self, fields: batch.BodyFields, start: int) -> Callable[[], None]:
-        """Function that writes the fields from the table that begins at `start` N in ENDS."""
-        return private_batch.writer(self.space, fields, self.ENDS[start * len(self.bodies) :], self.bodies.reached)
+    def writer(self, fields: batch.BodyFields, start: int, last: Any = None) -> Callable[[], None]:
+        """Function that writes the fields from the table that begins at `start` N in ENDS; `last`: one that did so
+        before, see `private_batch.writer`."""
+        ends, reached = self.ENDS[start * len(self.bodies) :], self.bodies.reached
+        return private_batch.writer(self.space, fields, ends, reached, last)
 
     @cached_property
     def START(self) -> FloatArray:

@@ -20,7 +20,7 @@ from ..compiled.records import records as rows_of
 from ..layout import EXTRA_COLUMNS, STATE_COLUMNS
 from ..model.bodies import Body
 from ..model.shapes import Link, Shape
-from ..model.values import CORNERS, TOLD, Reading, ShapeValues
+from ..model.values import CORNERS, STATIC, TOLD, Reading, ShapeValues
 from ..world_rows import read_space, write_rows
 from . import private_shapes
 from .bodies import Bodies
@@ -136,6 +136,8 @@ class Packed:
         BODY, SHAPE, LINK, VERTEX: see `..model`.  told: see `Reading`.  status: see `read_space`.
     """
 
+    _layout: Layout[Reading]
+
     def __init__(self, bodies: Bodies, crossing: Crossing, records: Records, past: Packed | None) -> None:
         solid = [shape for shape, record in records.items() if record is not None]
         known = [record for record in records.values() if record is not None]
@@ -146,9 +148,8 @@ class Packed:
         self._points: FloatArray = np.frombuffer(bytearray().join([record.points for record in known]))
         row = bodies.row
         owner: IntArray = np.array([row[record.body] for record in known], np.int64)
-        moving, v = int(np.count_nonzero(bodies.VALUES["kind"])), len(self._points) // 2
-        layout: Layout[Reading] = Layout(*_ROWS) if past is None else past._layout
-        self._layout = layout
+        moving, v = N - bodies.VALUES["kind"].tolist().count(STATIC), len(self._points) // 2
+        self._layout = layout = Layout(*_ROWS) if past is None else past._layout
         self._table = layout.lay(
             (TOLD, moving + 1, k, k, v, k + N + 2, N, k, k, v, N, N, N), bodies.VALUES, self._shapes, owner,
             self._points, crossing.STATES, crossing.WALK, crossing.EXTRA,

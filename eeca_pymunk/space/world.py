@@ -22,7 +22,7 @@ from .bodies import Bodies
 from .checks import has_friction, settings
 from .crossing import Crossing
 from .decisions import Rules
-from .edits import clock, counts, edited_since
+from .edits import Counts, clock, counts, edited_since
 from .hooks import Hooks
 from .joints import JointRows
 from .packing import Packed, Records, records_of, shape_counts
@@ -62,14 +62,17 @@ class World(Crossing):
         parted: pairs of rows of SHAPE that do not collide because of joints of their bodies.
     """
 
+    packed: Packed
+    _edits: Counts
+
     def __init__(self, space: pymunk.Space, ignore: Sequence[str] = (), past: World | None = None) -> None:
-        self._edits = counts(space)
-        self._known = self._edits.in_place
+        self.space, self._edits = space, counts(space) if past is None else past._edits
+        self._known, self._contents = self._edits.in_place, self._count()
         sleeps = space.sleep_time_threshold < math.inf
-        stale = None if past is None else past.stale()
+        stale = None if past is None else past.stale(self._contents)
         known = None if stale is None else past
         self.read_at = clock()
-        super().__init__(space)
+        super().__init__(space, past)
         bodies = Bodies(space, sleeps, None if known is None else known.bodies, stale or (), self.WALK[KNOWN])
         self.bodies = bodies
         self.records: Records
@@ -78,8 +81,7 @@ class World(Crossing):
         self.memory: SceneMemory = SceneMemory() if past is None else past.memory
         self.frictionless = "friction" in ignore
         self.lacks_friction = self.frictionless and has_friction([s for s, r in self.records.items() if r is not None])
-        packed: Packed = Packed(bodies, self, self.records, None if past is None else past.packed)
-        self.packed = packed
+        self.packed = packed = Packed(bodies, self, self.records, None if past is None else past.packed)
         if packed.status < 0:
             bodies.check_finite(self.state)
         self.shapes, self.owner = packed.shapes, packed.owner
@@ -92,7 +94,6 @@ class World(Crossing):
         self.patches = 0
         self.parted: set[tuple[int, int]] = set()
         self.rules = Rules()
-        self._contents = self._count()
         self.joints: JointRows | None = None
         if past is not None and past.joints is not None:
             self.joints = past.joints
@@ -165,11 +166,11 @@ class World(Crossing):
         """The arrays of a report without contacts."""
         return nothing(self.bodies.items)
 
-    def stale(self) -> set[Any] | None:
+    def stale(self, contents: tuple[int, ...]) -> set[Any] | None:
         """Shapes and bodies whose records may be out of date: edited, in the space or outside, or bodies of shapes that
-        were added or removed; None if unknown."""
+        were added or removed; None if unknown. `contents`: numbers of things in the space now."""
         found, _ = edited_since(self.read_at) or (None, None)
-        if found is None or self.same_things():
+        if found is None or contents == self._contents:
             return found
         for shape in self.records.keys() ^ set(self.space.shapes):
             record = self.records.get(shape)
