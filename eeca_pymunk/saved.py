@@ -63,7 +63,7 @@ class Saved:
                 joints.lengthen(j, float(self.method.joint[j].length))
             joints.joint[:] = self.method.joint
             joints.rates.update(self._rates)
-            self.method.rebind(joints.joint, world.PARTNER)
+            self.method.rebind(joints.joint, joints.partners.PARTNER)
             joints.planned()
             world.parted = self.parted
             world.find_parted()
@@ -78,7 +78,7 @@ class Saved:
         joints, method = world.joints, self.method
         if joints is None or not method.jointed:
             return joints is None and not method.jointed
-        if joints.items != self._joints or not np.array_equal(method.partner, world.PARTNER):
+        if joints.items != self._joints or not np.array_equal(method.partner, joints.partners.PARTNER):
             return False
         differs = np.zeros(len(joints.joint), bool)
         for name in Joint.TYPE.names or ():

@@ -35,6 +35,7 @@ _OF_PROCESS = (
     "own",
     "fresh",
     "_room",
+    "_first",
     "_par",
     "_count",
     "_log",
@@ -103,7 +104,8 @@ class Remembering:
         """Before the first step: store what steps change, apart from poses and velocities, for `start_anew`."""
         self.own = self._gather()
         self.fresh: IntArray = self.own.copy()
-        self._room = {name: getattr(self.scene, name) for name in ROOM}
+        self._first = self.scene
+        self._room = {name: getattr(self._first, name) for name in ROOM}
         # Whether near lists depend on places of bodies; else all shapes are in all lists.
         self.listed = bool(np.isfinite(self.scene.MARK["margin"]).any())
 
@@ -125,13 +127,11 @@ class Remembering:
                 moved.
         """
         self.own[:] = self.fresh
-        # The first tables again, not larger ones: memory then grows at the same steps as in a new loop.
         scene = self.scene
-        for name, array in self._room.items():
-            if getattr(scene, name) is not array:
-                self.scene = scene._replace(**self._room)
-                break
-        self.scene.KEYS.fill(-1)
+        if scene is not self._first:
+            # The first tables again, not larger ones: memory then grows at the same steps as in a new loop.
+            self.scene = self._first = scene = scene._replace(**self._room)
+        scene.KEYS.fill(-1)
         if corners and len(scene.CORNER):
             find_corners(scene.LINK, scene.VERTEX, scene.CORNER)
         if self.listed:

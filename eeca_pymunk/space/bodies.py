@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-import struct
 from collections.abc import Callable, Collection, Mapping
 from functools import cached_property
 from typing import Any
@@ -16,10 +14,9 @@ from ..arrays import BoolArray, FloatArray, IntArray, rotated
 from ..compiled.records import Rows, columns, from_bytes, put
 from ..errors import NotFiniteError
 from ..layout import STATE_COLUMNS
-from ..model.values import DYNAMIC, KINEMATIC, STATIC, BodyValues
-from . import private, private_batch, private_sleep
+from ..model.values import DYNAMIC, STATIC, BodyValues
+from . import body_values, private_batch, private_sleep
 
-_KIND = {pymunk.Body.DYNAMIC: DYNAMIC, pymunk.Body.KINEMATIC: KINEMATIC, pymunk.Body.STATIC: STATIC}
 _FIELDS = batch.BodyFields
 _STATE = _FIELDS.POSITION | _FIELDS.ANGLE | _FIELDS.VELOCITY | _FIELDS.ANGULAR_VELOCITY | _FIELDS.FORCE | _FIELDS.TORQUE
 STATE_FIELDS = _FIELDS.BODY_ID | _STATE
@@ -42,32 +39,6 @@ COLUMN_NAMES = (
 def moving(space: pymunk.Space) -> list[pymunk.Body]:
     """The bodies of a space that are not static, in pymunk's order."""
     return [b for b in space.bodies if b.body_type != pymunk.Body.STATIC]
-
-
-_VALUES = struct.Struct("4q9d2q")
-# Mass, moment and their inverses; bytes where these begin and end, and where the centre of gravity ends.
-_MASSES, _FROM, _TO, _CENTRE = struct.Struct("4d"), 32, 64, 80
-_FIXED = math.inf, math.inf, 0.0, 0.0
-
-
-def _values(body: pymunk.Body) -> bytes:
-    """The values of a body, as the bytes of a `BodyValues`.
-
-    Raises:
-        ValueError: for a dynamic body whose mass or moment is not positive, or whose mass is not finite.
-    """
-    kind, masses = _KIND[body.body_type], _FIXED
-    if kind == DYNAMIC:
-        mass, moment = body.mass, body.moment
-        if not (0.0 < mass < math.inf and moment > 0.0):
-            raise ValueError(
-                f"{body} has mass {mass} and moment {moment}: a dynamic body needs a finite mass > 0 and a moment > 0; "
-                "set body.mass and body.moment, or the mass or density of its shapes"
-            )
-        masses = mass, moment, 1.0 / mass, 1.0 / moment
-    # The public properties return pymunk's default when unset.
-    hooks = private.velocity_function(body) is not None, private.position_function(body) is not None
-    return _VALUES.pack(kind, 0, *hooks, *masses, *body.center_of_gravity, 0.0, 0.0, 0.0, -1, 0)
 
 
 _OF_MASS = "mass", "moment", "inverse_mass", "inverse_moment"
@@ -117,7 +88,7 @@ class Bodies:
         self.fresh = len(missing)
         if missing:
             new = {b.id: b for b in everyone if b not in old or b in stale}
-            known = {**known, **{i: (new[i], _values(new[i])) for i in missing}}
+            known = {**known, **{i: (new[i], body_values.read(new[i])) for i in missing}}
         self._known: dict[int, tuple[pymunk.Body, bytes]] = {i: known[i] for i in listed}
         self.items: tuple[pymunk.Body, ...] = tuple([body for body, _ in self._known.values()])
         self.row: dict[pymunk.Body, int] = dict(zip(self.items, range(len(listed)), strict=True))
@@ -127,7 +98,11 @@ class Bodies:
         if sleeps:
             self.asleep[:] = private_sleep.sleeping(self.items)
             self.VALUES["kind"][self.asleep] = STATIC
-            put(self.VALUES, np.where(self.asleep[:, None], _FIXED, columns(self.VALUES, *_OF_MASS)), *_OF_MASS)
+            put(
+                self.VALUES,
+                np.where(self.asleep[:, None], body_values.FIXED, columns(self.VALUES, *_OF_MASS)),
+                *_OF_MASS,
+            )
             # Functions of sleeping bodies are not called, as under pymunk.
             self.VALUES["steered"][self.asleep] = self.VALUES["moved"][self.asleep] = 0
         if not self.arranged:
@@ -174,11 +149,10 @@ class Bodies:
 
     @property
     def inertia(self) -> list[bytes]:
-        """Mass, moment and centre of gravity of each body, for comparison; nothing moves those that sleep."""
+        """See `body_values.inertia`."""
         if "asleep" not in self.__dict__:
-            return [values[_FROM:_CENTRE] for values in self._values]
-        slept = zip(self._values, self.asleep.tolist(), strict=True)
-        return [_MASSES.pack(*_FIXED) + v[_TO:_CENTRE] if asleep else v[_FROM:_CENTRE] for v, asleep in slept]
+            return [body_values.inertia(values, False) for values in self._values]
+        return [body_values.inertia(*one) for one in zip(self._values, self.asleep.tolist(), strict=True)]
 
     @cached_property
     def start(self) -> FloatArray:
@@ -188,14 +162,14 @@ class Bodies:
     def changed(self, row: int) -> tuple[bytes | None, bool]:
         """The values of a body if they have changed, and whether others than mass and moment have; ValueError if they
         are invalid."""
-        new, old = _values(self.items[row]), self._values[row]
-        return None if new == old else new, new[:_FROM] != old[:_FROM] or new[_TO:] != old[_TO:]
+        new, old = body_values.read(self.items[row]), self._values[row]
+        return None if new == old else new, body_values.others(new) != body_values.others(old)
 
     def set_masses(self, found: Mapping[int, bytes]) -> None:
         """Set masses and moments to those of values of `changed`, by row."""
         for i, values in found.items():
             self._values[i], self._known[self.items[i].id] = values, (self.items[i], values)
-            masses = _MASSES.unpack_from(values, _FROM)
+            masses = body_values.masses(values)
             self.mass[i], self.moment[i], self.inverse_mass[i], self.inverse_moment[i] = masses
 
     def __len__(self) -> int:

@@ -16,7 +16,6 @@ import pymunk
 from ..arrays import AnyArray, FloatArray, IntArray
 from ..compiled.layouts import COUNT, Layout
 from ..compiled.records import Rows, as_integers, from_bytes
-from ..compiled.records import records as rows_of
 from ..layout import EXTRA_COLUMNS, STATE_COLUMNS
 from ..model.bodies import Body
 from ..model.shapes import Link, Shape
@@ -89,8 +88,9 @@ def read_surface(shape: pymunk.Shape, record: Record) -> Record:
 def _surface(shape: pymunk.Shape) -> tuple[tuple[float, ...], tuple[int, int, int]]:
     """`numbers` and `filter` of the record of a shape."""
     numbers = private_shapes.numbers(shape)
-    if shape.body is None or not all(map(isfinite, numbers)) or min(numbers[:3]) < 0.0:
-        check_shape(shape)
+    rounding, elasticity, friction, *_ = numbers
+    if shape.body is None or not (rounding >= 0.0 and elasticity >= 0.0 and friction >= 0.0 and isfinite(sum(numbers))):
+        check_shape(shape)  # which costs more, and finds out
     group, categories, mask = private_shapes.filter_of(shape)
     return numbers, (group & _WORD, categories & _WORD, mask & _WORD)
 
@@ -143,7 +143,7 @@ class Packed:
         known = [record for record in records.values() if record is not None]
         k, N = len(solid), len(bodies)
         # Places of shapes, and what `_write` overwrites, as they were before.
-        self._unwritten: tuple[dict[pymunk.Shape, int], IntArray, FloatArray] | None = None
+        self._unwritten: tuple[dict[pymunk.Shape, int], bytearray, bytes] | None = None
         self._shapes = from_bytes(ShapeValues, [record.packed for record in known])
         self._points: FloatArray = np.frombuffer(bytearray().join([record.points for record in known]))
         row = bodies.row
@@ -169,24 +169,24 @@ class Packed:
     ) -> bool:  # fmt: skip
         """Write the rows again, in place, after changes of numbers, filters, masses, and, if `moved`, poses of static
         bodies; False, with invalid rows, if the rows would be others. records: all; `edited` ones have changed."""
-        vertices = self.LINK["vertices"].tobytes()
-        given, BODY = self._views
+        vertices = self.LINK["vertices"].tobytes() if moved else b""
         if self._unwritten is None:
             known = {shape: record for shape, record in records.items() if record is not None}
-            place = {shape: k for k, shape in enumerate(known)}
-            before = rows_of(from_bytes(ShapeValues, [record.packed for record in known.values()]))
-            self._unwritten = place, before, np.frombuffer(b"".join([record.points for record in known.values()]))
+            place = {shape: _VALUES.size * k for k, shape in enumerate(known)}
+            before = bytearray().join([record.packed for record in known.values()])
+            self._unwritten = place, before, b"".join([record.points for record in known.values()])
         place, before, points = self._unwritten
         for shape, record in edited.items():
-            before[place[shape], 1:] = np.frombuffer(record.packed, np.int64)[1:]
-        given[:], self._points[:] = before, points
+            before[place[shape] : place[shape] + _VALUES.size] = record.packed
+        given, vertex, BODY = self._views
+        given[:], vertex[:] = before, points
         if moved:
             self._layout.array("VERTEX").fill(0.0)
         BODY.fill(0)
         write_rows(self._table)
-        return self.LINK["vertices"].tobytes() == vertices
+        return not moved or self.LINK["vertices"].tobytes() == vertices  # of static shapes, two may become one
 
     @cached_property
-    def _views(self) -> tuple[IntArray, IntArray]:
-        """The values of shapes, and BODY, as integers."""
-        return rows_of(self._shapes), as_integers(self.BODY)
+    def _views(self) -> tuple[memoryview, memoryview, IntArray]:
+        """The values of shapes, and points, as bytes; BODY as integers."""
+        return as_integers(self._shapes).data.cast("B"), self._points.data.cast("B"), as_integers(self.BODY)

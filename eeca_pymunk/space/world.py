@@ -7,14 +7,11 @@ from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any
 
-import numpy as np
 import pymunk
 
-from ..arrays import BoolArray, IntArray
-from ..compiled.records import Rows, rows
+from ..arrays import BoolArray
 from ..impacts.scene_memory import SceneMemory
 from ..layout import BODY_ROW, KNOWN
-from ..model.bodies import Body
 from ..report import Details, nothing
 from ..transfer import take
 from . import private
@@ -54,7 +51,7 @@ class World(Crossing):
         hooked: whether a step calls functions of the program, or damping is 0.  plain: neither hooked nor with joints.
         rules: decisions of collision handlers about pairs of rows of SHAPE in this step.
         frictionless: whether friction, also that of handlers, is left out.  lacks_friction: and there is some.
-        joints: the constraints of the space, None if it has none.  PARTNER: bodies of joints that have no row of BODY.
+        joints: the constraints of the space, None if it has none.
         read_at: `edits.clock` when shapes and bodies were read.
         patches: number of patches so far.  packed: the arrays of the rows, and the kernel that writes them.
         objects_read: number of bodies, shapes and constraints read from pymunk for this world; others were known.
@@ -143,15 +140,12 @@ class World(Crossing):
         centred: BoolArray = (self.LINK["vertices"] == 1) & ~self.VERTEX[self.LINK["first"], :2].any(axis=1)
         return centred
 
-    @cached_property
-    def shape_counts(self) -> dict[Any, int]:
-        """The number of shapes of each body that is not static."""
-        return shape_counts(self.bodies, self.records)
-
     @property
     def carried(self) -> int:
         """Number of shapes of bodies that are not static."""
-        return self._carried if len(self.shapes) == len(self.records) else sum(self.shape_counts.values())
+        if len(self.shapes) == len(self.records):
+            return self._carried
+        return sum(shape_counts(self.bodies, self.records).values())  # with sensors
 
     @cached_property
     def movers(self) -> list[Any]:
@@ -159,7 +153,7 @@ class World(Crossing):
         if len(self.shapes) == len(self.records):
             items = self.bodies.items
             return private.pointers([items[i] for i in sorted(set(self.owner[: self._carried].tolist()))])
-        return private.pointers(body for body, count in self.shape_counts.items() if count)
+        return private.pointers(body for body, count in shape_counts(self.bodies, self.records).items() if count)
 
     @cached_property
     def empty(self) -> Details:
@@ -203,16 +197,6 @@ class World(Crossing):
                 self.gather()
                 self.left_as_read()
 
-    @property
-    def PARTNER(self) -> Rows[Body]:
-        """(x,) bodies of joints that have no row of BODY."""
-        return rows(Body, 0) if self.joints is None else self.joints.partners.PARTNER
-
-    @property
-    def still(self) -> IntArray:
-        """(x,) 1 for the rows of PARTNER that never move."""
-        return np.zeros(0, np.int64) if self.joints is None else self.joints.partners.still
-
     def find_parted(self) -> bool:
         """Find the pairs of shapes that do not collide because of joints of their bodies; returns whether they have
         changed."""
@@ -231,7 +215,7 @@ class World(Crossing):
         return self.rules.of_pairs(self.SHAPE, self.parted)
 
     def _count(self) -> tuple[int, int, int, int]:
-        return private.shapes_ever(self.space), len(self.space.shapes), len(self.space.bodies), self._edits[1]
+        return *private.contents(self.space), self._edits[1]
 
     def same_things(self) -> bool:
         """Whether no shapes were added or removed, and the number of bodies is the same; they may be others, or
