@@ -86,8 +86,7 @@ ENTRIES = {
     "impacts.step:step": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 i8",
     "impacts.run:run": "{Scene} {Joints} {RunArrays} f8[3] i8[2] f8[2] f8[1]",
     "joints.workspace:plan_components": "{Joints} Body[1] i8[1] i8",
-    "joints.held:may_hold": "Joint[1] i8[1] i8",
-    "joints.held:find_held": "Body[1] Body[1] Joint[1] i8[1] i8[1] i8[1]",
+    "joints.held:find_held": "Body[1] Body[1] Joint[1] i8[1] Shape[1] Link[1] i8[1]",
     # Only tests call these, which solve single islands and components: some hundred times slower as plain Python.
     "joints.world:step_all": "{Joints} Body[1] f8",
     "contacts.interval:step_island": "{Scene} {Island} {IslandContacts} i8 f8 i8 f8 f8 f8",

@@ -15,6 +15,7 @@ from ..model.bodies import POSE, VELOCITY, Body
 from ..model.contacts import Impulse
 from ..model.joints import OF_JOINTS, Joint, Joints, joints_of
 from ..model.scene import Scene, scene_of
+from ..model.shapes import Side
 from ..model.step import Count, Step
 from ..pairs.grid import relist
 from ..pairs.setup import NEAR, near_lists
@@ -34,7 +35,6 @@ _OF_PROCESS = (
     "_bound",
     "own",
     "fresh",
-    "_room",
     "_first",
     "_par",
     "_count",
@@ -51,6 +51,7 @@ class Remembering:
     joint: Rows[Joint]
     partner: Rows[Body]
     _memory: SceneMemory  # of the table that was made first, `_laid`
+    _listed: bool | None
 
     @property
     def scene(self) -> Scene:
@@ -65,6 +66,11 @@ class Remembering:
         self._par: memoryview = numbers(arrays.PAR).data
         self._count: memoryview = numbers(arrays.COUNT).data
         self._log: memoryview = as_integers(arrays.LOG).data
+
+    @property
+    def sides(self) -> Rows[Side]:
+        """SIDE of the scene, whose other arrays need not be made for it."""
+        return self._memory.sides() if self.table is self.__dict__.get("_laid") else self.scene.SIDE
 
     @property
     def joints(self) -> Joints:
@@ -104,10 +110,14 @@ class Remembering:
         """Before the first step: store what steps change, apart from poses and velocities, for `start_anew`."""
         self.own = self._gather()
         self.fresh: IntArray = self.own.copy()
-        self._first = self.scene
-        self._room = {name: getattr(self._first, name) for name in ROOM}
-        # Whether near lists depend on places of bodies; else all shapes are in all lists.
-        self.listed = bool(np.isfinite(self.scene.MARK["margin"]).any())
+        self._first, self._listed = self.table, None
+
+    @property
+    def listed(self) -> bool:
+        """Whether near lists depend on places of bodies; else all shapes are in all lists."""
+        if self._listed is None:
+            self._listed = bool(np.isfinite(self.scene.MARK["margin"]).any())
+        return self._listed
 
     def start_anew(self, at: IntArray, state: FloatArray) -> None:
         """Return to the state of a new loop, after `keep_fresh`, with the poses and velocities `state` (b, 6) of the
@@ -127,10 +137,12 @@ class Remembering:
                 moved.
         """
         self.own[:] = self.fresh
+        if self.table is not self._first:
+            # The first arrays again, not larger ones: memory then grows at the same steps as in a new loop.
+            first = scene_of(self._first)
+            self.scene = self.scene._replace(**{name: getattr(first, name) for name in ROOM})
+            self._first = self.table
         scene = self.scene
-        if scene is not self._first:
-            # The first tables again, not larger ones: memory then grows at the same steps as in a new loop.
-            self.scene = self._first = scene = scene._replace(**self._room)
         scene.KEYS.fill(-1)
         if corners and len(scene.CORNER):
             find_corners(scene.LINK, scene.VERTEX, scene.CORNER)

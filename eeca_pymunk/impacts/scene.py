@@ -13,7 +13,7 @@ from ..compiled.library import check
 from ..compiled.records import R, Rows, columns, from_bytes, put, rows
 from ..contacts.memory import forget
 from ..islands.accounting import flag_pairs
-from ..joints.held import held_bodies, may_hold, smooth
+from ..joints.held import NO_HELD, held_bodies
 from ..layout import NOW as READ
 from ..model.bodies import CHECK, Body
 from ..model.contacts import Force, Impulse
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     import pymunk
 
 
-_NO_JOINTS, _NO_HELD = rows(Joint, 0), rows(Held, 0)
+_NO_JOINTS = rows(Joint, 0)
 
 
 def _longer(table: Rows[R], used: int) -> Rows[R]:
@@ -77,7 +77,7 @@ class EventLoop(Remembering):
         self.joint, self.partner = _NO_JOINTS if joint is None else joint, BODY[:0] if PARTNER is None else PARTNER
         self._still: IntArray = np.ones(len(self.partner), np.int64) if still is None else still
         self._mobility: FloatArray | None = None  # of bodies, if joints hold any
-        HELD = self._hold(BODY, SHAPE, LINK) if self.jointed else _NO_HELD
+        HELD = self._hold(BODY, SHAPE, LINK) if self.jointed else NO_HELD
         budget = STEP_LOOKS + STEP_LOOKS_BODY * n * max(n, MANY_BODIES) // MANY_BODIES
         self.table = memory.scene(BODY, SHAPE, LINK, VERTEX, HELD, limit, disks, together, budget)
         (self._par, self._count, self._log), self._bound = memory.records(), UNBOUND
@@ -89,13 +89,16 @@ class EventLoop(Remembering):
 
     def _hold(self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link]) -> Rows[Held]:
         """The bodies that straight chains of joints hold, which lose their mobilities."""
-        if not may_hold(self.joint, self._still, len(BODY)):
-            return _NO_HELD
-        HELD = held_bodies(BODY, self.joint, self.partner, self._still, smooth(BODY, SHAPE, LINK))
+        HELD = held_bodies(BODY, self.partner, self.joint, self._still, SHAPE, LINK)
         if len(HELD):
             self._mobility = columns(BODY, "inv_mass", "inv_inertia")
             BODY["inv_mass"][HELD["body"]] = BODY["inv_inertia"][HELD["body"]] = 0.0
         return HELD
+
+    def release(self) -> None:
+        """Give the bodies that joints hold their mobilities back, before another loop is made for them."""
+        if self._mobility is not None:
+            put(self.scene.BODY, self._mobility, "inv_mass", "inv_inertia")
 
     @property
     def mobility(self) -> FloatArray:
@@ -117,9 +120,7 @@ class EventLoop(Remembering):
         scene = self.scene
         BODY = scene.BODY.copy()
         put(BODY, self.mobility, "inv_mass", "inv_inertia")
-        HELD = _NO_HELD
-        if may_hold(self.joint, self._still, len(BODY)):
-            HELD = held_bodies(BODY, self.joint, self.partner, self._still, smooth(BODY, scene.SHAPE, scene.LINK))
+        HELD = held_bodies(BODY, self.partner, self.joint, self._still, scene.SHAPE, scene.LINK)
         return HELD.tobytes() != scene.HELD.tobytes()
 
     def rebind(self, joint: Rows[Joint], PARTNER: Rows[Body]) -> None:

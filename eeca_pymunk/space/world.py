@@ -226,13 +226,8 @@ class World(Crossing):
         """Whether a shape or body was edited in place."""
         return self._edits.in_place != self._known
 
-    def load(self, mobilities: bool = False) -> None:
-        """Read the present states into BODY, and `mobilities`, which are 0 where joints have held bodies."""
-        if mobilities:
-            rows = self.WALK[BODY_ROW]
-            moving = rows >= 0
-            self.BODY["inv_mass"][rows[moving]] = self.bodies.inverse_mass[moving]
-            self.BODY["inv_inertia"][rows[moving]] = self.bodies.inverse_moment[moving]
+    def load(self) -> None:
+        """Read the present states into BODY."""
         self.gather()
         self._take(0.0, 0.0, 1.0)
 
