@@ -145,10 +145,11 @@ class Packed:
         # Places of shapes, and what `_write` overwrites, as they were before.
         self._unwritten: tuple[dict[pymunk.Shape, int], bytearray, bytes] | None = None
         self._shapes = from_bytes(ShapeValues, [record.packed for record in known])
-        self._points: FloatArray = np.frombuffer(bytearray().join([record.points for record in known]))
+        points: FloatArray = np.frombuffer(bytearray().join([record.points for record in known]))
+        self._points = points.reshape(-1, 2)
         row = bodies.row
         owner: IntArray = np.array([row[record.body] for record in known], np.int64)
-        moving, v = N - bodies.VALUES["kind"].tolist().count(STATIC), len(self._points) // 2
+        moving, v = N - bodies.VALUES["kind"].tolist().count(STATIC), len(self._points)
         self._layout = layout = Layout(*_ROWS) if past is None else past._layout
         self._table = layout.lay(
             (TOLD, moving + 1, k, k, v, k + N + 2, N, k, k, v, N, N, N), bodies.VALUES, self._shapes, owner,
