@@ -190,4 +190,5 @@ class Packed:
     @cached_property
     def _views(self) -> tuple[memoryview, memoryview, IntArray]:
         """The values of shapes, and points, as bytes; BODY as integers."""
-        return as_integers(self._shapes).data.cast("B"), self._points.data.cast("B"), as_integers(self.BODY)
+        shapes, points = (np.ndarray(one.nbytes, np.uint8, one).data for one in (self._shapes, self._points))
+        return shapes, points, as_integers(self.BODY)
