@@ -19,7 +19,7 @@ AnyArray: TypeAlias = npt.NDArray[Any]
 
 _ffi = _cffi_backend.FFI()
 _ADDRESS = _ffi.typeof("uintptr_t")
-_LINES = 128  # bytes: alignment of what a processor fetches at once
+LINE = 128  # bytes: alignment of what a processor fetches at once
 _PAGE = 1 << 21  # bytes of a huge page
 _HUGE = 1 << 22  # bytes of an allocation from which numpy asks for huge pages
 _SPARE = 4  # memory that is so many times larger than needed is given up, unless it is a few pages
@@ -41,47 +41,48 @@ class Memory:
     place of the last.
 
     Attributes:
-        words: address, size, and lengths of the last ones, see `compiled.tables.WORDS`.
+        address: where it begins, aligned to a cache line.
     """
 
     def __init__(self) -> None:
-        self._room: npt.NDArray[np.uint8] = np.zeros(0, np.uint8)
-        self._first = 0  # byte at which it is aligned
-        self.words: list[tuple[int, ...]] = []
+        self._allot(0)
 
-    def side_by_side(self, *wanted: tuple[tuple[int, ...], npt.DTypeLike]) -> list[Any]:
-        """Arrays of zeros of these shapes and dtypes, each aligned to a cache line; the last ones are lost.
+    def provide(self, zeros: int, total: int) -> None:
+        """Make room for `total` bytes, of which the first `zeros` are 0; the last ones are lost.
 
         Kernels read a few numbers in all arrays of a scene, and would often miss the TLB with many small pages. Large
         scenes therefore get huge pages, which operating systems only give to large allocations.
         """
-        places: list[tuple[tuple[int, ...], np.dtype[Any], int, int]] = []
+        if total <= len(self.bytes) <= _SPARE * (total + _PAGE):
+            self.bytes[:zeros] = 0
+        else:
+            self._allot(total + total // 2 if len(self.bytes) else total)
+
+    def array(self, shape: tuple[int, ...], dtype: npt.DTypeLike, at: int) -> Any:
+        """An array that begins at this byte."""
+        return np.ndarray(shape, dtype, self.bytes, at)
+
+    def side_by_side(self, *wanted: tuple[tuple[int, ...], npt.DTypeLike]) -> list[Any]:
+        """Arrays of zeros of these shapes and dtypes, each aligned to a cache line; the last ones are lost."""
+        places: list[tuple[tuple[int, ...], np.dtype[Any], int]] = []
         total = 0
         for shape, kind in wanted:
-            dtype = kind if isinstance(kind, np.dtype) else np.dtype(kind)
-            size = math.prod(shape)
-            places.append((shape, dtype, total, size))
-            total += -(-size * dtype.itemsize // _LINES) * _LINES
-        if self._first + total <= len(self._room) <= _SPARE * (total + _PAGE):
-            self._room[self._first : self._first + total] = 0
-        else:
-            self._allot(total)
-        begin = address_of(self._room) + self._first
-        self.words = [(begin + at, size, *lengths(shape)) for shape, _, at, size in places]
-        return [np.ndarray(shape, dtype, self._room, self._first + at) for shape, dtype, at, _ in places]
-
-    def first(self, count: int) -> IntArray:
-        """The memory of the first arrays, fewer than all, as integers."""
-        size = self.words[count][0] - self.words[0][0]
-        return self._room[self._first : self._first + size].view(np.int64)
+            dtype = np.dtype(kind)
+            places.append((shape, dtype, total))
+            total += -(-math.prod(shape) * dtype.itemsize // LINE) * LINE
+        self.provide(total, total)
+        return [self.array(*place) for place in places]
 
     def _allot(self, total: int) -> None:
-        """New memory, zeros, with room for so many bytes, and more if it replaces other."""
-        total += total // 2 if len(self._room) else 0
+        """New memory, zeros, with room for so many bytes."""
         huge = total >= _PAGE // 2
-        size, unit = (max(-(-total // _PAGE) * _PAGE, _HUGE), _PAGE) if huge else (total, _LINES)
-        self._room = np.zeros(size + unit, np.uint8)
-        self._first = -address_of(self._room) % unit
+        size, unit = (max(-(-total // _PAGE) * _PAGE, _HUGE), _PAGE) if huge else (-(-total // LINE) * LINE, LINE)
+        room = np.zeros(size + unit, np.uint8)
+        first = -address_of(room) % unit
+        self.bytes: FlagArray = room[first : first + size]
+        self.address = address_of(room) + first
+        self.floats = self.bytes.view(np.float64).data
+        self.integers = self.bytes.view(np.int64).data
 
 
 def side_by_side(*wanted: tuple[tuple[int, ...], npt.DTypeLike]) -> list[Any]:

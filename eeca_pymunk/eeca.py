@@ -63,8 +63,12 @@ class EECA(RunningStepper):
         if saved is not None and saved.resume(world, self.decisions):
             self._use(saved.method)
             return
-        sides = None if past is None or (loop := self.event_loop) is None else sides_of(past, loop)
-        world.load(mobilities=world is past)
+        loop = None if past is None else self.event_loop
+        sides = None if past is None or loop is None else sides_of(past, loop)
+        if world is past:
+            if loop is not None:
+                loop.release()
+            world.load()
         self._use(self.closure.prepare(world))
         loop = self.event_loop
         if self._patches and world.joints is None and loop is not None:

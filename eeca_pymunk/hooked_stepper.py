@@ -99,7 +99,7 @@ class HookedStepper(PackedSpace):
                 if world.joints.before:
                     world.hooks.before(dt)
                     world.gather()
-            if len(world.hooks.velocity):
+            if world.hooks.steered:
                 world.set_accelerations(world.hooks.velocity_changes(dt), dt)
             if world.collisions:
                 sync = None if self._sleep is not None or self.decisions.laws else self._sync
@@ -112,12 +112,12 @@ class HookedStepper(PackedSpace):
             if status < 0:
                 self._raise_failure(world, dt, status)
             outcome = self._outcome(dt)
-            alters = world.damping == 0.0 or len(hooks.position) > 0 or (world.collisions and world.rehearsal.after)
+            alters = world.damping == 0.0 or hooks.moved > 0 or (world.collisions and world.rehearsal.after)
             if alters:
                 bits, lost = world.alter_end(world.damping == 0.0)
                 if bits < 0:
                     self._raise_failure(world, dt, bits)
-                if len(hooks.position):
+                if hooks.moved:
                     hooks.positions(world.state, world.STATES[LEFT], dt)
                     world.bodies.check_finite(world.ended(), TOO_FAR)
                     bits = world.write_whole()

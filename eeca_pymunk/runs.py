@@ -139,7 +139,7 @@ class RunningStepper(PackedStepper):
             return False
         if found.elasticity and bool(loop.scene.COUNT.lossy) != bool((world.SHAPE["elasticity"] < 1.0).any()):
             return False
-        if not world.collisions and len(loop.scene.RULE):
+        if not world.collisions:
             loop.rule({})
         loop.be_new(found.reach or found.moved, found.moved)
         if sides is not None:

@@ -6,18 +6,19 @@ from __future__ import annotations
 import numpy as np
 
 from .arrays import FloatArray
-from .compiled.records import Rows, columns
+from .compiled.records import Rows, columns, rows
 from .geometry.sides import keep_sides
 from .impacts.scene import EventLoop
 from .layout import ANEW, BODY_ROW, LEFT, NUDGED
 from .model.joints import OF_STEPS, RATCHET, Joint
 from .model.parameters.intervals import INTERVAL_DEPTH_LEAST
-from .model.shapes import Link
+from .model.shapes import Link, Side
 from .space.decisions import Decisions
 from .space.packing import Record
 from .space.world import World
 
 _FIXED = ["extent", "elasticity", "friction"]  # fields of BODY that no step changes
+_NO_SIDES = rows(Side, 0)
 _TIE = "kind", "body", "bounded"  # fields of JOINT that decide the plan
 
 
@@ -63,7 +64,7 @@ class Saved:
                 joints.lengthen(j, float(self.method.joint[j].length))
             joints.joint[:] = self.method.joint
             joints.rates.update(self._rates)
-            self.method.rebind(joints.joint, world.PARTNER)
+            self.method.rebind(joints.joint, joints.partners.PARTNER)
             joints.planned()
             world.parted = self.parted
             world.find_parted()
@@ -78,7 +79,7 @@ class Saved:
         joints, method = world.joints, self.method
         if joints is None or not method.jointed:
             return joints is None and not method.jointed
-        if joints.items != self._joints or not np.array_equal(method.partner, world.PARTNER):
+        if joints.items != self._joints or not np.array_equal(method.partner, joints.partners.PARTNER):
             return False
         differs = np.zeros(len(joints.joint), bool)
         for name in Joint.TYPE.names or ():
@@ -102,50 +103,57 @@ class Sides:
     Kinematic bodies with such shapes only have not been moved: what overlaps them is not lifted for nothing."""
 
     def __init__(self, world: World, loop: EventLoop, sided: bool) -> None:
-        self._sided = sided
-        self._known, self._records = loop.scene.SIDE.copy(), dict(world.records)
-        self._shapes, self._owner, self._bodies = world.shapes, world.owner.tolist(), world.bodies.items
-        self._left = world.STATES[LEFT, :, :3].copy()
+        self._sided, self._known = sided, loop.sides.copy() if sided else _NO_SIDES
+        row, records = world.WALK[BODY_ROW].tolist(), world.records
+        shapes = enumerate(zip(world.shapes, world.owner.tolist(), strict=True))
+        # Without sides only kinematic bodies matter, whose rows come after those of dynamic ones.
+        self._shapes = [
+            (k, shape, i, records[shape]) for k, (shape, i) in shapes if sided or row[i] >= world.dynamic
+        ]  # fmt: skip
+        self._count, self._bodies = len(world.shapes), world.bodies.items
+        self._left: list[list[float]] = world.STATES[LEFT, :, :3].tolist()
 
-    def _ways(self, world: World, at: list[int]) -> tuple[list[float], list[bool]]:
-        """How far points of each body, now at row `at`, were moved since the last step, and whether that is near."""
-        row = world.WALK[BODY_ROW, at]
-        size = np.where(row >= 0, world.BODY["extent"][row], 0.0)
-        moved = np.abs(world.state[at, :3] - self._left)
-        way = moved[:, 0] + moved[:, 1] + size * moved[:, 2]
-        return way.tolist(), (way <= INTERVAL_DEPTH_LEAST * size).tolist()
+    def _ways(self, world: World) -> dict[int, tuple[int, float]]:
+        """Of each body that is near where it was left: its row now, and how far its points were moved since."""
+        ways, row, rows = {}, world.bodies.row, world.WALK[BODY_ROW].tolist()
+        state, extent = world.state[:, :3].tolist(), world.BODY["extent"].tolist()
+        for i in {i for _, _, i, _ in self._shapes}:
+            at = row.get(self._bodies[i], -1)
+            if at >= 0:
+                (x, y, angle), (x0, y0, angle0) = state[at], self._left[i]
+                size = extent[rows[at]] if rows[at] >= 0 else 0.0
+                way = abs(x - x0) + abs(y - y0) + size * abs(angle - angle0)
+                if way <= INTERVAL_DEPTH_LEAST * size:
+                    ways[i] = at, way
+        return ways
 
     def recall(self, world: World, loop: EventLoop) -> None:
         """Write them into the loop of the present world, which has taken no step."""
-        row, places, records, owner = world.bodies.row, world.places, world.records, world.owner.tolist()
-        at = [row.get(body, -1) for body in self._bodies]
-        way, near = self._ways(world, at)
-        of = [-1] * len(self._shapes)
-        for k, (shape, i) in enumerate(zip(self._shapes, self._owner, strict=True)):
+        places, records, owner, ways = world.places, world.records, world.owner.tolist(), self._ways(world)
+        of = [-1] * self._count
+        for k, shape, i, before in self._shapes:
             place = places.get(shape, -1)
-            if place < 0 or owner[place] != at[i] or not near[i]:
+            if place < 0 or i not in ways or owner[place] != ways[i][0]:
                 continue
-            now, before = records[shape], self._records[shape]
+            now = records[shape]
             if now is before or _outline(now) == _outline(before):
                 of[k] = place
-        same = set(of)
-        changed = {i for place, i in enumerate(owner) if place not in same}
-        dynamic, rows = world.bodies.dynamic.tolist(), world.WALK[BODY_ROW].tolist()
-        kept = [i for i in {owner[place] for place in same if place >= 0} if rows[i] >= 0]
-        kept = [i for i in kept if (self._sided if dynamic[i] else i not in changed)]
-        if kept:
-            world.STATES[LEFT, kept, :3] = world.state[kept, :3]
-            nudged = {i for i, far in zip(at, way, strict=True) if far > 0.0}
-            world.BODY["due"][[rows[i] for i in kept]] = [NUDGED if i in nudged else ANEW for i in kept]
-        if self._sided and len(loop.scene.SIDE):
+        same, rows = set(of), world.WALK[BODY_ROW].tolist()
+        kept = {owner[place] for place in same if place >= 0}
+        changed = {i for place, i in enumerate(owner) if place not in same} if kept else kept
+        at = [i for i in kept if rows[i] >= 0 and (i not in changed if rows[i] >= world.dynamic else self._sided)]
+        if at:
+            world.STATES[LEFT, at, :3] = world.state[at, :3]
+            nudged = {i for i, way in ways.values() if way > 0.0}
+            world.BODY["due"][[rows[i] for i in at]] = [NUDGED if i in nudged else ANEW for i in at]
+        if self._sided and loop.thin:
             keep_sides(loop.table, self._known, np.array(of, np.int64))
 
 
 def sides_of(world: World, loop: EventLoop) -> Sides | None:
     """The remembered sides, None if there are none, nor a kinematic body."""
-    SIDE = loop.scene.SIDE
-    sided = len(SIDE) > 0 and bool((SIDE["key"] > 0).any())
-    return Sides(world, loop, sided) if sided or world.bodies.kinematic else None
+    sided = loop.thin and bool((loop.sides["key"] > 0).any())
+    return Sides(world, loop, sided) if sided or len(world.BODY) - 1 > world.dynamic else None
 
 
 def _outline(record: Record | None) -> object:

@@ -5,11 +5,36 @@ from __future__ import annotations
 import math
 
 from .arrays import FloatArray, IntArray
-from .compiled import kernel, nonallocating
+from .compiled import Table, nonallocating
 from .compiled.records import Rows
-from .model.bodies import Body
+from .layout import (
+    BODY_ROW,
+    COG_X,
+    COG_Y,
+    ECCENTRIC,
+    LEFT,
+    NOW,
+    SPECIAL,
+    STATE_COLUMNS,
+    STEERED,
+)  # fmt: skip
 from .model.shapes import Link, Shape
-from .model.values import DYNAMIC, STATIC, BodyValues, ShapeValues
+from .model.values import (
+    CARRIED,
+    CORNERS,
+    DISKS,
+    DYNAMIC,
+    DYNAMICS,
+    ECCENTRICS,
+    MOVERS,
+    STATIC,
+    STEERERS,
+    BodyValues,
+    Reading,
+    ShapeValues,
+    reading_of,
+)
+from .transfer import NOT_FINITE, take
 
 
 @nonallocating
@@ -102,44 +127,81 @@ def write_shape(POINT: FloatArray, values: ShapeValues, SHAPE: Shape, LINK: Link
     SHAPE.extent, SHAPE.bound = values.rounding + far, values.rounding + away
 
 
-@kernel
-def write_rows(
-    BODIES: Rows[BodyValues], SHAPES: Rows[ShapeValues], POINT: FloatArray, BODY: Rows[Body], SHAPE: Rows[Shape],
-    LINK: Rows[Link], VERTEX: FloatArray, ORDER: IntArray,
-) -> int:  # fmt: skip
-    """Write the rows of bodies and of their shapes, without poses and velocities.
-
-    Args:
-        BODIES (N,), SHAPES (k,): `row` and `first` are written.  POINT (v, 2): the vertices of all shapes, overwritten.
-        BODY (N + 1,), SHAPE (k,), LINK (k,), VERTEX (v, 4): zeros; those in use come first.
-        ORDER (k + N + 2,): out, the index in SHAPES of every row of SHAPE.
-
-    Returns:
-        the number of single disks.
-    """
-    place_points(BODIES, SHAPES, POINT)
-    disks = give_rows(BODIES, SHAPES, POINT, ORDER)
-    ground = 0
+@nonallocating
+def write_rows(table: Table) -> None:
+    """Write the rows of bodies and of their shapes, without velocities, for the present poses of static bodies. BODY
+    and VERTEX must contain zeros."""
+    R = reading_of(table)
+    BODIES, SHAPES, BODY, LINK, ORDER = R.BODIES, R.SHAPES, R.BODY, R.LINK, R.ORDER
     for i in range(BODIES.shape[0]):
-        ground = max(ground, BODIES[i].row + 1)
+        BODIES[i].x, BODIES[i].y, BODIES[i].angle = R.STATES[NOW, i, 0], R.STATES[NOW, i, 1], R.STATES[NOW, i, 2]
+    for s in range(SHAPES.shape[0]):
+        SHAPES[s].owner = R.OWNER[s]
+    place_points(BODIES, SHAPES, R.POINT)
+    disks = give_rows(BODIES, SHAPES, R.POINT, ORDER)
+    ground = BODY.shape[0] - 1
+    for i in range(BODIES.shape[0]):
         if BODIES[i].row >= 0:
             body = BODY[BODIES[i].row]
             body.inv_mass, body.inv_inertia = BODIES[i].inverse_mass, BODIES[i].inverse_moment
     order_shapes(BODIES, SHAPES, ground, ORDER)
-    at = 0
+    at, carried = 0, 0
     for k in range(SHAPES.shape[0]):
         values, row = SHAPES[ORDER[k]], BODIES[SHAPES[ORDER[k]].owner].row
-        link, shape = LINK[k], SHAPE[k]
+        link, shape = LINK[k], R.SHAPE[k]
         link.owner, link.first, link.vertices = ground if row < 0 else row, at, values.vertices
         link.group, link.categories, link.mask = values.group, values.categories, values.mask
         shape.rounding, shape.elasticity, shape.friction = values.rounding, values.elasticity, values.friction
         shape.surface_x, shape.surface_y = values.surface_x, values.surface_y
-        write_shape(POINT, values, shape, link, VERTEX)
+        write_shape(R.POINT, values, shape, link, R.VERTEX)
         at += values.vertices
+        carried += 1 if row >= 0 else 0
         body = BODY[link.owner]
         body.extent = max(body.extent, shape.extent)
         if k < disks:
             body.elasticity, body.friction = shape.elasticity, shape.friction
     for i in range(ground + 1):
         BODY[i].due = -math.inf
-    return disks
+    R.TOLD[DISKS], R.TOLD[CARRIED], R.TOLD[CORNERS] = disks, carried, at
+
+
+@nonallocating
+def begin_walk(R: Reading) -> None:
+    """Write what is known of the bodies to WALK, EXTRA and STATES[LEFT]: where steps have left them, only of static
+    ones."""
+    R.TOLD[DYNAMICS] = R.TOLD[ECCENTRICS] = R.TOLD[STEERERS] = R.TOLD[MOVERS] = 0
+    for i in range(R.BODIES.shape[0]):
+        body = R.BODIES[i]
+        eccentric = 1 if body.centre_x != 0.0 or body.centre_y != 0.0 else 0
+        R.WALK[BODY_ROW, i] = body.row
+        R.WALK[SPECIAL, i] = ECCENTRIC * eccentric + STEERED * body.steered
+        R.EXTRA[i, COG_X], R.EXTRA[i, COG_Y] = body.centre_x, body.centre_y
+        for c in range(STATE_COLUMNS):
+            R.STATES[LEFT, i, c] = R.STATES[NOW, i, c] if body.kind == STATIC else math.nan
+        R.TOLD[DYNAMICS] += 1 if body.kind == DYNAMIC else 0
+        R.TOLD[ECCENTRICS] += eccentric
+        R.TOLD[STEERERS] += body.steered
+        R.TOLD[MOVERS] += body.moved
+
+
+@nonallocating
+def read_space(table: Table, arranged: int) -> int:
+    """Write all rows of a space that is read anew, with the poses and velocities of STATES[NOW].
+
+    Args:
+        arranged: 1 if rows are given out in pymunk's order, else in the order of `BodyValues.place`.
+
+    Returns:
+        the status of `transfer.take`; NOT_FINITE also for bodies that are not taken.
+    """
+    R = reading_of(table)
+    for i in range(R.STATES.shape[1]):
+        for c in range(STATE_COLUMNS):
+            if not abs(R.STATES[NOW, i, c]) < math.inf:
+                return NOT_FINITE
+    if arranged != 0:
+        for i in range(R.BODIES.shape[0]):
+            R.BODIES[i].place = i
+    write_rows(table)
+    begin_walk(R)
+    return take(R.STATES, R.WALK, R.EXTRA, R.BODY, 0.0, 0.0, 1.0)

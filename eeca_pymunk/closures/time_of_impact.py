@@ -33,8 +33,9 @@ class TimeOfImpact:
 
 def event_loop(world: World, limit: int, together: bool = False) -> EventLoop:
     """The event loop of a world, see `EventLoop`."""
-    joint = None if world.joints is None else world.joints.joint
-    return EventLoop(
-        world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, limit, joint, world.PARTNER, together,
-        world.still, world.memory,
-    )  # fmt: skip
+    joints, memory = world.joints, world.memory
+    rows = world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, limit
+    if joints is None:
+        return EventLoop(*rows, together=together, memory=memory)
+    partners = joints.partners
+    return EventLoop(*rows, joints.joint, partners.PARTNER, together, partners.still, memory)

@@ -5,9 +5,9 @@ arrays, which is faster; `inlined`, for small ones that are inlined. Out: the sa
 library built ahead of time, as code compiled just in time, or as plain Python.
 
 Open first `backend.py`, which chooses among the three. `entries.py` declares the kernels that Python calls,
-`library.py` loads the library, `tables.py` passes many arrays as one pointer. `frontend/` compiles a single kernel, and
-`..build` runs it for all kernels in parallel and links. Only the modules of `frontend/` import numba; builds and the
-JIT import them, other processes only read the version number there.
+`library.py` loads the library, `tables.py` passes many arrays as one pointer, `layouts.py` has their memory.
+`frontend/` compiles a single kernel, and `..build` runs it for all kernels in parallel and links. Only the modules of
+`frontend/` import numba; builds and the JIT import them, other processes only read the version number there.
 """
 
 from .backend import start

@@ -32,6 +32,10 @@ TABLES = {
         PUSHED_BY:Pair[1] PUSHED:Pushed[1] KEYS:i8[1] FORCES:Force[1] CORE:f8[3]
         SIDE:Side[1] CORNER:Corner[1] HELD:Held[1] MISSED:Missed[1] PAR:Step COUNT:Count
     """,
+    "Reading": """
+        TOLD:i8[1] BODIES:BodyValues[1] SHAPES:ShapeValues[1] OWNER:i8[1] POINT:f8[2] STATES:f8[3] WALK:i8[2]
+        EXTRA:f8[2] BODY:Body[1] SHAPE:Shape[1] LINK:Link[1] VERTEX:f8[2] ORDER:i8[1]
+    """,
     "Joints": """
         JOINT:Joint[1] PARTNER:Body[1] COMPONENT:Component[1] JOINED:ComponentBody[1]
         COUPLING:Coupling[1] HINGE:JointStep[1] LOCAL:BodyStep[1] MATRIX:f8[1] RIGHT:f8[1] MORE:f8[1] STIFF:f8[2]
@@ -50,6 +54,7 @@ TABLES = {
 }
 
 ENTRIES = {
+    "compiled.layouts:lay_out": "i8[2] i8[1] i8[1] i8",
     "geometry.gap:gaps": "{Scene} i8[2] f8[2] f8[2] f8[2]",
     "pairs.grid:build": "{Scene} f8",
     "pairs.grid:relist": "{Scene}",
@@ -71,18 +76,17 @@ ENTRIES = {
     "sleepers:rests": "f8[3] i8[2] Body[1] f8[1] f8[1] i8[1] f8 f8 f8",
     "sleepers:approaches": "f8[3] i8[1] f8[1] f8[1] f8[2] i8[1] f8 f8",
     "sleepers:touches": "Impulse[1] i8[1] i8[1] i8[1] i8",
-    "world_rows:write_rows": "BodyValues[1] ShapeValues[1] f8[2] Body[1] Shape[1] Link[1] f8[2] i8[1]",
+    "world_rows:write_rows": "{Reading}",
+    "world_rows:read_space": "{Reading} i8",
     "rehearsing:changed": "f8[3] f8[2] f8[2]",
     "impacts.new_scene:measure_scene": "Shape[1] Link[1] f8[2] i8[1] i8",
-    "impacts.new_scene:begin_scene": "{Scene}",
-    "impacts.new_scene:tie_components": "Member[1] i8[1]",
+    "impacts.new_scene:begin_scene": "{Scene} i8 i8 i8 i8 i8",
+    "impacts.new_scene:tie_components": "{Scene} {Joints}",
     "islands.accounting:flag_pairs": "{Scene}",
     "impacts.step:step": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 i8",
     "impacts.run:run": "{Scene} {Joints} {RunArrays} f8[3] i8[2] f8[2] f8[1]",
-    "joints.plan:make_plan": "Body[1] Joint[1] Component[1] ComponentBody[1] Coupling[1] i8[1]",
-    "joints.plan:measure_plan": "Component[1] i8[1] i8",
-    "joints.held:may_hold": "Joint[1] i8[1] i8",
-    "joints.held:find_held": "Body[1] Joint[1] i8[1] i8[1] i8[1]",
+    "joints.workspace:plan_components": "{Joints} Body[1] i8[1] i8",
+    "joints.held:find_held": "Body[1] Body[1] Joint[1] i8[1] Shape[1] Link[1] i8[1]",
     # Only tests call these, which solve single islands and components: some hundred times slower as plain Python.
     "joints.world:step_all": "{Joints} Body[1] f8",
     "contacts.interval:step_island": "{Scene} {Island} {IslandContacts} i8 f8 i8 f8 f8 f8",

@@ -124,17 +124,23 @@ def row(kind: type[R]) -> R:
 
 def from_bytes(kind: type[R], content: Sequence[bytes]) -> Rows[R]:
     """(n,) records from the bytes of each."""
-    return np.frombuffer(bytearray().join(content), kind.TYPE)  # type: ignore[return-value]
+    return over(kind, bytearray().join(content))
+
+
+def over(kind: type[R], memory: bytearray) -> Rows[R]:
+    """The records in this memory."""
+    return np.frombuffer(memory, kind.TYPE)  # type: ignore[return-value]
 
 
 def as_integers(of: Rows[Any]) -> IntArray:
     """The memory of records: a view. To copy records takes ten times as long."""
-    return of.view(np.int64)
+    # numpy's `view` looks through all fields.
+    return np.ndarray(of.nbytes // 8, np.int64, of)
 
 
 def records(of: Rows[Any]) -> IntArray:
     """(rows, fields) records as integers: a view."""
-    return of.view(np.int64).reshape(len(of), of.dtype.itemsize // 8)
+    return np.ndarray((len(of), of.dtype.itemsize // 8), np.int64, of)
 
 
 def numbers(of: Record) -> AnyArray:

@@ -7,7 +7,7 @@ arrays as attributes: in compiled code this is a cast and costs nothing. In plai
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable
 from typing import Any, Generic, TypeAlias, TypeVar
 
 import numpy as np
@@ -19,30 +19,43 @@ from .kernels import Compilable
 
 T = TypeVar("T")
 Table: TypeAlias = Any  # of `table_of`
-_UNKNOWN: Mapping[str, tuple[int, ...]] = {}
 WORDS = 4  # numbers of an array: address, size, and its shape, one or two lengths (of three, the last two)
 
 
 class Pointers:
-    """The table for machine code: `address` of its words, and the arrays, which it keeps alive."""
+    """The table for machine code: `address` of its words, and the arrays, which it keeps alive; `make` makes them when
+    they are asked for."""
 
-    __slots__ = ("address", "arrays", "words")
+    __slots__ = ("_arrays", "_make", "address", "words")
 
-    def __init__(self, arrays: Any, words: Any) -> None:
-        self.arrays, self.words, self.address = arrays, words, address_of(words)
+    _arrays: Any
+
+    def __init__(self, make: Callable[[], Any], words: Any) -> None:
+        self.words, self.address = words, address_of(words)
+        self.make_by(make)
+
+    def make_by(self, make: Callable[[], Any]) -> None:
+        """Let `make` make the arrays."""
+        self._make, self._arrays = make, None
+
+    @property
+    def arrays(self) -> Any:
+        """The named tuple."""
+        if self._arrays is None:
+            self._arrays = self._make()
+        return self._arrays
 
 
 def _said(dtype: np.dtype[Any], dimensions: int) -> str:
     return f"{dtype.type.__name__}[{dimensions}]"
 
 
-def table_of(arrays: Any, like: Table | None = None, words: Mapping[str, tuple[int, ...]] = _UNKNOWN) -> Table:
+def table_of(arrays: Any, like: Table | None = None) -> Table:
     """The table of a named tuple of arrays. If one of them is replaced, a new table is needed; the arrays must exist as
     long as the table is used.
 
     Args:
         like: another table of the same kind, None for none: of the very arrays that both have, words are copied.
-        words: of arrays, by field, if known: then the caller answers for their dtypes.
 
     Raises:
         TypeError: an array is not C-contiguous, or not of the dtype and dimensions that `entries.TABLES` declares.
@@ -59,11 +72,11 @@ def table_of(arrays: Any, like: Table | None = None, words: Mapping[str, tuple[i
             if array is not known:
                 field, dtype, dimensions = fields[place]
                 copied[WORDS * place : WORDS * (place + 1)] = _words(name, field, dtype, dimensions, array)
-        return Pointers(arrays, copied)
+        return Pointers(lambda: arrays, copied)
     numbers: list[int] = []
     for (field, dtype, dimensions), array in zip(fields, arrays, strict=True):
-        numbers += words.get(field) or _words(name, field, dtype, dimensions, array)
-    return Pointers(arrays, np.array(numbers, np.int64))
+        numbers += _words(name, field, dtype, dimensions, array)
+    return Pointers(lambda: arrays, np.array(numbers, np.int64))
 
 
 def _words(name: str, field: str, dtype: np.dtype[Any] | None, dimensions: int, a: Any) -> tuple[int, ...]:
@@ -74,7 +87,12 @@ def _words(name: str, field: str, dtype: np.dtype[Any] | None, dimensions: int, 
         )
     if not a.flags.c_contiguous:
         raise TypeError(f"{name}.{field} of shape {a.shape} has strides {a.strides}: it must be C-contiguous")
-    return address_of(a), a.size, *lengths(a.shape)
+    return words_of(a)
+
+
+def words_of(array: Any) -> tuple[int, ...]:
+    """The numbers of one array."""
+    return address_of(array), array.size, *lengths(array.shape)
 
 
 class Opener(Compilable, Generic[T]):

@@ -15,8 +15,8 @@ from ..model.scene import Scene
 
 # Fields of `Scene`. The tables of forces are emptied where a run begins (`run.set_back`).
 OF_SCENE = (
-    "STATE", "MARK", "CELL", "LIST", "POOL", "FLAG", "HEAD", "GRID", "PLACE", "MEMBER", "RESTING", "CORE",
-    "SIDE", "PAR", "COUNT",
+    "PAR", "COUNT", "GRID", "STATE", "MEMBER", "RESTING", "PLACE", "MARK", "CELL", "LIST", "POOL", "FLAG", "HEAD",
+    "CORE", "SIDE",
 )  # fmt: skip
 # Those that are made larger on the way.
 ROOM = ("LOG", "PUSHED_BY", "PUSHED", "KEYS", "FORCES")

@@ -10,7 +10,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import Table, kernel, nonallocating
 from ..compiled.records import Rows
 from ..geometry.corners import find_corners, moving_thin
-from ..model.bodies import Member
+from ..model.joints import joints_of
 from ..model.parameters.impulses import AUGMENTATION
 from ..model.scene import scene_of
 from ..model.shapes import Link, Shape
@@ -32,10 +32,14 @@ def measure_scene(SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, SIZE
 
 
 @kernel
-def begin_scene(table: Table) -> None:
-    """Write to the arrays of a new scene, which contain zeros, what is not 0 in it: of bodies, of CORNER, and the
-    number of moving shapes."""
+def begin_scene(table: Table, limit: int, disks: int, together: int, budget: int, lossy: int) -> None:
+    """Write to the arrays of a new scene, which contain zeros, what is not 0 in it: of bodies, of CORNER, of KEYS, the
+    number of moving shapes, and these fields of COUNT."""
     A = scene_of(table)
+    A.COUNT.limit, A.COUNT.disks, A.COUNT.together = limit, disks, together
+    A.COUNT.budget, A.COUNT.lossy = budget, lossy
+    for s in range(A.KEYS.shape[0]):
+        A.KEYS[s] = -1
     ground = A.BODY.shape[0] - 1
     for i in range(A.BODY.shape[0]):
         A.PLACE[i] = -1
@@ -55,8 +59,9 @@ def begin_scene(table: Table) -> None:
 
 
 @kernel
-def tie_components(MEMBER: Rows[Member], OF: IntArray) -> None:
-    """Make a ring of the bodies (n,) of each component: OF (n,) are their components, -1 for none."""
+def tie_components(table: Table, joints: Table) -> None:
+    """Make a ring of the bodies of each component."""
+    MEMBER, OF = scene_of(table).MEMBER, joints_of(joints).OF
     first, last = np.full(OF.shape[0], -1, np.int64), np.full(OF.shape[0], -1, np.int64)
     for i in range(OF.shape[0]):
         s = OF[i]

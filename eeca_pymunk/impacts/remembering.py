@@ -9,22 +9,25 @@ import numpy as np
 
 from ..arrays import AnyArray, FloatArray, IntArray
 from ..compiled import table_of
-from ..compiled.records import Rows, numbers, put
+from ..compiled.records import Rows, as_integers, numbers, put
 from ..geometry.corners import find_corners
 from ..model.bodies import POSE, VELOCITY, Body
 from ..model.contacts import Impulse
-from ..model.joints import OF_JOINTS, Joint, Joints
-from ..model.scene import Scene
+from ..model.joints import OF_JOINTS, Joint, Joints, joints_of
+from ..model.scene import Scene, scene_of
+from ..model.shapes import Side
 from ..model.step import Count, Step
 from ..pairs.grid import relist
 from ..pairs.setup import NEAR, near_lists
 from ..report import Outcome
 from .memory import OF_SCENE, ROOM, gathered, recalled, remembered
+from .scene_memory import SceneMemory
 
 _STEP, _COUNT = Step.TYPE.names or (), Count.TYPE.names or ()
 _BOOK = slice(_STEP.index("restitution"), _STEP.index("after") + 1)
 _LOCK = _STEP.index("lock")
 _UNMET, _SOLVES, _BLOCKS, _LOGGED = map(_COUNT.index, ("unmet", "solves", "blocks", "logged"))
+_IMPULSE = Impulse.TYPE.itemsize // 8
 UNBOUND: tuple[tuple[AnyArray | None, ...], Callable[..., int]] = (None,) * 4, int
 _OF_PROCESS = (
     "table",
@@ -32,11 +35,12 @@ _OF_PROCESS = (
     "_bound",
     "own",
     "fresh",
-    "_room",
+    "_first",
     "_par",
     "_count",
     "_log",
-    "_in_memory",
+    "_laid",
+    "_memory",
 )  # attributes that no copy has
 
 
@@ -46,29 +50,36 @@ class Remembering:
     jointed: bool
     joint: Rows[Joint]
     partner: Rows[Body]
+    _memory: SceneMemory  # of the table that was made first, `_laid`
+    _listed: bool | None
 
     @property
     def scene(self) -> Scene:
         """All arrays; replaced by setting another scene."""
-        return self._scene
+        return scene_of(self.table)
 
     @scene.setter
     def scene(self, arrays: Scene) -> None:
-        self._scene, self.table = arrays, table_of(arrays, self.__dict__.get("table"))
+        self.table = table_of(arrays, self.__dict__.get("table"))
         self._bound: tuple[tuple[AnyArray | None, ...], Callable[..., int]] = UNBOUND
         # These are read in every step. Fields of records take thirty times as long, entries of arrays three times.
-        self._par: memoryview[float] = numbers(arrays.PAR).data  # type: ignore[assignment]
-        self._count = numbers(arrays.COUNT).data
-        self._log = arrays.LOG.view(np.uint8).data
+        self._par: memoryview = numbers(arrays.PAR).data
+        self._count: memoryview = numbers(arrays.COUNT).data
+        self._log: memoryview = as_integers(arrays.LOG).data
+
+    @property
+    def sides(self) -> Rows[Side]:
+        """SIDE of the scene, whose other arrays need not be made for it."""
+        return self._memory.sides() if self.table is self.__dict__.get("_laid") else self.scene.SIDE
 
     @property
     def joints(self) -> Joints:
         """All arrays of joints, empty if the scene has none; replaced by setting others."""
-        return self._joints
+        return joints_of(self.ties)
 
     @joints.setter
     def joints(self, arrays: Joints) -> None:
-        self._joints, self.ties = arrays, table_of(arrays)
+        self.ties = table_of(arrays)
         self._bound = UNBOUND
 
     def outcome(self) -> Outcome:
@@ -84,22 +95,29 @@ class Remembering:
 
     def logged(self) -> bytes:
         """The impulses of the last step: to copy arrays takes three times as long."""
-        return self._log[: self._count[_LOGGED] * Impulse.TYPE.itemsize].tobytes()
+        return self._log[: self._count[_LOGGED] * _IMPULSE].tobytes()
 
     def __getstate__(self) -> dict[str, object]:
-        return {key: value for key, value in self.__dict__.items() if key not in _OF_PROCESS}
+        state = {key: value for key, value in self.__dict__.items() if key not in _OF_PROCESS}
+        return {**state, "_arrays": (self.scene, self.joints)}
 
     def __setstate__(self, state: dict[str, object]) -> None:
         self.__dict__.update(state)
-        self.scene, self.joints = self._scene, self._joints
+        self._memory = SceneMemory()
+        self.scene, self.joints = self.__dict__.pop("_arrays")
 
     def keep_fresh(self) -> None:
         """Before the first step: store what steps change, apart from poses and velocities, for `start_anew`."""
         self.own = self._gather()
         self.fresh: IntArray = self.own.copy()
-        self._room = {name: getattr(self.scene, name) for name in ROOM}
-        # Whether near lists depend on places of bodies; else all shapes are in all lists.
-        self.listed = bool(np.isfinite(self.scene.MARK["margin"]).any())
+        self._first, self._listed = self.table, None
+
+    @property
+    def listed(self) -> bool:
+        """Whether near lists depend on places of bodies; else all shapes are in all lists."""
+        if self._listed is None:
+            self._listed = bool(np.isfinite(self.scene.MARK["margin"]).any())
+        return self._listed
 
     def start_anew(self, at: IntArray, state: FloatArray) -> None:
         """Return to the state of a new loop, after `keep_fresh`, with the poses and velocities `state` (b, 6) of the
@@ -119,13 +137,13 @@ class Remembering:
                 moved.
         """
         self.own[:] = self.fresh
-        # The first tables again, not larger ones: memory then grows at the same steps as in a new loop.
-        scene = self._scene
-        for name, array in self._room.items():
-            if getattr(scene, name) is not array:
-                self.scene = scene._replace(**self._room)
-                break
-        self._scene.KEYS.fill(-1)
+        if self.table is not self._first:
+            # The first arrays again, not larger ones: memory then grows at the same steps as in a new loop.
+            first = scene_of(self._first)
+            self.scene = self.scene._replace(**{name: getattr(first, name) for name in ROOM})
+            self._first = self.table
+        scene = self.scene
+        scene.KEYS.fill(-1)
         if corners and len(scene.CORNER):
             find_corners(scene.LINK, scene.VERTEX, scene.CORNER)
         if self.listed:
@@ -146,10 +164,8 @@ class Remembering:
 
     def _gather(self) -> IntArray:
         """Put what steps change, apart from poses and velocities, into one piece of memory; returns it as integers."""
-        laid, own = self.__dict__.get("_in_memory", (None, None))
-        if own is not None and laid is self._scene and not self.jointed:
-            kept: IntArray = own
-            return kept
+        if not self.jointed and self.table is self.__dict__.get("_laid"):
+            return self._memory.own()
         if not self.jointed:
             (self.scene,), memory = gathered((self.scene, OF_SCENE))
             return memory

@@ -13,8 +13,7 @@ from ..compiled.library import check
 from ..compiled.records import R, Rows, columns, from_bytes, put, rows
 from ..contacts.memory import forget
 from ..islands.accounting import flag_pairs
-from ..joints.held import held_bodies
-from ..joints.workspace import make_joints
+from ..joints.held import NO_HELD, held_bodies
 from ..layout import NOW as READ
 from ..model.bodies import CHECK, Body
 from ..model.contacts import Force, Impulse
@@ -26,7 +25,7 @@ from ..pairs.setup import with_more_room
 from ..report import Details, of_events
 from ..transfer import FORCES
 from .new_scene import tie_components
-from .remembering import Remembering
+from .remembering import UNBOUND, Remembering
 from .run import ROOM_FOR_IMPACTS, run
 from .run_buffers import RunBuffers
 from .scene_memory import ORDER, RULE_COLUMNS, SceneMemory
@@ -36,7 +35,7 @@ if TYPE_CHECKING:
     import pymunk
 
 
-_NO_JOINTS, _NO_HELD = rows(Joint, 0), rows(Held, 0)
+_NO_JOINTS = rows(Joint, 0)
 
 
 def _longer(table: Rows[R], used: int) -> Rows[R]:
@@ -63,6 +62,9 @@ class EventLoop(Remembering):
         together: whether all contacts of a step act together at its middle, instead of at their instants.
         still: (x,) 1 for rows of PARTNER that never move; None: all.
         memory: of the scene before, which is lost; None: new.
+
+    Attributes:
+        thin: whether thin shapes may meet, whose sides are remembered.
     """
 
     def __init__(
@@ -74,47 +76,52 @@ class EventLoop(Remembering):
         self.jointed, self.together = joint is not None, together
         self.joint, self.partner = _NO_JOINTS if joint is None else joint, BODY[:0] if PARTNER is None else PARTNER
         self._still: IntArray = np.ones(len(self.partner), np.int64) if still is None else still
-        HELD = self._hold(BODY, SHAPE, LINK)
-        scene, self.table = memory.scene(BODY, SHAPE, LINK, VERTEX, HELD)
-        self.scene, self._in_memory = scene, (scene, memory.own)
-        COUNT = scene.COUNT
-        COUNT.limit, COUNT.disks, COUNT.together = limit, disks, together
-        COUNT.budget = STEP_LOOKS + STEP_LOOKS_BODY * n * max(n, MANY_BODIES) // MANY_BODIES
+        self._mobility: FloatArray | None = None  # of bodies, if joints hold any
+        HELD = self._hold(BODY, SHAPE, LINK) if self.jointed else NO_HELD
+        budget = STEP_LOOKS + STEP_LOOKS_BODY * n * max(n, MANY_BODIES) // MANY_BODIES
+        self.table = memory.scene(BODY, SHAPE, LINK, VERTEX, HELD, limit, disks, together, budget)
+        (self._par, self._count, self._log), self._bound = memory.records(), UNBOUND
+        self._laid, self._memory, self.thin, self._ruled = self.table, memory, memory.thin > 0, False
         if self.jointed:
-            self.plan()
+            self._plan(BODY)
         else:
-            self._joints, self.ties = memory.unjointed(n)
+            self.ties = memory.unjointed(n)
 
     def _hold(self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link]) -> Rows[Held]:
         """The bodies that straight chains of joints hold, which lose their mobilities."""
-        if not self.jointed:
-            return _NO_HELD
-        # `_smooth` is 1 for the bodies that have no shape with friction.
-        self._mobility: FloatArray = columns(BODY, "inv_mass", "inv_inertia")
-        self._smooth: IntArray = np.ones(len(BODY), np.int64)
-        self._smooth[LINK["owner"][SHAPE["friction"] > 0.0]] = 0
-        HELD = held_bodies(BODY, self.joint, self.partner, self._still, self._smooth)
+        HELD = held_bodies(BODY, self.partner, self.joint, self._still, SHAPE, LINK)
         if len(HELD):
+            self._mobility = columns(BODY, "inv_mass", "inv_inertia")
             BODY["inv_mass"][HELD["body"]] = BODY["inv_inertia"][HELD["body"]] = 0.0
         return HELD
+
+    def release(self) -> None:
+        """Give the bodies that joints hold their mobilities back, before another loop is made for them."""
+        if self._mobility is not None:
+            put(self.scene.BODY, self._mobility, "inv_mass", "inv_inertia")
 
     @property
     def mobility(self) -> FloatArray:
         """(n, 2) 1/mass and 1/moment of bodies, also of those that joints hold."""
-        return self._mobility if self.jointed else columns(self.scene.BODY, "inv_mass", "inv_inertia")
+        found = self._mobility
+        return columns(self.scene.BODY, "inv_mass", "inv_inertia") if found is None else found
 
     def plan(self) -> None:
         """Find the components again: after changes of joints' kinds, bodies, eccentric anchors, or of mobilities."""
-        self.joints = make_joints(self.scene.BODY, self.joint, self.partner, ORDER)
-        tie_components(self.scene.MEMBER, self.joints.OF)
+        self._plan(self.scene.BODY)
+
+    def _plan(self, BODY: Rows[Body]) -> None:
+        self.ties, self._bound = self._memory.joints.plan(BODY, self.joint, self.partner, ORDER), UNBOUND
+        tie_components(self.table, self.ties)
 
     def holds_others(self) -> bool:
         """Whether straight chains of joints hold other bodies than those of HELD, after changes of joints or of their
         ends."""
-        BODY = self.scene.BODY.copy()
-        put(BODY, self._mobility, "inv_mass", "inv_inertia")
-        HELD = held_bodies(BODY, self.joint, self.partner, self._still, self._smooth)
-        return HELD.tobytes() != self.scene.HELD.tobytes()
+        scene = self.scene
+        BODY = scene.BODY.copy()
+        put(BODY, self.mobility, "inv_mass", "inv_inertia")
+        HELD = held_bodies(BODY, self.partner, self.joint, self._still, scene.SHAPE, scene.LINK)
+        return HELD.tobytes() != scene.HELD.tobytes()
 
     def rebind(self, joint: Rows[Joint], PARTNER: Rows[Body]) -> None:
         """Use other arrays of joints with the same values."""
@@ -165,6 +172,7 @@ class EventLoop(Remembering):
         scene = self.scene
         if wish == ROOM_FOR_EVENTS:
             self.scene = scene._replace(LOG=_longer(scene.LOG, int(scene.COUNT.logged)))
+            self._memory.log = len(self.scene.LOG)
             return
         if wish == ROOM_FOR_CONTACTS:
             size, count = len(scene.KEYS), int(scene.COUNT.remembered)
@@ -194,6 +202,9 @@ class EventLoop(Remembering):
     def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
         """Set the law of pairs of shapes a < b: elasticity (below 0: they pass through each other), friction and
         surface velocity (2)."""
+        if not (rules or self._ruled):
+            return
+        self._ruled = len(rules) > 0
         table = np.array([(*pair, *what) for pair, what in rules.items()], float).reshape(-1, RULE_COLUMNS)
         if not np.array_equal(table, self.scene.RULE):
             self.scene = self.scene._replace(RULE=table)

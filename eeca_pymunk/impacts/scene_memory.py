@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
-from ..arrays import FloatArray, IntArray, Memory
-from ..compiled import Table, table_of
+from ..arrays import FloatArray, IntArray
+from ..compiled import Table
+from ..compiled.layouts import COUNT, Layout
 from ..compiled.records import Rows, rows
 from ..geometry.corners import side_rows
-from ..joints.workspace import make_joints
-from ..model.bodies import Body, Member, Next, Rest
-from ..model.contacts import Force, Impulse, Pair, Pushed
-from ..model.joints import Held, Joint, Joints
+from ..joints.workspace import JointMemory
+from ..model.bodies import Body
+from ..model.joints import Held, Joint
 from ..model.scene import Scene
-from ..model.shapes import Corner, Link, Shape, Side
-from ..model.step import Count, Missed, Step
-from ..pairs.setup import NEAR, NO_GRID, filled, near_sizes
+from ..model.shapes import Link, Shape, Side
+from ..pairs.setup import NO_GRID, filled, pool_sizes
 from .memory import OF_SCENE
 from .new_scene import MEASURES, begin_scene, measure_scene
 
@@ -27,72 +24,70 @@ _MISSED = 32  # rows of MISSED: those reported of a step
 _CONTACTS = 256  # rows of PUSHED at first, a power of 2
 _OF_A_BODY, _MANY = 32, 1 << 16  # rows for each body where contacts may persist, and all rows at most at first
 _NO_RULE: FloatArray = np.zeros((0, RULE_COLUMNS))
+_ZEROS = (*OF_SCENE, "PULL", "BEGAN", "HEAP_TIME", "HEAP_BODY", "BLOCK", "BOX", "CORNER", "MISSED")
+_FILLED = "LOG", "KEYS", "FORCES", "PUSHED_BY", "PUSHED"  # before they are read
 
 
 class SceneMemory:
     """Memory for the scenes of one stepper: each replaces the one before, whose arrays it overwrites.
 
     Attributes:
-        own: the memory of the arrays of the last scene that `OF_SCENE` names, as integers; None if some are elsewhere.
+        joints: for their joints.  log: number of rows that LOG has at least, as an earlier scene needed them.
+        thin: number of thin shapes that move in the last scene, 0 if no thin shapes may meet.
     """
 
-    own: IntArray | None = None
+    thin: int
 
     def __init__(self) -> None:
-        self._memory = Memory()
+        self._layout = Layout(
+            Scene, _ZEROS + _FILLED, len(_ZEROS), ("BODY", "SHAPE", "LINK", "VERTEX", "HELD"),
+            {"RULE": _NO_RULE, "CSR": NO_GRID},
+            {"CORE": (2, COUNT, 4), "PULL": (COUNT, 3), "BEGAN": (COUNT, 3), "BOX": (COUNT, 4), "VERTEX": (COUNT, 4)},
+        )  # fmt: skip
         self._sizes: IntArray = np.zeros(MEASURES, np.int64)
-        self._rows: dict[str, Any] = {}
-        self._unjointed: tuple[Joints, Table] | None = None
+        self.joints, self.log = JointMemory(), 0
+        self._unjointed: tuple[Table, int] = None, 0
 
     def scene(
-        self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, HELD: Rows[Held]
-    ) -> tuple[Scene, Table]:
-        """The arrays of a scene that has taken no step, and their table; those given are kept, not copied."""
+        self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, HELD: Rows[Held], limit: int,
+        disks: int, together: bool, budget: int,
+    ) -> Table:  # fmt: skip
+        """The table of a scene that has taken no step; the arrays given are kept, not copied. The numbers are fields of
+        COUNT."""
         n, k = len(BODY), len(LINK)
         measure_scene(SHAPE, LINK, VERTEX, self._sizes, n - 1)
-        moving, corners, thin, lossy = self._sizes.tolist()
+        moving, corners, self.thin, lossy = self._sizes.tolist()
         room = _CONTACTS
         while lossy and room < min(_OF_A_BODY * n, _MANY):
             room *= 2
-        near: dict[str, Any] = dict(zip(NEAR, near_sizes(moving, k - moving), strict=False))
-        walls = near.pop("BOX")
-        # First those that `memory.OF_SCENE` names.
-        own: dict[str, Any] = {
-            "STATE": ((n,), Next.TYPE), "MEMBER": ((n,), Member.TYPE), "RESTING": ((n,), Rest.TYPE),
-            "PLACE": ((n,), np.int64), **near, "CORE": ((2, corners, 4), np.float64),
-            "SIDE": ((side_rows(thin, k),), Side.TYPE), "PAR": ((1,), Step.TYPE), "COUNT": ((1,), Count.TYPE),
-            "PULL": ((n, 3), np.float64), "BEGAN": ((n, 3), np.float64), "HEAP_TIME": ((8 * n + 64,), np.float64),
-            "HEAP_BODY": ((8 * n + 64,), np.int64), "BLOCK": ((n,), np.int64), "BOX": walls,
-            "CORNER": ((4 * k if thin else 0,), Corner.TYPE), "MISSED": ((_MISSED,), Missed.TYPE),
-        }  # fmt: skip
-        arrays = dict(zip(own, self._memory.side_by_side(*own.values()), strict=True))
-        for name in ("GRID", "PAR", "COUNT"):
-            arrays[name] = arrays[name][0]
-        KEYS = self._again("KEYS", 4 * room, np.int64)
-        KEYS.fill(-1)
-        scene = Scene(
-            BODY=BODY, SHAPE=SHAPE, LINK=LINK, VERTEX=VERTEX, HELD=HELD, RULE=_NO_RULE, CSR=NO_GRID, KEYS=KEYS,
-            LOG=self._again("LOG", 4 * n + 64, Impulse.TYPE), FORCES=self._again("FORCES", 4 * room, Force.TYPE),
-            PUSHED_BY=self._again("PUSHED_BY", room, Pair.TYPE), PUSHED=self._again("PUSHED", room, Pushed.TYPE),
-            **arrays,
+        pool, heads = pool_sizes(moving)
+        table = self._layout.lay(
+            (
+                1, 1, 1, n, n, n, n, moving, moving, moving, pool, pool, heads, corners, side_rows(self.thin, k),
+                n, n, 8 * n + 64, 8 * n + 64, n, k - moving, 4 * k if self.thin else 0, _MISSED,
+                max(4 * n + 64, self.log), 4 * room, 4 * room, room, room, n, k, k, len(VERTEX), len(HELD),
+            ),
+            BODY, SHAPE, LINK, VERTEX, HELD,
         )  # fmt: skip
-        scene.COUNT.lossy = lossy
-        table = table_of(scene, words=dict(zip(own, self._memory.words, strict=True)))
-        begin_scene(table)
-        laid = filled(scene, table)
-        self.own = self._memory.first(len(OF_SCENE)) if laid[0] is scene else None
-        return laid
+        begin_scene(table, limit, disks, together, budget, lossy)
+        return filled(table, moving, k - moving)
 
-    def unjointed(self, n: int) -> tuple[Joints, Table]:
-        """The arrays `Joints` of a scene without joints, of n bodies or more, and their table."""
-        if self._unjointed is None or len(self._unjointed[0].OF) < n:
-            joints = make_joints(rows(Body, 2 * n), rows(Joint, 0), rows(Body, 0), ORDER)
-            self._unjointed = joints, table_of(joints)
-        return self._unjointed
+    def records(self) -> tuple[memoryview, memoryview, memoryview]:
+        """PAR as numbers, COUNT and LOG as integers, of the last scene."""
+        layout = self._layout
+        return layout.floats("PAR"), layout.integers("COUNT"), layout.integers("LOG")
 
-    def _again(self, name: str, count: int, dtype: Any) -> Any:
-        """So many rows, of any content."""
-        kept = self._rows.get(name)
-        if kept is None or not count <= len(kept) <= 8 * count:
-            kept = self._rows[name] = np.zeros(count, dtype)
-        return kept[:count]
+    def sides(self) -> Rows[Side]:
+        """SIDE of the last scene."""
+        return self._layout.array("SIDE")
+
+    def own(self) -> IntArray:
+        """The memory of the arrays of the last scene that `OF_SCENE` names, as integers."""
+        return self._layout.until(_ZEROS[len(OF_SCENE)])
+
+    def unjointed(self, n: int) -> Table:
+        """The table `Joints` of a scene without joints, of n bodies."""
+        if self._unjointed[1] < n:
+            table = JointMemory().plan(rows(Body, 2 * n), rows(Joint, 0), rows(Body, 0), ORDER)
+            self._unjointed = table, 2 * n
+        return self._unjointed[0]

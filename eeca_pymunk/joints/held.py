@@ -24,8 +24,10 @@ from ..compiled.records import Rows, rows
 from ..model.bodies import Body
 from ..model.joints import PIN, PIVOT, SLIDE, Held, Joint
 from ..model.parameters.joints import STRAIGHT_CHAIN
+from ..model.shapes import Link, Shape
 from .plan import together, turning
 
+NO_HELD = rows(Held, 0)
 FREE, WHOLLY, CENTRE = 0, 1, 2  # what of a body a straight chain holds
 
 
@@ -85,18 +87,44 @@ def fix_chain(
 
 
 @kernel
-def find_held(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, spins: IntArray, held: IntArray) -> int:
+def may_hold(joint: Rows[Joint], still: IntArray, n: int) -> bool:
+    """Whether two joints that may be straight end at bodies n + i with still[i] > 0."""
+    ends = 0
+    for j in range(len(joint)):
+        a, b = joint[j].body[0], joint[j].body[1]
+        fixed = (a >= n and still[a - n] > 0) or (b >= n and still[b - n] > 0)
+        if fixed and joint[j].bounded == 0 and joint[j].kind in (PIN, PIVOT, SLIDE):
+            ends += 1
+    return ends >= 2
+
+
+@kernel
+def find_held(
+    BODY: Rows[Body], PARTNER: Rows[Body], joint: Rows[Joint], STILL: IntArray, SHAPE: Rows[Shape], LINK: Rows[Link],
+    held: IntArray,
+) -> int:  # fmt: skip
     """Find the bodies of straight chains between fixed points.
 
     Args:
-        bodies (n,): at their present poses, with those that joints cannot move.  joint (j,).
-        still (n,): 1 for bodies that never move.
-        spins (n,): 1 for bodies that contacts do not turn; those that joints turn are set to 0.
-        held (n,): out, FREE, WHOLLY, or CENTRE for a body that is held at its centre of mass and spins on.
+        BODY (n,), PARTNER (x,): at their present poses; the latter cannot be moved by joints.  joint (j,).
+        STILL (x,): 1 for rows of PARTNER that never move.
+        SHAPE, LINK: of the bodies; contacts do not turn those without friction.
+        held (n + x,): out, FREE, WHOLLY, or CENTRE for a body that is held at its centre of mass and spins on.
 
     Returns:
         the number of bodies that are held.
     """
+    if not may_hold(joint, STILL, len(BODY)):
+        return 0
+    bodies = together(BODY, PARTNER)
+    still, spins = np.zeros(len(bodies), np.int64), np.zeros(len(bodies), np.int64)
+    for i in range(len(BODY)):
+        spins[i] = 1
+    for i in range(len(PARTNER)):
+        still[len(BODY) + i] = STILL[i]
+    for s in range(len(LINK)):
+        if SHAPE[s].friction > 0.0:
+            spins[LINK[s].owner] = 0
     points, n = 2 * len(joint), len(bodies)
     X, LENGTH = np.empty((points, 2)), np.empty(points)
     HEAD, NEXT = np.full(n, -1, np.int64), np.full(points, -1, np.int64)
@@ -155,37 +183,15 @@ def put_held(HELD: Rows[Held], BODY: Rows[Body]) -> float:
     return lost
 
 
-@kernel
-def may_hold(joint: Rows[Joint], still: IntArray, n: int) -> bool:
-    """Whether two joints that may be straight end at bodies n + i with still[i] > 0."""
-    ends = 0
-    for j in range(len(joint)):
-        a, b = joint[j].body[0], joint[j].body[1]
-        fixed = (a >= n and still[a - n] > 0) or (b >= n and still[b - n] > 0)
-        if fixed and joint[j].bounded == 0 and joint[j].kind in (PIN, PIVOT, SLIDE):
-            ends += 1
-    return ends >= 2
-
-
 def held_bodies(
-    bodies: Rows[Body], joint: Rows[Joint], partner: Rows[Body], still: IntArray, smooth: IntArray
-) -> Rows[Held]:
-    """The bodies that straight chains hold, see `find_held`.
-
-    Args:
-        bodies: (n,) those of the scene, with their mobilities.  joint: (j,).  partner: (x,) bodies that joints cannot
-            move, of which `still` (x,) never move.  smooth: (n,) 1 for bodies that contacts do not turn.
-    """
-    n = len(bodies)
-    if not may_hold(joint, still, n):
-        return rows(Held, 0)
-    fixed = np.concatenate((np.zeros(n, np.int64), still))
-    kind = np.zeros(len(fixed), np.int64)
-    find_held(together(bodies, partner), joint, fixed, np.concatenate((smooth, 0 * still)), kind)
-    if not kind.any():
-        return rows(Held, 0)
+    BODY: Rows[Body], PARTNER: Rows[Body], joint: Rows[Joint], still: IntArray, SHAPE: Rows[Shape], LINK: Rows[Link]
+) -> Rows[Held]:  # fmt: skip
+    """The bodies that straight chains hold, see `find_held`; BODY has their mobilities."""
+    kind: IntArray = np.zeros(len(BODY) + len(PARTNER), np.int64)
+    if not find_held(BODY, PARTNER, joint, still, SHAPE, LINK, kind):
+        return NO_HELD
     at = np.flatnonzero(kind)
-    HELD, one = rows(Held, len(at)), bodies[at]
+    HELD, one = rows(Held, len(at)), BODY[at]
     HELD["body"], HELD["kind"] = at, kind[at]
     for name in ("x", "y", "angle"):
         HELD[name] = one[name]

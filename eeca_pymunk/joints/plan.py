@@ -7,18 +7,14 @@ are its moved bodies (two or three unknowns) and its joints with impulses; their
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from ..arrays import IntArray
 from ..compiled import kernel
-from ..compiled.records import Rows, as_integers
-from ..model.bodies import Body
+from ..compiled.records import Rows, empty
+from ..model.bodies import BODIES, Body
 from ..model.joints import GEAR, GROOVE, MOTOR, Component, ComponentBody, Coupling, Joint
 from ..model.parameters.joints import BOXES_DIRECT, CONDENSE_BAND
-from .boxes import ROOM as BOX_ROOM
-from .dual import STRIDE
 from .ordering import order_rows, order_unknowns
 from .rows import row_count
 
@@ -104,9 +100,8 @@ def make_plan(
     bodies: Rows[Body], joint: Rows[Joint], component: Rows[Component], member: Rows[ComponentBody],
     link: Rows[Coupling], OF: IntArray,
 ) -> int:  # fmt: skip
-    """Fill in `component` (joints,), `member` (2 joints,), `link` (joints,), and OF (n,), the component of each body
-    that joints may move, -1 for none; how many components there are."""
-    OF[:] = -1
+    """Fill in `component` (joints,), `member` (2 joints,), `link` (joints,), and OF (n,), which is -1, the component of
+    each body that joints may move; how many components there are."""
     joints = len(joint)
     parent, island = np.empty(len(bodies), np.int64), np.empty(joints, np.int64)
     count = find_islands(bodies, joint, parent, island, joints)
@@ -206,44 +201,13 @@ def cycles(
     return count
 
 
-class Room(NamedTuple):
-    """The most that a component needs: bodies, joints, rows of a matrix, its entries, entries of a right side, and of
-    scratch."""
-
-    bodies: int
-    joints: int
-    rows: int
-    matrix: int
-    right: int
-    scratch: int
-
-
-def together(bodies: Rows[Body], partner: Rows[Body]) -> Rows[Body]:
-    """(n + x,) a copy of the rows of bodies (n,) and of partners (x,)."""
-    # As integers, since numpy copies records field by field.
-    copied = np.concatenate((as_integers(bodies), as_integers(partner)))
-    return copied.view(Body.TYPE)  # type: ignore[return-value]
-
-
 @kernel
-def measure_plan(component: Rows[Component], ROOM: IntArray, count: int) -> None:
-    """Write a `Room` for the largest of `count` components to ROOM (6,)."""
-    ROOM[:] = 1
-    for s in range(count):
-        C = component[s]
-        whole, dual = C.unknowns * (3 * C.band + 1), C.dual_size * (2 * C.dual_band + 1)
-        boxes = (C.boxes + 1) * (C.unknowns + C.impulses + 3 * C.boxes + BOX_ROOM) if C.boxes > 0 else 0
-        ROOM[0] = max(ROOM[0], C.end_body - C.first_body)
-        ROOM[1] = max(ROOM[1], C.end_joint - C.first_joint)
-        ROOM[2] = max(ROOM[2], C.unknowns, C.dual_size)
-        ROOM[3] = max(ROOM[3], whole, dual if C.rigid > 0 else 0)
-        ROOM[4] = max(ROOM[4], 2 * (C.unknowns + C.impulses))
-        ROOM[5] = max(ROOM[5], STRIDE * C.dual_size + boxes)
-    ROOM[4] = max(ROOM[4], 2)
-
-
-def room_for(component: Rows[Component], count: int) -> Room:
-    """Room for the largest of the first `count` components."""
-    ROOM = np.ones(6, np.int64)
-    measure_plan(component, ROOM, count)
-    return Room(*ROOM.tolist())
+def together(BODY: Rows[Body], PARTNER: Rows[Body]) -> Rows[Body]:
+    """(n + x,) a copy of the rows of bodies (n,) and of partners (x,)."""
+    n = BODY.shape[0]
+    copied = empty(n + PARTNER.shape[0], BODIES)
+    for i in range(n):
+        copied[i] = BODY[i]
+    for i in range(PARTNER.shape[0]):
+        copied[n + i] = PARTNER[i]
+    return copied

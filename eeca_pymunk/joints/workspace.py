@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import side_by_side
-from ..compiled import inlined
-from ..compiled.records import Rows, rows
+from ..arrays import IntArray
+from ..compiled import Table, inlined, kernel, nonallocating
+from ..compiled.layouts import COUNT, Layout
+from ..compiled.records import Rows
 from ..model.bodies import Body
-from ..model.joint_steps import BodyStep, JointLedger, JointStep, Progress
-from ..model.joints import Component, ComponentBody, Coupling, Joint, Joints, Tally, Workspace
-from .plan import Room, make_plan, room_for, together
+from ..model.joints import Joint, Joints, Workspace, joints_of
+from .boxes import ROOM as BOX_ROOM
+from .dual import STRIDE
+from .plan import make_plan, together
 
 
 @inlined
@@ -22,34 +24,69 @@ def workspace(J: Joints, s: int) -> Workspace:
     )
 
 
-_NO_ROOM = Room(1, 1, 1, 1, 2, 1)
-
-
-def make_joints(bodies: Rows[Body], joint: Rows[Joint], partner: Rows[Body], order: int) -> Joints:
-    """The arrays of joints, with their plan.
+@nonallocating
+def measure_plan(J: Joints, ROOM: IntArray) -> bool:
+    """Write to ROOM the most that one component needs; whether the arrays of J have it.
 
     Args:
-        bodies: (n,) those of the scene.  joint: (j,), kept, not copied.  partner: (x,) bodies that joints cannot move.
-        order: 4 where nothing in a component dissipates, drives, or touches something; or 2.
+        ROOM (6,): out, bodies, joints, rows of a matrix, its entries, entries of a right side, and of scratch.
     """
-    count = len(joint)
-    component, member, link = rows(Component, 0), rows(ComponentBody, 0), rows(Coupling, 0)
-    of, room, components = np.full(len(bodies), -1, np.int64), _NO_ROOM, 0
-    if count > 0:
-        component, member, link = side_by_side(
-            ((count,), Component.TYPE), ((2 * count,), ComponentBody.TYPE), ((count,), Coupling.TYPE)
-        )
-        components = make_plan(together(bodies, partner), joint, component, member, link, of)
-        room = room_for(component, components)
-    hinge, local, matrix, right, more, stiff, progress, part, pivots, kept, stepped, tally = side_by_side(
-        ((room.joints,), JointStep.TYPE), ((room.bodies,), BodyStep.TYPE), ((room.matrix,), np.float64),
-        ((room.right,), np.float64), ((room.scratch,), np.float64), ((6, 6), np.float64), ((1,), Progress.TYPE),
-        ((1,), JointLedger.TYPE), ((room.rows,), np.int64), ((count,), Joint.TYPE),
-        ((max(components, 1),), JointLedger.TYPE), ((1,), Tally.TYPE),
-    )  # fmt: skip
-    joints = Joints(
-        joint, partner, component, member, link, hinge, local, matrix, right, more, stiff, progress[0], part[0],
-        pivots, of, kept, stepped, tally[0],
-    )  # fmt: skip
-    joints.TALLY.order, joints.TALLY.components = order, components
-    return joints
+    for k in range(6):
+        ROOM[k] = 1
+    for s in range(J.TALLY.components):
+        C = J.COMPONENT[s]
+        whole, dual = C.unknowns * (3 * C.band + 1), C.dual_size * (2 * C.dual_band + 1)
+        boxes = (C.boxes + 1) * (C.unknowns + C.impulses + 3 * C.boxes + BOX_ROOM) if C.boxes > 0 else 0
+        ROOM[0] = max(ROOM[0], C.end_body - C.first_body)
+        ROOM[1] = max(ROOM[1], C.end_joint - C.first_joint)
+        ROOM[2] = max(ROOM[2], C.unknowns, C.dual_size)
+        ROOM[3] = max(ROOM[3], whole, dual if C.rigid > 0 else 0)
+        ROOM[4] = max(ROOM[4], 2 * (C.unknowns + C.impulses))
+        ROOM[5] = max(ROOM[5], STRIDE * C.dual_size + boxes)
+    ROOM[4] = max(ROOM[4], 2)
+    small = J.LOCAL.shape[0] < ROOM[0] or J.HINGE.shape[0] < ROOM[1] or J.PIVOTS.shape[0] < ROOM[2]
+    return bool(
+        not small and J.MATRIX.shape[0] >= ROOM[3] and J.RIGHT.shape[0] >= ROOM[4] and J.MORE.shape[0] >= ROOM[5]
+    )
+
+
+@kernel
+def plan_components(table: Table, BODY: Rows[Body], ROOM: IntArray, order: int) -> bool:
+    """Plan the components of the joints of `table`, whose other arrays contain zeros, for the bodies BODY (n,) of the
+    scene; order: of their steps. See `measure_plan`."""
+    J = joints_of(table)
+    J.OF[:] = -1
+    J.TALLY.order = order
+    if J.JOINT.shape[0] > 0:
+        bodies = together(BODY, J.PARTNER)
+        J.TALLY.components = make_plan(bodies, J.JOINT, J.COMPONENT, J.JOINED, J.COUPLING, J.OF)
+    return measure_plan(J, ROOM)
+
+
+_PLAN = "TALLY", "PROGRESS", "PART", "STIFF", "COMPONENT", "JOINED", "COUPLING", "KEPT", "STEPPED", "OF"
+_OF_ONE = "LOCAL", "HINGE", "PIVOTS", "MATRIX", "RIGHT", "MORE"  # scratch of one component
+
+
+class JointMemory:
+    """Memory for one plan of joints after the other."""
+
+    def __init__(self) -> None:
+        own = _PLAN + _OF_ONE
+        self._layout = Layout(Joints, own, len(own), ("JOINT", "PARTNER"), {}, {"STIFF": (COUNT, 6)})
+        self._room: IntArray = np.ones(len(_OF_ONE), np.int64)
+        self._most: tuple[int, ...] = (1, 1, 1, 1, 2, 1)  # of one component so far
+
+    def plan(self, BODY: Rows[Body], JOINT: Rows[Joint], PARTNER: Rows[Body], order: int) -> Table:
+        """The table of joints, `Joints`, with their plan; the last one is lost.
+
+        Args:
+            BODY: (n,) those of the scene.  JOINT: (j,), kept, not copied.  PARTNER: (x,), which joints cannot move.
+            order: 4 where nothing in a component dissipates, drives, or touches something; or 2.
+        """
+        j = len(JOINT)
+        while True:
+            counts = 1, 1, 1, 6, j, 2 * j, j, j, j, len(BODY), *self._most, j, len(PARTNER)
+            table = self._layout.lay(counts, JOINT, PARTNER)
+            if plan_components(table, BODY, self._room, order):
+                return table
+            self._most = tuple(map(max, self._room.tolist(), self._most))

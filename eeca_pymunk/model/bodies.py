@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..compiled.records import Record
+from ..compiled.records import Record, kind_of
 
 
 class Body(Record):
@@ -36,6 +36,7 @@ class Body(Record):
     due: float
 
 
+BODIES = kind_of(Body)
 POSE, VELOCITY, ACCELERATION = ("x", "y", "angle"), ("vx", "vy", "spin"), ("ax", "ay", "angular")
 
 

@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
-from ..compiled.records import Record
+from typing import NamedTuple
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import Opener
+from ..compiled.records import Record, Rows
+from .bodies import Body
+from .shapes import Link, Shape
 
 STATIC, DYNAMIC, KINEMATIC = 0, 1, 2
 
@@ -42,3 +48,34 @@ class ShapeValues(Record):
     surface_x: float  # surface velocity, length/time
     surface_y: float
     first: int  # its first vertex
+
+
+class Reading(NamedTuple):
+    """A space as pymunk has it, and the rows that are made of it.
+
+    BODIES (N,), SHAPES (k,): values, in pymunk's order; OWNER (k,): `owner` of the shapes; POINT (v, 2): the vertices
+    of all shapes, overwritten. STATES, WALK, EXTRA: see `..layout`. Out: BODY (moving bodies + 1,), SHAPE, LINK (k,),
+    VERTEX (v, 4), whose rows in use come first; ORDER (k + N + 2,), the index in SHAPES of every row of SHAPE, and
+    scratch; TOLD: numbers that Python asks for.
+    """
+
+    TOLD: IntArray
+    BODIES: Rows[BodyValues]
+    SHAPES: Rows[ShapeValues]
+    OWNER: IntArray
+    POINT: FloatArray
+    STATES: FloatArray
+    WALK: IntArray
+    EXTRA: FloatArray
+    BODY: Rows[Body]
+    SHAPE: Rows[Shape]
+    LINK: Rows[Link]
+    VERTEX: FloatArray
+    ORDER: IntArray
+
+
+reading_of = Opener(Reading)
+# Places in TOLD: numbers of single disks; of dynamic bodies; of solid shapes of moving bodies; of rows of VERTEX in
+# use; of bodies whose centre of mass is not the origin; with velocity functions; with position functions.
+DISKS, DYNAMICS, CARRIED, CORNERS, ECCENTRICS, STEERERS, MOVERS = 0, 1, 2, 3, 4, 5, 6
+TOLD = 7

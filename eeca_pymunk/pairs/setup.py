@@ -2,63 +2,59 @@
 
 from __future__ import annotations
 
-from typing import TypeAlias
-
 import numpy as np
-import numpy.typing as npt
 
 from ..arrays import IntArray, side_by_side
 from ..compiled import Table, table_of
 from ..model.parameters.detection import ALL_PAIRS, ALL_WALLS, NEIGHBOURS
-from ..model.scene import Scene
+from ..model.scene import Scene, scene_of
 from ..model.shapes import Cell, Grid, List, Mark
 from .grid import build
 from .margins import DONE, begin_lists, fill_lists
 
-Size: TypeAlias = tuple[tuple[int, ...], npt.DTypeLike]  # dimensions and dtype of an array
 # Fields of `Scene` that are the near lists.
 NEAR = ("MARK", "CELL", "LIST", "POOL", "FLAG", "HEAD", "GRID", "BOX", "CSR")
 NO_GRID: IntArray = np.zeros(1, np.int64)  # CSR of few static shapes
 
 
-def near_sizes(moving: int, walls: int) -> tuple[Size, ...]:
-    """Dimensions and dtypes of the arrays NEAR, without CSR, in a scene with so many moving and static shapes."""
-    room, heads = 32 * moving + 1024, 1 << max(1, (2 * moving + 1).bit_length())
-    return (
-        ((moving,), Mark.TYPE), ((moving,), Cell.TYPE), ((moving,), List.TYPE), ((room,), np.int32),
-        ((room,), np.uint8), ((heads,), np.int64), ((1,), Grid.TYPE), ((walls, 4), np.float64),
-    )  # fmt: skip
+def pool_sizes(moving: int) -> tuple[int, int]:
+    """Lengths of POOL and of HEAD in a scene with so many moving shapes."""
+    return 32 * moving + 1024, 1 << max(1, (2 * moving + 1).bit_length())
 
 
 def near_lists(scene: Scene, moving: int, like: Table | None = None) -> Scene:
     """The scene with lists of the shapes [0, moving), for the present poses in BODY; `like`: its table, if there is
     one."""
-    arrays = side_by_side(*near_sizes(moving, len(scene.SHAPE) - moving))
-    arrays[NEAR.index("GRID")] = GRID = arrays[NEAR.index("GRID")][0]
-    GRID.moving = moving
-    scene = scene._replace(**dict(zip(NEAR, (*arrays, NO_GRID), strict=True)))
-    return filled(scene, table_of(scene, like))[0]
+    walls, (pool, heads) = len(scene.SHAPE) - moving, pool_sizes(moving)
+    MARK, CELL, LIST, POOL, FLAG, HEAD, GRID, BOX = side_by_side(
+        ((moving,), Mark.TYPE), ((moving,), Cell.TYPE), ((moving,), List.TYPE), ((pool,), np.int32),
+        ((pool,), np.uint8), ((heads,), np.int64), ((1,), Grid.TYPE), ((walls, 4), np.float64),
+    )  # fmt: skip
+    GRID[0].moving = moving
+    scene = scene._replace(**dict(zip(NEAR, (MARK, CELL, LIST, POOL, FLAG, HEAD, GRID[0], BOX, NO_GRID), strict=True)))
+    return scene_of(filled(table_of(scene, like), moving, walls))
 
 
-def filled(scene: Scene, table: Table) -> tuple[Scene, Table]:
-    """The scene with its first lists, for which its arrays NEAR must be those of a new scene, and its table."""
-    few = len(scene.LIST) <= ALL_PAIRS and len(scene.BOX) <= ALL_WALLS
+def filled(table: Table, moving: int, walls: int) -> Table:
+    """The table of a scene, with so many moving and static shapes and arrays NEAR as in a new one, with its first
+    lists."""
+    few = moving <= ALL_PAIRS and walls <= ALL_WALLS
     found = begin_lists(table, few)
     if few:
-        return (scene, table) if found == DONE else _and_table(with_more_room(scene, 0.0, table), table)
+        return table if found == DONE else _with_more_room(table)
     if found > 0:
-        scene, table = _and_table(scene._replace(CSR=np.zeros(found, np.int64)), table)
-    bounds = np.sort(scene.SHAPE["bound"][: len(scene.LIST)])
+        table = table_of(scene_of(table)._replace(CSR=np.zeros(found, np.int64)), table)
+    bounds = np.sort(scene_of(table).SHAPE["bound"][:moving])
     halved = fill_lists(table, bounds, NEIGHBOURS, 0, False)
     while halved != DONE:
-        scene, table = _and_table(with_more_room(scene, 0.0, table), table)
+        table = _with_more_room(table)
         halved = fill_lists(table, bounds, NEIGHBOURS, halved, True)
-    return scene, table
+    return table
 
 
-def _and_table(scene: Scene, before: Table) -> tuple[Scene, Table]:
-    """A scene with its table; `before`: that of the scene that it replaces."""
-    return scene, table_of(scene, before)
+def _with_more_room(table: Table) -> Table:
+    """The table of a new scene, with a larger pool."""
+    return table_of(with_more_room(scene_of(table), 0.0, table), table)
 
 
 def rebuilt(scene: Scene, t: float, like: Table | None = None) -> Scene:

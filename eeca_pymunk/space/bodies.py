@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import math
-import struct
 from collections.abc import Callable, Collection, Mapping
 from functools import cached_property
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pymunk
 from pymunk import batch
 
@@ -17,11 +14,9 @@ from ..arrays import BoolArray, FloatArray, IntArray, rotated
 from ..compiled.records import Rows, columns, from_bytes, put
 from ..errors import NotFiniteError
 from ..layout import STATE_COLUMNS
-from ..model.bodies import POSE
-from ..model.values import DYNAMIC, KINEMATIC, STATIC, BodyValues
-from . import private, private_batch, private_sleep
+from ..model.values import DYNAMIC, STATIC, BodyValues
+from . import body_values, private_batch, private_sleep
 
-_KIND = {pymunk.Body.DYNAMIC: DYNAMIC, pymunk.Body.KINEMATIC: KINEMATIC, pymunk.Body.STATIC: STATIC}
 _FIELDS = batch.BodyFields
 _STATE = _FIELDS.POSITION | _FIELDS.ANGLE | _FIELDS.VELOCITY | _FIELDS.ANGULAR_VELOCITY | _FIELDS.FORCE | _FIELDS.TORQUE
 STATE_FIELDS = _FIELDS.BODY_ID | _STATE
@@ -46,32 +41,12 @@ def moving(space: pymunk.Space) -> list[pymunk.Body]:
     return [b for b in space.bodies if b.body_type != pymunk.Body.STATIC]
 
 
-_VALUES = struct.Struct("4q9d2q")
-_MASSES, _FROM, _TO = struct.Struct("4d"), 32, 64  # mass, moment and their inverses; bytes where these begin and end
-_FIXED = math.inf, math.inf, 0.0, 0.0
-
-
-def _values(body: pymunk.Body) -> bytes:
-    """The values of a body, as the bytes of a `BodyValues`.
-
-    Raises:
-        ValueError: for a dynamic body whose mass or moment is not positive, or whose mass is not finite.
-    """
-    kind, masses = _KIND[body.body_type], _FIXED
-    if kind == DYNAMIC:
-        mass, moment = body.mass, body.moment
-        if not (0.0 < mass < math.inf and moment > 0.0):
-            raise ValueError(
-                f"{body} has mass {mass} and moment {moment}: a dynamic body needs a finite mass > 0 and a moment > 0; "
-                "set body.mass and body.moment, or the mass or density of its shapes"
-            )
-        masses = mass, moment, 1.0 / mass, 1.0 / moment
-    # The public properties return pymunk's default when unset.
-    hooks = private.velocity_function(body) is not None, private.position_function(body) is not None
-    return _VALUES.pack(kind, 0, *hooks, *masses, *body.center_of_gravity, 0.0, 0.0, 0.0, -1, 0)
-
-
 _OF_MASS = "mass", "moment", "inverse_mass", "inverse_moment"
+
+
+def _column(name: str) -> Any:
+    """The column of `Bodies.VALUES` with this name, an attribute of `Bodies`."""
+    return cached_property(lambda bodies: bodies.VALUES[name])
 
 
 class Bodies:
@@ -82,91 +57,120 @@ class Bodies:
     Args:
         space: a pymunk space.  sleeps: whether bodies may sleep; sleeping ones then count as static.
         before: the bodies before some were added or removed; their values are reused except for the `stale`.
+        ids: (N,) pymunk's numbers of the bodies, kept, not copied; None: they are read.
 
     Attributes:
-        items: the pymunk bodies, by row.  ids: (N,) pymunk's numbers of them.
+        items: the pymunk bodies, by row.  row: of each.  ids: (N,) pymunk's numbers of them.
         fresh: number of bodies whose values were read anew.
-        start: (N, 9) their state when they were read.
-        mass, moment: (N,) mass and M L²; infinite for static and kinematic bodies.
-        inverse_mass: (N,) 1/mass, 0 for static and kinematic bodies.
-        dynamic: (N,) bool.  static: (N,) bool.  asleep: (N,) bool, none unless `sleeps`.
-        center_of_gravity: (N, 2) length, in body coordinates.
+        arranged: whether pymunk's order is that in which bodies were added.
+        VALUES: (N,) with the columns `mass` and `moment`, M L², infinite for static and kinematic bodies;
+            `inverse_mass` and `inverse_moment`, 0 for these.
     """
 
     def __init__(
-        self, space: pymunk.Space, sleeps: bool = False, before: Bodies | None = None, stale: Collection[Any] = ()
-    ) -> None:
+        self, space: pymunk.Space, sleeps: bool = False, before: Bodies | None = None, stale: Collection[Any] = (),
+        ids: IntArray | None = None,
+    ) -> None:  # fmt: skip
         self.space = space
-        self._buffer = batch.Buffer()
         ground = space.static_body  # exists in the space from its first access on
-        self.ids, self.start = self._read()
+        everyone = (*space.bodies, ground)
+        self.ids: IntArray = self._read()[0] if ids is None else ids
+        listed: list[int] = self.ids.tolist()
+        old: dict[pymunk.Body, int] = {}
         known: dict[int, tuple[pymunk.Body, bytes]] = {}
         if before is not None:
-            known = dict(zip(before.ids.tolist(), zip(before.items, before._values, strict=True), strict=True))
-            old = before.row if stale else {}
-            for row in [old[body] for body in stale if body in old]:
-                del known[int(before.ids[row])]
-        ids: list[int] = self.ids.tolist()
-        missing = [i for i in ids if i not in known]
+            old, known = before.row, before._known
+            if changed := [old[body] for body in stale if body in old]:
+                known = known.copy()
+                for row in changed:
+                    del known[before.items[row].id]
+        missing = [i for i in listed if i not in known]
         self.fresh = len(missing)
         if missing:
-            old = {} if before is None else before.row
-            new = {b.id: b for b in (*space.bodies, ground) if b not in old or b in stale}
-            known.update((i, (new[i], _values(new[i]))) for i in missing)
-        found = [known[i] for i in ids]
-        self.items: tuple[pymunk.Body, ...] = tuple([body for body, _ in found])
-        self.row: dict[pymunk.Body, int] = dict(zip(self.items, range(len(ids)), strict=True))
-        self._values: list[bytes] = [values for _, values in found]
+            new = {b.id: b for b in everyone if b not in old or b in stale}
+            known = {**known, **{i: (new[i], body_values.read(new[i])) for i in missing}}
+        self._known: dict[int, tuple[pymunk.Body, bytes]] = {i: known[i] for i in listed}
+        self.items: tuple[pymunk.Body, ...] = tuple([body for body, _ in self._known.values()])
+        self.row: dict[pymunk.Body, int] = dict(zip(self.items, range(len(listed)), strict=True))
+        self._values: list[bytes] = [values for _, values in self._known.values()]
         self.VALUES: Rows[BodyValues] = from_bytes(BodyValues, self._values)
-        kind: IntArray = self.VALUES["kind"]
-        self.mass: FloatArray = self.VALUES["mass"]
-        self.moment: FloatArray = self.VALUES["moment"]
-        self.inverse_mass: FloatArray = self.VALUES["inverse_mass"]
-        self.inverse_moment: FloatArray = self.VALUES["inverse_moment"]
-        self.asleep: BoolArray = np.zeros(len(self.items), bool)
+        self.arranged = self.items == everyone
         if sleeps:
             self.asleep[:] = private_sleep.sleeping(self.items)
-            kind[self.asleep] = STATIC
-            put(self.VALUES, np.where(self.asleep[:, None], _FIXED, columns(self.VALUES, *_OF_MASS)), *_OF_MASS)
-        everyone = (*space.bodies, ground)
-        if self.items == everyone:
-            self.VALUES["place"] = np.arange(len(ids))
-        else:
+            self.VALUES["kind"][self.asleep] = STATIC
+            put(
+                self.VALUES,
+                np.where(self.asleep[:, None], body_values.FIXED, columns(self.VALUES, *_OF_MASS)),
+                *_OF_MASS,
+            )
+            # Functions of sleeping bodies are not called, as under pymunk.
+            self.VALUES["steered"][self.asleep] = self.VALUES["moved"][self.asleep] = 0
+        if not self.arranged:
             # pymunk's order has changed, as some have slept or were removed: that of a copy of the space differs.
             place = {body: i for i, body in enumerate(everyone)}
             self.VALUES["place"] = [place[body] for body in self.items]
-        self.dynamic: BoolArray = kind == DYNAMIC
-        self.static: BoolArray = kind == STATIC
-        # Functions of sleeping bodies are not called, as under pymunk.
-        steered, moved = self.VALUES["steered"], self.VALUES["moved"]
-        if sleeps:
-            steered, moved = steered * ~self.asleep, moved * ~self.asleep
-        self.velocity_hooks: IntArray = steered.nonzero()[0]
-        self.position_hooks: IntArray = moved.nonzero()[0]
-        self.center_of_gravity: FloatArray = columns(self.VALUES, "centre_x", "centre_y")
 
-    def placed(self, state: FloatArray) -> Rows[BodyValues]:
-        """The values of the bodies, with their poses in the (N, 9) state."""
-        put(self.VALUES, state, *POSE)
-        return self.VALUES
+    mass: FloatArray = _column("mass")
+    moment: FloatArray = _column("moment")
+    inverse_mass: FloatArray = _column("inverse_mass")
+    inverse_moment: FloatArray = _column("inverse_moment")
+
+    @cached_property
+    def asleep(self) -> BoolArray:
+        """(N,) which bodies sleep."""
+        return np.zeros(len(self.items), bool)
+
+    @cached_property
+    def dynamic(self) -> BoolArray:
+        """(N,) which bodies are dynamic, and awake."""
+        dynamic: BoolArray = self.VALUES["kind"] == DYNAMIC
+        return dynamic
+
+    @cached_property
+    def static(self) -> BoolArray:
+        """(N,) which bodies are static, or asleep."""
+        static: BoolArray = self.VALUES["kind"] == STATIC
+        return static
+
+    @cached_property
+    def velocity_hooks(self) -> IntArray:
+        """Rows of the bodies with a velocity function."""
+        return self.VALUES["steered"].nonzero()[0]
+
+    @cached_property
+    def position_hooks(self) -> IntArray:
+        """Rows of the bodies with a position function."""
+        return self.VALUES["moved"].nonzero()[0]
+
+    @cached_property
+    def center_of_gravity(self) -> FloatArray:
+        """(N, 2) length, in body coordinates."""
+        return columns(self.VALUES, "centre_x", "centre_y")
+
+    @property
+    def inertia(self) -> list[bytes]:
+        """See `body_values.inertia`."""
+        if "asleep" not in self.__dict__:
+            return [body_values.inertia(values, False) for values in self._values]
+        return [body_values.inertia(*one) for one in zip(self._values, self.asleep.tolist(), strict=True)]
+
+    @cached_property
+    def start(self) -> FloatArray:
+        """(N, 9) the present state."""
+        return self._read()[1]
 
     def changed(self, row: int) -> tuple[bytes | None, bool]:
         """The values of a body if they have changed, and whether others than mass and moment have; ValueError if they
         are invalid."""
-        new, old = _values(self.items[row]), self._values[row]
-        return None if new == old else new, new[:_FROM] != old[:_FROM] or new[_TO:] != old[_TO:]
+        new, old = body_values.read(self.items[row]), self._values[row]
+        return None if new == old else new, body_values.others(new) != body_values.others(old)
 
     def set_masses(self, found: Mapping[int, bytes]) -> None:
         """Set masses and moments to those of values of `changed`, by row."""
         for i, values in found.items():
-            self._values[i] = values
-            masses = _MASSES.unpack_from(values, _FROM)
+            self._values[i], self._known[self.items[i].id] = values, (self.items[i], values)
+            masses = body_values.masses(values)
             self.mass[i], self.moment[i], self.inverse_mass[i], self.inverse_moment[i] = masses
-
-    @cached_property
-    def kinematic(self) -> bool:
-        """Whether any body is."""
-        return not (self.dynamic | self.static).all()
 
     def __len__(self) -> int:
         return len(self.items)
@@ -176,19 +180,19 @@ class Bodies:
         """Function that returns whether the space still has these bodies, and the same ones of them sleep."""
         return private_batch.ordered(self.space, self.ids)
 
-    @cached_property
+    @property
     def reached(self) -> tuple[pymunk.Body, ...] | None:
         """The bodies that can be written without waking any, None for all. Sleeping bodies are last in pymunk's
         order."""
-        asleep = self.asleep.tolist()
+        asleep = self.asleep.tolist() if "asleep" in self.__dict__ else []
         return self.items[: asleep.index(True)] if True in asleep else None
 
-    def _read(self) -> tuple[npt.NDArray[np.uintp], FloatArray]:
+    def _read(self) -> tuple[IntArray, FloatArray]:
         """(N,) ids and (N, 9) state now."""
-        self._buffer.clear()
-        batch.get_space_bodies(self.space, STATE_FIELDS, self._buffer)
-        ids: npt.NDArray[np.uintp] = np.frombuffer(self._buffer.int_buf(), dtype=np.uintp).copy()
-        return ids, np.frombuffer(self._buffer.float_buf()).reshape(-1, STATE_COLUMNS).copy()
+        buffer = batch.Buffer()
+        batch.get_space_bodies(self.space, STATE_FIELDS, buffer)
+        ids: IntArray = np.frombuffer(buffer.int_buf(), dtype=np.int64).copy()
+        return ids, np.frombuffer(buffer.float_buf()).reshape(-1, STATE_COLUMNS).copy()
 
     def gather(self) -> FloatArray | None:
         """The (N, 9) state now: position, angle, velocity, angular velocity, force, torque (see COLUMN_NAMES).

@@ -124,7 +124,7 @@ class ConstraintValues(NamedTuple):
             signs and math.isfinite(total) and lower <= upper and not (self.kind == SLIDE and upper < 0.0) and not zero
         )
 
-    def put(self, memory: memoryview, j: int, a: int, b: int) -> None:
+    def put(self, memory: bytearray, j: int, a: int, b: int) -> None:
         """Write it to row j of JOINT, whose memory is given, for bodies in the rows a and b."""
         _ROW.pack_into(
             memory, j * Joint.TYPE.itemsize, self.kind, a, b, self.bounded, *self.anchor_a, *self.anchor_b, *self.force,

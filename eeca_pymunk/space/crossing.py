@@ -5,6 +5,7 @@ from __future__ import annotations
 import weakref
 from collections.abc import Callable
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import pymunk
@@ -14,10 +15,6 @@ from ..arrays import FloatArray, IntArray
 from ..compiled.records import Rows
 from ..layout import (
     ANEW,
-    BODY_ROW,
-    COG_X,
-    COG_Y,
-    ECCENTRIC,
     END,
     END_COLUMNS,
     EXTRA_COLUMNS,
@@ -28,13 +25,12 @@ from ..layout import (
     PULL,
     PUSH_TWIST,
     PUSH_X,
-    SPECIAL,
     SPEED,
     STATE_COLUMNS,
-    STEERED,
     STILL,
 )  # fmt: skip
 from ..model.bodies import Body
+from ..model.values import STATIC
 from ..rehearsing import alter_end, as_read, copy_start
 from ..transfer import FORCES, TURNS, place_anew, write_ends, write_still_ends
 from . import private_batch
@@ -48,13 +44,17 @@ _SPEEDS = {0: _F.VELOCITY, TURNS: _F.VELOCITY | _F.ANGULAR_VELOCITY}
 
 
 class _Writers(dict[int, Callable[[], None]]):
-    """Functions that write a table of ENDS that begins at `start` N, by the bit TURNS; made at the first use."""
+    """Functions that write a table of ENDS that begins at `start` N, by the bit TURNS; made at the first use, from
+    those of `past`, which are lost."""
 
-    def __init__(self, of: Crossing, fields: dict[int, batch.BodyFields], start: int) -> None:
+    def __init__(
+        self, of: Crossing, fields: dict[int, batch.BodyFields], start: int, past: _Writers | None
+    ) -> None:  # fmt: skip
         self._of, self._fields, self._start = weakref.proxy(of), fields, start
+        self._past: dict[int, Callable[[], None]] = {} if past is None else {**past._past, **past}
 
     def __missing__(self, turns: int) -> Callable[[], None]:
-        write: Callable[[], None] = self._of.writer(self._fields[turns], self._start)
+        write: Callable[[], None] = self._of.writer(self._fields[turns], self._start, self._past.get(turns))
         self[turns] = write
         return write
 
@@ -70,10 +70,19 @@ class Crossing:
             angle: its pose is written a second time, by the new angle.
     """
 
-    def __init__(self, space: pymunk.Space, bodies: Bodies, BODY: Rows[Body], row: IntArray, state: FloatArray) -> None:
-        """Room for `bodies` that have these rows (N,) of BODY and this (N, 9) state."""
-        self.space, self.bodies, self.BODY = space, bodies, BODY
-        N = len(bodies)
+    bodies: Bodies
+    BODY: Rows[Body]
+    eccentric: bool
+    gather: Callable[[], None]
+    _scatter: _Writers
+    _scatter_still: _Writers
+    _scatter_speed: _Writers
+
+    def __init__(self, space: pymunk.Space, past: Crossing | None) -> None:
+        """Room for the bodies of a space, and their state now in STATES[NOW]. `past`: of the same space before, which
+        can no more be used to read and write."""
+        self.space = space
+        N = len((*space.bodies, space.static_body))  # which exists from its first access on
         # Room for one body more: pymunk replaces memory that is too small by its own. After additions the ids differ at
         # once, and new memory is made.
         floats, ids = np.zeros(max(2 * N, N + 1) * STATE_COLUMNS), np.zeros(max(4 * N, N + 1), np.int64)
@@ -81,28 +90,23 @@ class Crossing:
         self.WALK: IntArray = ids[: 4 * N].reshape(4, N)
         self.EXTRA: FloatArray = np.zeros((N, EXTRA_COLUMNS))
         self.ENDS: FloatArray = np.zeros(END_COLUMNS * N)
-        self.WALK[KNOWN] = bodies.ids
-        self.WALK[BODY_ROW] = row
-        self.eccentric = np.count_nonzero(bodies.center_of_gravity) > 0
-        if self.eccentric:
-            self.WALK[SPECIAL] = ECCENTRIC * bodies.center_of_gravity.any(axis=1)
-            self.EXTRA[:, COG_X : COG_Y + 1] = bodies.center_of_gravity
-        if len(bodies.velocity_hooks):
-            self.WALK[SPECIAL, bodies.velocity_hooks] |= STEERED
-        self.STATES[LEFT].fill(np.nan)
-        np.copyto(self.STATES[LEFT], state, where=bodies.static[:, None])
-        self.gather = private_batch.reader(space, STATE_FIELDS, floats, ids)
-        self._scatter = _Writers(self, _WHOLE, END)
-        self._scatter_still, self._scatter_speed = _Writers(self, _WHOLE, STILL), _Writers(self, _SPEEDS, SPEED)
+        self.gather = private_batch.reader(space, STATE_FIELDS, floats, ids, None if past is None else past.gather)
+        self.gather()
+        self.WALK[KNOWN] = self.WALK[FOUND]
+        self._scatter = _Writers(self, _WHOLE, END, None if past is None else past._scatter)
+        self._scatter_still = _Writers(self, _WHOLE, STILL, None if past is None else past._scatter_still)
+        self._scatter_speed = _Writers(self, _SPEEDS, SPEED, None if past is None else past._scatter_speed)
 
     @cached_property
     def reset_forces(self) -> Callable[[], None]:
         """Function that writes the forces at the end of the step."""
         return self.writer(_FORCES, PULL)
 
-    def writer(self, fields: batch.BodyFields, start: int) -> Callable[[], None]:
-        """Function that writes the fields from the table that begins at `start` N in ENDS."""
-        return private_batch.writer(self.space, fields, self.ENDS[start * len(self.bodies) :], self.bodies.reached)
+    def writer(self, fields: batch.BodyFields, start: int, last: Any = None) -> Callable[[], None]:
+        """Function that writes the fields from the table that begins at `start` N in ENDS; `last`: one that did so
+        before, see `private_batch.writer`."""
+        ends, reached = self.ENDS[start * len(self.bodies) :], self.bodies.reached
+        return private_batch.writer(self.space, fields, ends, reached, last)
 
     @cached_property
     def START(self) -> FloatArray:
@@ -179,11 +183,13 @@ class Crossing:
 
     def recall(self, before: Crossing) -> None:
         """Copy STATES[LEFT] of bodies whose mass, moment and centre of gravity have not changed."""
-        new, old = self.bodies, before.bodies
-        at = np.array([old.row.get(body, -1) for body in new.items])
-        same = (at >= 0) & ~new.static & (new.mass == old.mass[at]) & (new.moment == old.moment[at])
-        same &= (new.center_of_gravity == old.center_of_gravity[at]).all(axis=1)
-        self.STATES[LEFT, same] = before.STATES[LEFT, at[same]]
+        old, known = before.bodies.row, before.bodies.inertia
+        at = [(i, old.get(body, -1)) for i, body in enumerate(self.bodies.items)]
+        kinds, inertia = self.bodies.VALUES["kind"].tolist(), self.bodies.inertia
+        same = [(i, j) for i, j in at if j >= 0 and kinds[i] != STATIC and inertia[i] == known[j]]
+        if same:
+            to, of = zip(*same, strict=True)
+            self.STATES[LEFT, to] = before.STATES[LEFT, of]
 
     def with_turns(self, status: int) -> int:
         """Write the end of the step to ENDS with angles and spins, if they were left out; returns its status bits."""

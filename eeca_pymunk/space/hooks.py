@@ -28,16 +28,17 @@ class Hooks:
 
     Args:
         joints: the constraints of the space, None if it has none.
+        steered, moved: how many bodies have a velocity function, and a position function.
 
     Attributes:
-        velocity, position: rows of the bodies with such a function.  some: whether there are any.
-        late: calls that wait for `after`.
+        some: whether any body has one.  late: calls that wait for `after`.
     """
 
-    def __init__(self, space: pymunk.Space, bodies: Bodies, joints: JointRows | None = None) -> None:
+    def __init__(
+        self, space: pymunk.Space, bodies: Bodies, joints: JointRows | None, steered: int, moved: int
+    ) -> None:  # fmt: skip
         self.space, self.bodies, self.joints = space, bodies, joints
-        self.velocity, self.position = bodies.velocity_hooks, bodies.position_hooks
-        self.some = len(self.velocity) > 0 or len(self.position) > 0
+        self.steered, self.moved, self.some = steered, moved, steered + moved > 0
         self.late: list[Callable[[], None]] = []
 
     def none_within_steps(self) -> bool:
@@ -77,7 +78,7 @@ class Hooks:
 
     def velocity_changes(self, dt: float) -> FloatArray:
         """(k, 3) changes of velocity and spin by the velocity functions; the bodies are restored."""
-        items = [self.bodies.items[row] for row in self.velocity]
+        items = [self.bodies.items[row] for row in self.bodies.velocity_hooks]
         with private_joints.time_step(self.space, dt):
             found = private_functions.velocity_changes(items, self.space.gravity, self.space.damping**dt, dt)
         return np.array(found)
@@ -86,10 +87,10 @@ class Hooks:
         """Call the position functions on `state` (N, 9) with the velocity that leads to `end` (N, 9) within dt, and
         write their results to `end`."""
         ways = self.bodies.centers(end) - self.bodies.centers(state)
-        items = [self.bodies.items[row] for row in self.position]
+        items = [self.bodies.items[row] for row in self.bodies.position_hooks]
         # A rehearsal leaves corrections of overlaps that this step did not have; `update_position` would apply them.
         private_shapes.forget_corrections(private.pointers(items))
-        for row, body in zip(self.position, items, strict=True):
+        for row, body in zip(self.bodies.position_hooks, items, strict=True):
             function = private.position_function(body)
             assert function is not None
             turn = end[row, ANGLE] - state[row, ANGLE]
@@ -107,4 +108,5 @@ class Hooks:
         if not self.some:
             return nullcontext()
         items = self.bodies.items
-        return private_functions.without([items[i] for i in self.velocity], [items[i] for i in self.position])
+        steered, moved = ([items[i] for i in at] for at in (self.bodies.velocity_hooks, self.bodies.position_hooks))
+        return private_functions.without(steered, moved)

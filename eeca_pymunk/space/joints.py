@@ -10,7 +10,7 @@ import numpy as np
 import pymunk
 
 from ..arrays import FloatArray, IntArray
-from ..compiled.records import Rows, records, rows
+from ..compiled.records import over, records
 from ..model.joints import EDITED, Joint
 from . import private
 from .constraint_impulses import Impulses
@@ -47,9 +47,9 @@ class JointRows(Listing):
         if past is not None:
             past.refresh()
         super().__init__(space, past)
-        self.joint: Rows[Joint] = rows(Joint, len(self.items))
+        self._memory = bytearray(len(self.items) * Joint.TYPE.itemsize)
+        self.joint = over(Joint, self._memory)
         self._impulses = Impulses(space, self.joint)
-        self._memory = self.joint.view(np.uint8).data
         others = [body for body in self.bodies if body not in row]
         self.partners: Partners = Partners(tuple(others), space, None if past is None else past.partners)
         self._row_of = {**row, **{body: n + i for i, body in enumerate(others)}}

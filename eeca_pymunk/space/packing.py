@@ -13,16 +13,18 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 import pymunk
 
-from ..arrays import FloatArray, IntArray, side_by_side
+from ..arrays import AnyArray, FloatArray, IntArray
+from ..compiled.layouts import COUNT, Layout
 from ..compiled.records import Rows, as_integers, from_bytes
-from ..compiled.records import records as rows_of
+from ..layout import EXTRA_COLUMNS, STATE_COLUMNS
 from ..model.bodies import Body
 from ..model.shapes import Link, Shape
-from ..model.values import ShapeValues
-from ..world_rows import write_rows
+from ..model.values import CORNERS, STATIC, TOLD, Reading, ShapeValues
+from ..world_rows import read_space, write_rows
 from . import private_shapes
 from .bodies import Bodies
 from .checks import check_shape, shape_body
+from .crossing import Crossing
 from .outlines import local_outline
 
 _WORD = (1 << 64) - 1  # the lowest 64 bits of a filter's numbers, which equality and `&` need
@@ -48,6 +50,14 @@ class Record(NamedTuple):
     points: bytes
 
 
+_ROWS = (
+    Reading, ("TOLD", "BODY", "SHAPE", "LINK", "VERTEX", "ORDER"), 6,
+    ("BODIES", "SHAPES", "OWNER", "POINT", "STATES", "WALK", "EXTRA"), dict[str, AnyArray](),
+    {
+        "VERTEX": (COUNT, 4), "POINT": (COUNT, 2), "STATES": (2, COUNT, STATE_COLUMNS), "WALK": (4, COUNT),
+        "EXTRA": (COUNT, EXTRA_COLUMNS),
+    },
+)  # fmt: skip
 Records: TypeAlias = dict[pymunk.Shape, Record | None]
 
 
@@ -78,8 +88,9 @@ def read_surface(shape: pymunk.Shape, record: Record) -> Record:
 def _surface(shape: pymunk.Shape) -> tuple[tuple[float, ...], tuple[int, int, int]]:
     """`numbers` and `filter` of the record of a shape."""
     numbers = private_shapes.numbers(shape)
-    if shape.body is None or not all(map(isfinite, numbers)) or min(numbers[:3]) < 0.0:
-        check_shape(shape)
+    rounding, elasticity, friction, *_ = numbers
+    if shape.body is None or not (rounding >= 0.0 and elasticity >= 0.0 and friction >= 0.0 and isfinite(sum(numbers))):
+        check_shape(shape)  # which costs more, and finds out
     group, categories, mask = private_shapes.filter_of(shape)
     return numbers, (group & _WORD, categories & _WORD, mask & _WORD)
 
@@ -117,70 +128,67 @@ class Packed:
     """Rows of a space's bodies and solid shapes.
 
     Args:
-        bodies: in the (N, 9) `state`.  shapes: solid ones, in pymunk's order.  records: of all shapes of the space,
-            None for sensors.
+        bodies: in the states of `crossing`.  records: of all shapes of the space, in pymunk's order, None for sensors.
+        past: the rows before, which are lost.
 
     Attributes:
         shapes: the pymunk shapes, by row of SHAPE.  owner: (k,) places of their bodies in pymunk's order.
-        row: (N,) row of BODY of each body in pymunk's order, -1 for static ones.
-        BODY, SHAPE, LINK, VERTEX: see `..model`; poses and velocities are still 0.
-        disks, dynamic: numbers of the first rows of BODY that are single disks, and dynamic bodies.
+        BODY, SHAPE, LINK, VERTEX: see `..model`.  told: see `Reading`.  status: see `read_space`.
     """
 
-    def __init__(self, bodies: Bodies, state: FloatArray, records: Mapping[pymunk.Shape, Record | None]) -> None:
+    _layout: Layout[Reading]
+
+    def __init__(self, bodies: Bodies, crossing: Crossing, records: Records, past: Packed | None) -> None:
         solid = [shape for shape, record in records.items() if record is not None]
         known = [record for record in records.values() if record is not None]
         k, N = len(solid), len(bodies)
         # Places of shapes, and what `_write` overwrites, as they were before.
-        self._unwritten: tuple[dict[pymunk.Shape, int], IntArray, FloatArray] | None = None
+        self._unwritten: tuple[dict[pymunk.Shape, int], bytearray, bytes] | None = None
         self._shapes = from_bytes(ShapeValues, [record.packed for record in known])
-        self._owner: IntArray = np.array([bodies.row[record.body] for record in known], np.int64)
-        self._shapes["owner"] = self._owner
-        self._points: FloatArray = np.frombuffer(bytearray().join([record.points for record in known]))
-        POINT = self._points.reshape(-1, 2)
-        moving = N - int(np.count_nonzero(bodies.static))
-        self._rows: list[Any] = side_by_side(
-            ((moving + 1,), Body.TYPE), ((k,), Shape.TYPE), ((k,), Link.TYPE), ((len(POINT), 4), np.float64),
-            ((k + N + 2,), np.int64),
+        points: FloatArray = np.frombuffer(bytearray().join([record.points for record in known]))
+        self._points = points.reshape(-1, 2)
+        row = bodies.row
+        owner: IntArray = np.array([row[record.body] for record in known], np.int64)
+        moving, v = N - bodies.VALUES["kind"].tolist().count(STATIC), len(self._points)
+        self._layout = layout = Layout(*_ROWS) if past is None else past._layout
+        self._table = layout.lay(
+            (TOLD, moving + 1, k, k, v, k + N + 2, N, k, k, v, N, N, N), bodies.VALUES, self._shapes, owner,
+            self._points, crossing.STATES, crossing.WALK, crossing.EXTRA,
         )  # fmt: skip
-        self._write = write_rows.bind(bodies.placed(state), self._shapes, POINT, *self._rows)
-        self.disks = self._write()
-        self.BODY: Rows[Body] = self._rows[0]
-        self.SHAPE: Rows[Shape] = self._rows[1]
-        self.LINK: Rows[Link] = self._rows[2]
-        order: IntArray = self._rows[4][:k]
-        self._used: int = self.LINK["first"].item(k - 1) + self.LINK["vertices"].item(k - 1) if k else 0
-        self.VERTEX: FloatArray = self._rows[3][: self._used]
-        self.shapes = tuple([solid[i] for i in order.tolist()])
-        self.owner: IntArray = self._owner[order]
-        self.row: IntArray = bodies.VALUES["row"].copy()
-        self.dynamic = int(np.count_nonzero(bodies.dynamic))
+        self.status = read_space(self._table, bodies.arranged)
+        self.told: list[int] = layout.integers("TOLD").tolist()
+        self.BODY: Rows[Body] = layout.array("BODY")
+        self.SHAPE: Rows[Shape] = layout.array("SHAPE")
+        self.LINK: Rows[Link] = layout.array("LINK")
+        self.VERTEX: FloatArray = layout.array("VERTEX")[: self.told[CORNERS]]
+        order = layout.integers("ORDER")[:k].tolist()
+        self.shapes = tuple([solid[i] for i in order])
+        self.owner: IntArray = owner[order]
 
     def write_again(
-        self, bodies: Bodies, state: FloatArray, records: Records, edited: Mapping[pymunk.Shape, Record], moved: bool
+        self, records: Records, edited: Mapping[pymunk.Shape, Record], moved: bool
     ) -> bool:  # fmt: skip
         """Write the rows again, in place, after changes of numbers, filters, masses, and, if `moved`, poses of static
         bodies; False, with invalid rows, if the rows would be others. records: all; `edited` ones have changed."""
-        vertices = self.LINK["vertices"].tobytes()
-        given, BODY = self._views
+        vertices = self.LINK["vertices"].tobytes() if moved else b""
         if self._unwritten is None:
             known = {shape: record for shape, record in records.items() if record is not None}
-            place = {shape: k for k, shape in enumerate(known)}
-            before = rows_of(from_bytes(ShapeValues, [record.packed for record in known.values()]))
-            before[:, 0] = self._owner
-            self._unwritten = place, before, np.frombuffer(b"".join([record.points for record in known.values()]))
+            place = {shape: _VALUES.size * k for k, shape in enumerate(known)}
+            before = bytearray().join([record.packed for record in known.values()])
+            self._unwritten = place, before, b"".join([record.points for record in known.values()])
         place, before, points = self._unwritten
         for shape, record in edited.items():
-            before[place[shape], 1:] = np.frombuffer(record.packed, np.int64)[1:]
-        given[:], self._points[:] = before, points
+            before[place[shape] : place[shape] + _VALUES.size] = record.packed
+        given, vertex, BODY = self._views
+        given[:], vertex[:] = before, points
         if moved:
-            bodies.placed(state)
-            self._rows[3].fill(0.0)
+            self._layout.array("VERTEX").fill(0.0)
         BODY.fill(0)
-        self._write()
-        return self.LINK["vertices"].tobytes() == vertices
+        write_rows(self._table)
+        return not moved or self.LINK["vertices"].tobytes() == vertices  # of static shapes, two may become one
 
     @cached_property
-    def _views(self) -> tuple[IntArray, IntArray]:
-        """The values of shapes, and BODY, as integers."""
-        return rows_of(self._shapes), as_integers(self.BODY)
+    def _views(self) -> tuple[memoryview, memoryview, IntArray]:
+        """The values of shapes, and points, as bytes; BODY as integers."""
+        shapes, points = (np.ndarray(one.nbytes, np.uint8, one).data for one in (self._shapes, self._points))
+        return shapes, points, as_integers(self.BODY)

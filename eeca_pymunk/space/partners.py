@@ -17,7 +17,7 @@ import pymunk
 from pymunk import batch
 
 from ..arrays import IntArray
-from ..compiled.records import records, rows
+from ..compiled.records import over, records
 from ..errors import NotFiniteError
 from ..model.bodies import Body
 from . import private_batch, private_joints
@@ -39,8 +39,8 @@ class Partners:
 
     def __init__(self, items: Sequence[pymunk.Body], space: pymunk.Space, past: Partners | None = None) -> None:
         self.items = tuple(items)
-        self.PARTNER = rows(Body, len(self.items))
-        self._memory = self.PARTNER.view(np.uint8).data
+        self._memory = bytearray(len(self.items) * Body.TYPE.itemsize)
+        self.PARTNER = over(Body, self._memory)
         self._known: list[tuple[float, ...] | None] = [None] * len(self.items)
         if past is not None:
             before = {body: i for i, body in enumerate(past.items)}

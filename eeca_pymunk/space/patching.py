@@ -77,7 +77,7 @@ def patch(world: World, surfaces: bool) -> Patched | None:
         bodies.check_finite(world.state)
     bodies.set_masses(weighed)
     world.records.update(records)
-    if not world.packed.write_again(bodies, world.state, world.records, records, moved):
+    if not world.packed.write_again(world.records, records, moved):
         return None
     world.read_at, world.objects_read = now, world.objects_read + len(records) + len(weighed)
     if joints is None:

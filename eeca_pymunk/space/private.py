@@ -218,9 +218,9 @@ def timestamp(space: pymunk.Space) -> Callable[[], int]:
     return partial(lib.cpSpaceGetTimestamp, space._space)
 
 
-def shapes_ever(space: pymunk.Space) -> int:
-    """Number of shapes ever added to the space."""
-    return int(lib.cpSpaceGetShapeIDCounter(space._space))
+def contents(space: pymunk.Space) -> tuple[int, int, int]:
+    """Number of shapes ever added to the space; of shapes, and of bodies beside the static one, that are in it."""
+    return lib.cpSpaceGetShapeIDCounter(space._space), len(space._shapes), len(space._bodies)
 
 
 def waits(space: pymunk.Space) -> bool:

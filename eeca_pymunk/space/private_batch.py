@@ -16,22 +16,35 @@ OF_LIBRARY = ("cpSpaceEachBody", "pmSpaceBodyGetIteratorFuncBatched", "pmSpaceBo
 TYPES = ("pmBatchedData *", "pmFloatArray *", "pmIntArray *")
 
 
-def reader(space: pymunk.Space, fields: batch.BodyFields, floats: FloatArray, ids: IntArray) -> Callable[[], None]:
+def reader(
+    space: pymunk.Space, fields: batch.BodyFields, floats: FloatArray, ids: IntArray, last: Any = None
+) -> Callable[[], None]:
     """`batch.get_space_bodies` into given memory, at a quarter of its cost.
 
     The caller must ensure that `floats` and `ids`, flat and contiguous, have room for one body more than the space has
     at every call: pymunk would replace memory that is too small by its own, and free it.
+
+    Args:
+        last: a reader of the same fields of the same space, which from now on is this one; making another one takes
+            three times as long.
     """
+    if last is not None:
+        _point(last.values, "cpFloat[]", floats)
+        _point(last.numbers, "uintptr_t[]", ids)
+        last.held = floats, ids
+        return last  # type: ignore[no-any-return]
     values, numbers = _array("pmFloatArray *", "cpFloat[]", floats), _array("pmIntArray *", "uintptr_t[]", ids)
     data = _batched(fields, values, numbers)
     c, each = space._space, lib.cpSpaceEachBody
     function = ffi.addressof(lib, "pmSpaceBodyGetIteratorFuncBatched")
 
-    def read(held: object = (floats, ids)) -> None:
+    def read() -> None:
         values.num = 0
         numbers.num = 0
         each(c, function, data)
 
+    made: Any = read
+    made.values, made.numbers, made.held = values, numbers, (floats, ids)
     return read
 
 
@@ -58,22 +71,30 @@ def ordered(space: pymunk.Space, ids: AnyArray) -> Callable[[], bool]:
 
 
 def writer(
-    space: pymunk.Space, fields: batch.BodyFields, floats: FloatArray, bodies: Sequence[pymunk.Body] | None = None
-) -> Callable[[], None]:
+    space: pymunk.Space, fields: batch.BodyFields, floats: FloatArray, bodies: Sequence[pymunk.Body] | None = None,
+    last: Any = None,
+) -> Callable[[], None]:  # fmt: skip
     """`batch.set_space_bodies` from given memory, flat and contiguous, with a row for every body of the space.
 
     With `bodies`, the first ones of the space in pymunk's order, only these are written, one after the other.
+    `last`: as for `reader`; a writer of some bodies is not used again.
     """
+    if bodies is None and hasattr(last, "values"):
+        _point(last.values, "cpFloat[]", floats)
+        last.held = floats
+        return last  # type: ignore[no-any-return]
     values, numbers = _array("pmFloatArray *", "cpFloat[]", floats), ffi.new("pmIntArray *")
     data = _batched(fields, values, numbers)
     c, each = space._space, lib.cpSpaceEachBody
     function = ffi.addressof(lib, "pmSpaceBodySetIteratorFuncBatched")
 
-    def write(held: object = (floats, numbers)) -> None:
+    def write() -> None:
         values.num = 0
         each(c, function, data)
 
     if bodies is None:
+        made: Any = write
+        made.values, made.numbers, made.held = values, numbers, floats
         return write
     return _one_by_one(lib.pmSpaceBodySetIteratorFuncBatched, bodies, data, values, (floats, numbers))
 
@@ -96,9 +117,13 @@ def _one_by_one(
 def _array(kind: str, items: str, memory: FloatArray | IntArray) -> Any:
     """pymunk's array over given memory; `batch.Buffer` has the same, but leaks its earlier memory."""
     array = ffi.new(kind)
+    _point(array, items, memory)
+    return array
+
+
+def _point(array: Any, items: str, memory: FloatArray | IntArray) -> None:
     array.arr = ffi.from_buffer(items, memory)
     array.num, array.max = 0, memory.size
-    return array
 
 
 def _batched(fields: batch.BodyFields, floats: Any, ints: Any) -> Any:

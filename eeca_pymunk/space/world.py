@@ -7,14 +7,11 @@ from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any
 
-import numpy as np
 import pymunk
 
-from ..arrays import BoolArray, IntArray
-from ..compiled.records import Rows, rows
+from ..arrays import BoolArray
 from ..impacts.scene_memory import SceneMemory
-from ..layout import BODY_ROW
-from ..model.bodies import Body
+from ..layout import BODY_ROW, KNOWN
 from ..report import Details, nothing
 from ..transfer import take
 from . import private
@@ -22,7 +19,7 @@ from .bodies import Bodies
 from .checks import has_friction, settings
 from .crossing import Crossing
 from .decisions import Rules
-from .edits import clock, counts, edited_since
+from .edits import Counts, clock, counts, edited_since
 from .hooks import Hooks
 from .joints import JointRows
 from .packing import Packed, Records, records_of, shape_counts
@@ -54,7 +51,7 @@ class World(Crossing):
         hooked: whether a step calls functions of the program, or damping is 0.  plain: neither hooked nor with joints.
         rules: decisions of collision handlers about pairs of rows of SHAPE in this step.
         frictionless: whether friction, also that of handlers, is left out.  lacks_friction: and there is some.
-        joints: the constraints of the space, None if it has none.  PARTNER: bodies of joints that have no row of BODY.
+        joints: the constraints of the space, None if it has none.
         read_at: `edits.clock` when shapes and bodies were read.
         patches: number of patches so far.  packed: the arrays of the rows, and the kernel that writes them.
         objects_read: number of bodies, shapes and constraints read from pymunk for this world; others were known.
@@ -62,34 +59,38 @@ class World(Crossing):
         parted: pairs of rows of SHAPE that do not collide because of joints of their bodies.
     """
 
+    packed: Packed
+    _edits: Counts
+
     def __init__(self, space: pymunk.Space, ignore: Sequence[str] = (), past: World | None = None) -> None:
-        self._edits = counts(space)
-        self._known = self._edits.in_place
+        self.space, self._edits = space, counts(space) if past is None else past._edits
+        self._known, self._contents = self._edits.in_place, self._count()
         sleeps = space.sleep_time_threshold < math.inf
-        stale = None if past is None else past.stale()
+        stale = None if past is None else past.stale(self._contents)
         known = None if stale is None else past
         self.read_at = clock()
-        bodies = Bodies(space, sleeps, None if known is None else known.bodies, stale or ())
-        state = bodies.start
-        bodies.check_finite(state)
+        super().__init__(space, past)
+        bodies = Bodies(space, sleeps, None if known is None else known.bodies, stale or (), self.WALK[KNOWN])
+        self.bodies = bodies
         self.records: Records
         self.records, count = records_of(space, bodies, {} if known is None else known.records, stale or ())
         self.objects_read = bodies.fresh + count
         self.memory: SceneMemory = SceneMemory() if past is None else past.memory
         self.frictionless = "friction" in ignore
         self.lacks_friction = self.frictionless and has_friction([s for s, r in self.records.items() if r is not None])
-        self.packed = packed = Packed(bodies, state, self.records)
-        super().__init__(space, bodies, packed.BODY, packed.row, state)
+        self.packed = packed = Packed(bodies, self, self.records, None if past is None else past.packed)
+        if packed.status < 0:
+            bodies.check_finite(self.state)
         self.shapes, self.owner = packed.shapes, packed.owner
-        self.SHAPE, self.LINK, self.VERTEX = packed.SHAPE, packed.LINK, packed.VERTEX
+        self.BODY, self.SHAPE, self.LINK, self.VERTEX = packed.BODY, packed.SHAPE, packed.LINK, packed.VERTEX
         if self.frictionless:
             self.SHAPE["friction"] = 0.0
             self.BODY["friction"] = 0.0
-        self.disks, self.dynamic = packed.disks, packed.dynamic
+        self.disks, self.dynamic, self._carried, _, eccentric, *self._functions = packed.told
+        self.eccentric = eccentric > 0
         self.patches = 0
         self.parted: set[tuple[int, int]] = set()
         self.rules = Rules()
-        self._contents = self._count()
         self.joints: JointRows | None = None
         if past is not None and past.joints is not None:
             self.joints = past.joints
@@ -105,7 +106,7 @@ class World(Crossing):
         self._known = self._edits.in_place
         self.collisions = bool(private.handlers(self.space))
         self._forget_rules()
-        self.hooks = Hooks(self.space, self.bodies, self.joints)
+        self.hooks = Hooks(self.space, self.bodies, self.joints, *self._functions)
         self.hooked = self.collisions or self.hooks.some or self.damping == 0.0
         self.plain = not self.hooked and self.joints is None
         self.current = private.watch(self.space, self._edits, self._seen)
@@ -139,26 +140,31 @@ class World(Crossing):
         centred: BoolArray = (self.LINK["vertices"] == 1) & ~self.VERTEX[self.LINK["first"], :2].any(axis=1)
         return centred
 
-    @cached_property
-    def shape_counts(self) -> dict[Any, int]:
-        """The number of shapes of each body that is not static."""
-        return shape_counts(self.bodies, self.records)
+    @property
+    def carried(self) -> int:
+        """Number of shapes of bodies that are not static."""
+        if len(self.shapes) == len(self.records):
+            return self._carried
+        return sum(shape_counts(self.bodies, self.records).values())  # with sensors
 
     @cached_property
     def movers(self) -> list[Any]:
         """Pointers to the Chipmunk bodies that are not static and have shapes."""
-        return private.pointers(body for body, count in self.shape_counts.items() if count)
+        if len(self.shapes) == len(self.records):
+            items = self.bodies.items
+            return private.pointers([items[i] for i in sorted(set(self.owner[: self._carried].tolist()))])
+        return private.pointers(body for body, count in shape_counts(self.bodies, self.records).items() if count)
 
     @cached_property
     def empty(self) -> Details:
         """The arrays of a report without contacts."""
         return nothing(self.bodies.items)
 
-    def stale(self) -> set[Any] | None:
+    def stale(self, contents: tuple[int, ...]) -> set[Any] | None:
         """Shapes and bodies whose records may be out of date: edited, in the space or outside, or bodies of shapes that
-        were added or removed; None if unknown."""
+        were added or removed; None if unknown. `contents`: numbers of things in the space now."""
         found, _ = edited_since(self.read_at) or (None, None)
-        if found is None or self.same_things():
+        if found is None or contents == self._contents:
             return found
         for shape in self.records.keys() ^ set(self.space.shapes):
             record = self.records.get(shape)
@@ -191,16 +197,6 @@ class World(Crossing):
                 self.gather()
                 self.left_as_read()
 
-    @property
-    def PARTNER(self) -> Rows[Body]:
-        """(x,) bodies of joints that have no row of BODY."""
-        return rows(Body, 0) if self.joints is None else self.joints.partners.PARTNER
-
-    @property
-    def still(self) -> IntArray:
-        """(x,) 1 for the rows of PARTNER that never move."""
-        return np.zeros(0, np.int64) if self.joints is None else self.joints.partners.still
-
     def find_parted(self) -> bool:
         """Find the pairs of shapes that do not collide because of joints of their bodies; returns whether they have
         changed."""
@@ -219,7 +215,7 @@ class World(Crossing):
         return self.rules.of_pairs(self.SHAPE, self.parted)
 
     def _count(self) -> tuple[int, int, int, int]:
-        return private.shapes_ever(self.space), len(self.space.shapes), len(self.space.bodies), self._edits[1]
+        return *private.contents(self.space), self._edits[1]
 
     def same_things(self) -> bool:
         """Whether no shapes were added or removed, and the number of bodies is the same; they may be others, or
@@ -230,13 +226,8 @@ class World(Crossing):
         """Whether a shape or body was edited in place."""
         return self._edits.in_place != self._known
 
-    def load(self, mobilities: bool = False) -> None:
-        """Read the present states into BODY, and `mobilities`, which are 0 where joints have held bodies."""
-        if mobilities:
-            rows = self.WALK[BODY_ROW]
-            moving = rows >= 0
-            self.BODY["inv_mass"][rows[moving]] = self.bodies.inverse_mass[moving]
-            self.BODY["inv_inertia"][rows[moving]] = self.bodies.inverse_moment[moving]
+    def load(self) -> None:
+        """Read the present states into BODY."""
         self.gather()
         self._take(0.0, 0.0, 1.0)
 

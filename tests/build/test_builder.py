@@ -61,7 +61,7 @@ def test_every_kernel_is_in_a_module_and_every_call_finds_it() -> None:
     from eeca_pymunk.compiled.frontend import module
 
     import_kernels()
-    names = ("transfer:write_ends", "joints.plan:make_plan", "islands.accounting:flag_pairs")
+    names = ("transfer:write_ends", "joints.workspace:plan_components", "islands.accounting:flag_pairs")
     calls = {name: module.entry_call(name) for name in names}
     with Workers(1) as workers:
         found = gather(calls.values(), workers, lambda done, known: None)

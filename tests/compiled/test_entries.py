@@ -19,6 +19,7 @@ from eeca_pymunk.model.islands import Island, IslandContacts
 from eeca_pymunk.model.joints import Joints
 from eeca_pymunk.model.run import RunArrays
 from eeca_pymunk.model.scene import Scene, scene_with
+from eeca_pymunk.model.values import Reading
 
 PACKAGE = Path(eeca_pymunk.__file__).parent
 MODULES = [
@@ -71,10 +72,10 @@ def test_libraries_carry_the_hash_of_all_that_kernels_are_made_of() -> None:
                 assert in_sources(owner), f"{name} names {value}"
 
 
-@pytest.mark.parametrize("kind", [Scene, Joints, Island, IslandContacts, RunArrays])
+@pytest.mark.parametrize("kind", [Scene, Reading, Joints, Island, IslandContacts, RunArrays])
 def test_tables_have_the_fields_of_their_named_tuples(kind: type) -> None:
     assert tuple(name for name, _, _ in table_fields(kind.__name__)) == kind._fields  # type: ignore[attr-defined]
-    assert set(TABLES) == {"Scene", "Joints", "Island", "IslandContacts", "RunArrays"}
+    assert set(TABLES) == {"Scene", "Reading", "Joints", "Island", "IslandContacts", "RunArrays"}
 
 
 @pytest.mark.parametrize("name", ENTRIES)

@@ -15,11 +15,11 @@ from eeca_pymunk.impacts.scene import EventLoop
 from eeca_pymunk.jointed.component import answer, ready
 from eeca_pymunk.jointed.fitting import bring_arms
 from eeca_pymunk.joints.taut import taut
-from eeca_pymunk.joints.workspace import make_joints
+from eeca_pymunk.joints.workspace import JointMemory
 from eeca_pymunk.model.bodies import Body
 from eeca_pymunk.model.contacts import Row
 from eeca_pymunk.model.joint_steps import BodyStep
-from eeca_pymunk.model.joints import PIN, PIVOT, Joint, Joints, Workspace
+from eeca_pymunk.model.joints import PIN, PIVOT, Joint, Joints, Workspace, joints_of
 
 from .measures import apart, energy
 
@@ -185,7 +185,7 @@ def test_what_planks_answer_is_the_derivative_of_a_step(slack: float) -> None:
 @pytest.mark.parametrize("turned", [0.0, 2.0])
 def test_taut_is_what_pulls_hard(kind: int, turned: float) -> None:
     """Two rods end to end: a pull on their joint is stiff beside their moments if (h/2) h f r > I/2."""
-    J = make_joints(rows(Body, 3), rows(Joint, 1), rows(Body, 0), 2)._replace(LOCAL=rows(BodyStep, 2))
+    J = joints_of(JointMemory().plan(rows(Body, 3), rows(Joint, 1), rows(Body, 0), 2))._replace(LOCAL=rows(BodyStep, 2))
     joint, link, local = J.JOINT[0], J.COUPLING[:1], J.LOCAL
     link[0].kind, link[0].body[:] = kind, (0, 1)
     apart = 0.0 if kind == PIVOT else 0.25

@@ -10,11 +10,11 @@ import pymunk
 from eeca_pymunk.arrays import FloatArray, IntArray
 from eeca_pymunk.compiled import table_of
 from eeca_pymunk.compiled.records import Rows, numbers, row, rows
-from eeca_pymunk.joints.workspace import make_joints
+from eeca_pymunk.joints.workspace import JointMemory
 from eeca_pymunk.joints.world import step_all
 from eeca_pymunk.model.bodies import ACCELERATION, POSE, VELOCITY, Body
 from eeca_pymunk.model.joint_steps import JointLedger
-from eeca_pymunk.model.joints import Joint, Joints
+from eeca_pymunk.model.joints import Joint, Joints, joints_of
 from eeca_pymunk.space.joints import JointRows
 
 
@@ -31,7 +31,7 @@ class Components:
 
     def plan(self, bodies: Rows[Body]) -> None:
         """Find the components of `bodies` (n,), and make room."""
-        self.use(make_joints(bodies, self.joint, bodies[:0], self.order))
+        self.use(joints_of(JointMemory().plan(bodies, self.joint, bodies[:0], self.order)))
         self.arrays.PROGRESS.budget = np.inf
 
     def use(self, arrays: Joints) -> None:

@@ -211,7 +211,7 @@ def test_step_without_end_and_finish_step_are_a_step(threaded: bool) -> None:
 
 def test_watch_and_count_of_shapes() -> None:
     space, bodies = meeting()
-    assert private.shapes_ever(space) == 2
+    assert private.contents(space) == (2, 2, 2)
     count = edits.counts(space)
 
     def bump() -> None:
@@ -242,7 +242,7 @@ def test_watch_and_count_of_shapes() -> None:
         assert not current()
         known[0] = count[0]
         assert current() == (change is bump)
-    assert private.shapes_ever(space) == 3
+    assert private.contents(space) == (3, len(space.shapes), len(space.bodies))
 
 
 def test_reader_and_writer_are_the_batch_calls_in_memory_of_ours() -> None:

@@ -1,0 +1,129 @@
+"""Layouts: the arrays of a table side by side in one piece of memory, which the next ones overwrite.
+
+A kernel writes addresses and lengths, all that machine code needs. numpy's arrays, which take twenty times as long, are
+made when Python asks the table for them.
+"""
+
+from __future__ import annotations
+
+import math
+import struct
+from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+
+from ..arrays import LINE, AnyArray, IntArray, Memory, address_of, lengths
+from .backend import start
+from .entries import table_fields
+from .kernels import nonallocating
+from .tables import WORDS, Pointers, Table, words_of
+
+T = TypeVar("T")
+COUNT = -1
+
+
+@nonallocating
+def lay_out(PLAN: IntArray, NUMBERS: IntArray, TABLE: IntArray, address: int) -> int:
+    """Write the words of arrays.
+
+    Args:
+        PLAN (a, 5): of each array, its first word; bytes and numbers of a row; two lengths, COUNT for the rows.
+        NUMBERS (a + g,): numbers of rows; then the addresses of the last g arrays.  TABLE: out, the words.
+        address: of the memory in which the others lie side by side.
+
+    Returns:
+        the bytes of that memory.
+    """
+    arrays, at = PLAN.shape[0], 0
+    own = 2 * arrays - NUMBERS.shape[0]
+    for a in range(arrays):
+        word, count = PLAN[a, 0], NUMBERS[a]
+        TABLE[word] = NUMBERS[arrays + a - own] if a >= own else address + at
+        TABLE[word + 1] = count * PLAN[a, 2]
+        for k in range(2):
+            TABLE[word + 2 + k] = count if PLAN[a, 3 + k] == COUNT else PLAN[a, 3 + k]
+        at += (count * PLAN[a, 1] + LINE - 1) // LINE * LINE if a < own else 0
+    return at
+
+
+class Layout(Generic[T]):
+    """Memory for the arrays of one table after the other.
+
+    Args:
+        kind: named tuple of the arrays, one of `entries.TABLES`.
+        own: the arrays in this memory, in this order; of which the first `zeros` are 0, the rest of any content.
+        elsewhere: arrays in other memory.  constant: others, which stay the same.
+        dimensions: of arrays with more than one, COUNT for the number of rows.
+    """
+
+    def __init__(
+        self, kind: type[T], own: Sequence[str], zeros: int, elsewhere: Sequence[str],
+        constant: Mapping[str, AnyArray], dimensions: Mapping[str, tuple[int, ...]],
+    ) -> None:  # fmt: skip
+        self._kind, self._own, self._elsewhere, self._constant = kind, tuple(own), tuple(elsewhere), dict(constant)
+        fields = table_fields(kind.__name__)
+        self._first_word = {name: WORDS * i for i, (name, *_) in enumerate(fields)}
+        self._dtypes = {name: dtype for name, dtype, _ in fields}
+        self._dimensions = {name: dimensions.get(name, (COUNT,) * many) for name, _, many in fields}
+        words = np.zeros(WORDS * len(fields), np.int64)
+        rows = []
+        for name in (*own, *elsewhere):
+            shape, dtype = self._dimensions[name], self._dtypes[name]
+            width = math.prod(length for length in shape if length != COUNT)
+            rows.append((self._first_word[name], width * dtype.itemsize, width, *lengths(shape)))
+        plan = np.array(rows, np.int64)
+        for name, array in constant.items():
+            words[self._first_word[name] :][:WORDS] = words_of(array)
+        self._table = words.data
+        self._end = self._first_word[own[zeros]] if zeros < len(own) else None
+        self._numbers = np.zeros(len(plan) + len(elsewhere), np.int64)
+        self._put, self._into = struct.Struct(f"{len(self._numbers)}q").pack_into, self._numbers.data
+        self._write = lay_out.bind(plan, self._numbers, words)
+        self._memory = Memory()
+        self._pointers = Pointers(tuple, words) if start().entries else None
+
+    def lay(self, counts: Sequence[int], *elsewhere: AnyArray) -> Table:
+        """The table of arrays with so many rows, 1 of records, also of those elsewhere; the last table is lost."""
+        self._put(self._into, 0, *counts, *map(address_of, elsewhere))
+        memory = self._memory
+        address = memory.address
+        total = self._write(address)
+        memory.provide(total if self._end is None else self._table[self._end] - address, total)
+        if memory.address != address:
+            self._write(memory.address)
+        if self._pointers is None:
+            return self._arrays(elsewhere)
+        self._pointers.make_by(partial(self._arrays, elsewhere))
+        return self._pointers
+
+    def _arrays(self, elsewhere: Sequence[AnyArray]) -> T:
+        """The arrays of the last table."""
+        others = dict(zip(self._elsewhere, elsewhere, strict=True))
+        return self._kind(**self._constant, **others, **{name: self.array(name) for name in self._own})
+
+    def array(self, name: str) -> Any:
+        """An array of this memory in the last table."""
+        count, at = self._into[self._own.index(name)], self._table[self._first_word[name]] - self._memory.address
+        shape = tuple([count if length == COUNT else length for length in self._dimensions[name]])
+        array = self._memory.array(shape or (1,), self._dtypes[name], at)
+        return array if shape else array[0]
+
+    def floats(self, name: str) -> memoryview:
+        """The numbers of an array of this memory in the last table."""
+        return self._memory.floats[self._part(name)]
+
+    def integers(self, name: str) -> memoryview:
+        """The same of an array of integers, or the memory of another one as integers."""
+        return self._memory.integers[self._part(name)]
+
+    def _part(self, name: str) -> slice:
+        word = self._first_word[name]
+        first = (self._table[word] - self._memory.address) // 8
+        return slice(first, first + self._table[word + 1] * self._dtypes[name].itemsize // 8)
+
+    def until(self, name: str) -> IntArray:
+        """The memory before this array, as integers."""
+        end = self._table[self._first_word[name]] - self._memory.address
+        return self._memory.bytes[:end].view(np.int64)

@@ -1,0 +1,52 @@
+"""Values of bodies: what is read of a body once, as the bytes of a `BodyValues`."""
+
+from __future__ import annotations
+
+import math
+import struct
+
+import pymunk
+
+from ..model.values import DYNAMIC, KINEMATIC, STATIC
+from . import private
+
+_KIND = {pymunk.Body.DYNAMIC: DYNAMIC, pymunk.Body.KINEMATIC: KINEMATIC, pymunk.Body.STATIC: STATIC}
+_VALUES = struct.Struct("4q9d2q")
+# Mass, moment and their inverses; bytes where these begin and end, and where the centre of gravity ends.
+_MASSES, _FROM, _TO, _CENTRE = struct.Struct("4d"), 32, 64, 80
+FIXED = math.inf, math.inf, 0.0, 0.0  # masses of bodies that nothing moves
+
+
+def read(body: pymunk.Body) -> bytes:
+    """The values of a body.
+
+    Raises:
+        ValueError: for a dynamic body whose mass or moment is not positive, or whose mass is not finite.
+    """
+    kind, masses = _KIND[body.body_type], FIXED
+    if kind == DYNAMIC:
+        mass, moment = body.mass, body.moment
+        if not (0.0 < mass < math.inf and moment > 0.0):
+            raise ValueError(
+                f"{body} has mass {mass} and moment {moment}: a dynamic body needs a finite mass > 0 and a moment > 0; "
+                "set body.mass and body.moment, or the mass or density of its shapes"
+            )
+        masses = mass, moment, 1.0 / mass, 1.0 / moment
+    # The public properties return pymunk's default when unset.
+    hooks = private.velocity_function(body) is not None, private.position_function(body) is not None
+    return _VALUES.pack(kind, 0, *hooks, *masses, *body.center_of_gravity, 0.0, 0.0, 0.0, -1, 0)
+
+
+def masses(values: bytes) -> tuple[float, ...]:
+    """Mass, moment and their inverses."""
+    return _MASSES.unpack_from(values, _FROM)
+
+
+def others(values: bytes) -> bytes:
+    """All values but those of `masses`."""
+    return values[:_FROM] + values[_TO:]
+
+
+def inertia(values: bytes, asleep: bool) -> bytes:
+    """Masses and centre of gravity, for comparison; nothing moves a body that sleeps."""
+    return _MASSES.pack(*FIXED) + values[_TO:_CENTRE] if asleep else values[_FROM:_CENTRE]
