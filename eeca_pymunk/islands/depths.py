@@ -12,7 +12,7 @@ from ..compiled.records import Rows
 from ..geometry.gap import gap_at
 from ..geometry.sides import half_width, held_side, remembers, smaller
 from ..model.contacts import Row
-from ..model.islands import Island
+from ..model.islands import Island, IslandContacts
 from ..model.parameters.intervals import (
     INTERVAL_DEPTH,
     INTERVAL_DEPTH_LEAST,
@@ -21,6 +21,7 @@ from ..model.parameters.intervals import (
 )
 from ..model.scene import Scene
 from ..rows.build import normal_rate
+from .candidates import excess_way
 
 
 @nonallocating
@@ -144,3 +145,14 @@ def deep_at_end(
     way = max(-h * (nx * ux + ny * uy), 0.0)
     root = math.sqrt(max(way * way + 4.0 * (closing - way) * room, 0.0))
     return max((way + root) / (2.0 * room), 1.01 * INTERVAL_RETRY)
+
+
+@kernel
+def times_too_long(A: Scene, isle: Island, contacts: IslandContacts, m: int, h: float) -> float:
+    """How many times too long a solved interval h of m contacts is, if more than INTERVAL_RETRY."""
+    P, Q, ROWS, KEY, VN = contacts.A, contacts.B, contacts.ROWS, contacts.KEY, contacts.VN
+    far = max(excess_way(A, P, Q, KEY, isle.V, VN, m, h), closes_too_far(A, isle, P, Q, ROWS, KEY, VN, m, h))
+    if far <= INTERVAL_RETRY and len(A.SIDE) > 0:
+        END = isle.POSE + 0.5 * h * (isle.V + VN)
+        far = too_deep_at_end(A, isle, END, P, Q, ROWS, KEY, m, h, False)
+    return far

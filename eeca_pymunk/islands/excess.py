@@ -15,10 +15,11 @@ from ..contacts.interval import make_contacts, step_island
 from ..contacts.single import move_to
 from ..contacts.unmet import spend
 from ..model.contacts import ENDED
-from ..model.parameters.intervals import LARGE_ISLAND, REPAY_ROUND_OFF, SMALL_SWEEPS
+from ..model.parameters.intervals import INTERVAL_RETRY, LARGE_ISLAND, REPAY_ROUND_OFF, SMALL_SWEEPS
 from ..model.scene import Scene
 from ..pairs.lists import mark_pair
 from .candidates import sweeps_of_large
+from .depths import times_too_long
 from .local import clear_places, local_island, number_bodies, open_contacts, own_contacts
 
 
@@ -60,8 +61,8 @@ def pairs_of(A: Scene, root: int) -> IntArray:
 @kernel
 def repay(A: Scene, root: int, t: float) -> None:
     """Before the interval of an island ends at instant t: if its contacts have given energy up to t, solve them again
-    for the time up to t. In the rare case that they become more, they stay: their energy is owed (`Rest.lost` < 0),
-    and taken out by later solves."""
+    for the time up to t. If they become more, or move too far for one interval, all stays: this energy is owed
+    (`Rest.lost` < 0), and taken out by later solves."""
     if not gives(A, root, t):
         return
     found, first, count = pairs_of(A, root), -1, 0
@@ -83,7 +84,7 @@ def repay(A: Scene, root: int, t: float) -> None:
     spend(A, 2 * len(found), m, OUT[0].sweeps, OUT[0].direct)
     A.COUNT.solved += n
     A.COUNT.direct += OUT[0].direct
-    if m < 0 or m > count:
+    if m < 0 or m > count or times_too_long(A, isle, contacts, m, s) > INTERVAL_RETRY:
         return
     for c in range(first, first + count):
         A.PUSHED_BY[c].root = ENDED

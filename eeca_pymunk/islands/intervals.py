@@ -24,7 +24,6 @@ from ..rows.build import rates
 from .at_rest import put_to_rest
 from .candidates import (
     before_end,
-    excess_way,
     in_haste,
     interval_length,
     interval_within_way,
@@ -33,7 +32,7 @@ from .candidates import (
     sweeps_of_large,
     travel_bound,
 )
-from .depths import closes_too_far, driven, too_deep_at_end
+from .depths import driven, times_too_long
 from .local import clear_places, local_island, needs_memory, number_bodies, open_contacts, open_until, own_contacts
 from .membership import lossy
 from .rest import rest_threshold
@@ -89,7 +88,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
     isle = local_island(A, MINE, n, found, t)
     clear_places(A, MINE, n)
     k, WHO, V, contacts = len(isle.WHO), isle.WHO, isle.V, make_contacts(p, len(isle.WHO))
-    P, Q, KEY, ROWS, L = contacts.A, contacts.B, contacts.KEY, contacts.ROWS, contacts.L
+    P, Q, ROWS, L = contacts.A, contacts.B, contacts.ROWS, contacts.L
     VN, JUMP, OUT = contacts.VN, contacts.JUMP, contacts.OUT
     least = 0.0
     if COUNT.together > 0:
@@ -115,10 +114,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
             m = step_island(A, isle, contacts, n, h, sweeps, least, owed, 0.0)
         far = 0.0
         if not last and OUT[0].at_rest == 0:
-            far = max(excess_way(A, P, Q, KEY, V, VN, m, h), closes_too_far(A, isle, P, Q, ROWS, KEY, VN, m, h))
-            if far <= INTERVAL_RETRY and len(A.SIDE) > 0:
-                END = isle.POSE + 0.5 * h * (V + VN)
-                far = too_deep_at_end(A, isle, END, P, Q, ROWS, KEY, m, h, False)
+            far = times_too_long(A, isle, contacts, m, h)
         if far > INTERVAL_RETRY:
             A.COUNT.solved += n
             spend(A, 2 * p, m, OUT[0].sweeps, OUT[0].direct)

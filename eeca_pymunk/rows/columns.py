@@ -102,8 +102,9 @@ def lawful(problem: JointedProblem, L: FloatArray, V: FloatArray, i: int) -> tup
 @nonallocating
 def breach(problem: JointedProblem, L: FloatArray, V: FloatArray) -> float:
     """The largest velocity by which impulses L and velocities V break the laws of contacts and bounded rows; inf if
-    there are discs. Inactive contacts break theirs beyond the velocity that activates them. The change of velocity in a sweep is no such measure: where an impulse of friction could open its
-    contact, a_nn < mu |a_nt|, a contact by itself has several solutions, among which a sweep may change."""
+    there are discs. Inactive contacts break theirs beyond the velocity that activates them. The change of velocity in a
+    sweep is no such measure: where an impulse of friction could open its contact, a_nn < mu |a_nt|, a contact by itself
+    has several solutions, among which a sweep may change."""
     A, B, ROWS, C, D, m = problem
     worst = 0.0
     for i in range(m):
