@@ -9,7 +9,7 @@ from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.joint_steps import JointStep
 from ..model.joints import GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, Coupling, Joint, Workspace
-from ..model.parameters.joints import JOINT_TOUCH
+from ..model.parameters.joints import JOINT_TOUCH, LIMIT_WAY
 from .entries import along, idle
 from .rows import joint_rows
 
@@ -92,9 +92,26 @@ def release(W: Workspace) -> bool:
                 worst, which = pull, k
     if which < 0:
         return False
-    link[which].side = 0
+    link[which].let_go, link[which].side = link[which].side, 0
     W.J.HINGE[which].lam[link[which].rows - 1] = 0.0
     return True
+
+
+@nonallocating
+def begin_part(link: Rows[Coupling], joints: int) -> None:
+    """No limit has been let go since the start of the part."""
+    for k in range(joints):
+        link[k].let_go = 0
+
+
+@nonallocating
+def held_till_then(W: Workspace, k: int, side: int, instant: float) -> bool:
+    """Whether limit k, which is passed at about this instant, stood on its bound at the start of the part, was let go,
+    and has not left its bound before: its force changes sign later."""
+    link, hinge = W.link, W.J.HINGE
+    a, b = W.J.LOCAL[link[k].body[0]], W.J.LOCAL[link[k].body[1]]
+    rate = approach(hinge[k], link[k].rows, side, a.v0, b.v0)
+    return bool(link[k].let_go == side and rate * instant <= LIMIT_WAY * hinge[k].size)
 
 
 @inlined

@@ -153,6 +153,20 @@ def test_a_limit_whose_gap_opens_first_is_found(speed: float) -> None:
     assert report.ledger.restitution == pytest.approx(0.5 * speed**2, rel=1e-6)
 
 
+def test_a_limit_that_would_pull_later_is_held_up_to_the_instant_of_another() -> None:
+    """A spring turns a falling body onto its lower limit, and would turn it off later; before that a rope holds it."""
+    space = pymunk.Space()
+    bob, ground = pymunk.Body(1.0, 1.0), space.static_body
+    bob.velocity = 0.0, -1.0
+    space.add(bob, pymunk.DampedSpring(ground, bob, (1.0, -0.04), (1.0, 0.0), 0.0, 1.0, 0.0))
+    space.add(pymunk.RotaryLimitJoint(ground, bob, 0.0, 1.0))
+    space.add(pymunk.SlideJoint(ground, bob, (0.0, 1.0), (0.0, 0.0), 0.0, 1.02))
+    stepper = run(space, 0.1, 1)
+    assert abs(bob.angle) < 1e-12
+    assert bob.position.y == pytest.approx(-0.02, abs=1e-12)
+    assert stepper.components.arrays.PROGRESS.effort < 1e5  # the two are not met in turn
+
+
 @pytest.mark.parametrize("joint", [pymunk.GearJoint, pymunk.RotaryLimitJoint])
 def test_a_joint_of_angles_that_nothing_turns_does_nothing(joint: type) -> None:
     """Between a body of infinite moment and a kinematic one that turns; others go on as without it."""
