@@ -169,7 +169,7 @@ MUTATIONS = (
     Mutation("ledger: sign of the work of a support", "joints/ledger.py", "ledger.supports += moved - total",
              "ledger.supports += total - moved", "joints/test_kinds.py", "support"),
     Mutation("ledger: supports at impacts", "impacts/joint_impact.py",
-             "+= gained - carried(P", "+= 0.0 * gained - carried(P", "jointed/test_supports.py", "struck"),
+             "A.PAR.external += free + gained", "A.PAR.external += 0.0 * free + gained", "jointed/test_supports.py", "struck"),
     Mutation("ledger: what a limit costs that moves", "joints/correct.py", "lost += 0.5 *", "lost += 1.0 *",
              "jointed/test_supports.py", "stopped"),
     Mutation("intervals: the closing of linear rows is real", "islands/depths.py",
