@@ -38,16 +38,21 @@ def gap(joint: Rows[Joint], hinge: Rows[JointStep], link: Rows[Coupling], k: int
 
 
 @nonallocating
-def hold_limit(joint: Rows[Joint], hinge: Rows[JointStep], link: Rows[Coupling], k: int) -> None:
-    """Hold joint k, which stands on a limit, where it is for the rest of the step, however little is left of that.
+def hold_limits(W: Workspace) -> None:
+    """Hold joints that stand on a limit where they are, off their bound by round-off, however short the part is.
 
-    To close a gap of round-off in a part as short would take any force. Rows must be those of the present poses.
+    To close a gap of round-off in a short part would take any force. Rows must be those of the present poses.
     """
-    side = link[k].side
-    at = hinge[k].measure
-    bound = at + side * gap(joint, hinge, link, k, side)
-    off = 0.5 * (at * at / bound - bound) if link[k].kind == SLIDE else at - bound
-    hinge[k].target[link[k].rows - 1] = off
+    joint, hinge, link = W.J.JOINT, W.J.HINGE, W.link
+    for k in range(W.joints):
+        side, last = link[k].side, link[k].rows - 1
+        if side == 0 or link[k].bounded != 0:
+            continue
+        room = gap(joint, hinge, link, k, side)
+        if abs(room) <= JOINT_TOUCH * hinge[k].size:
+            at = hinge[k].measure
+            bound = at + side * room
+            hinge[k].target[last] = 0.5 * (at * at / bound - bound) if link[k].kind == SLIDE else at - bound
 
 
 @nonallocating

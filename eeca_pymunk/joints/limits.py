@@ -26,7 +26,7 @@ from ..model.parameters.joints import (
     LIMIT_WAY,
     MEET_INSTANT,
 )
-from .bounds import approach, begin_part, first_bound, gap, held_till_then, hold_limit, look, release, standing
+from .bounds import approach, begin_part, first_bound, gap, held_till_then, hold_limits, look, release, standing
 from .correct import correct, fitting_loss
 from .ledger import book
 from .motion import advance
@@ -143,9 +143,7 @@ def step_with_limits(
             link[meeting].side = side  # the velocity that lets go is round-off: forces press it to its bound at once
         ledger.limited += fitting_loss(local, W.bodies, ledger)
         drop_impulses(W)
-        for k in range(W.joints):
-            if link[k].side != 0 and link[k].bounded == 0:
-                hold_limit(W.J.JOINT, hinge, link, k)
+        hold_limits(W)
         if left <= 1e-13 * h:
             return True
         meeting, when = -1, left
