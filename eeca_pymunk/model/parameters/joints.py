@@ -66,6 +66,9 @@ NEARLY_HELD = accuracy(1e-08, "of the component", "Error of elastic joints up to
 REPAID = accuracy(
     1e-3, "of the kinetic energy", "Gain of closing joints that an earlier step left apart, up to which it is locked."
 )
+JOINT_GAIN = round_off(
+    1e-10, "of the kinetic energy", "Gain of joints that hold in a step, above which it is taken from what moves."
+)
 TAUT = heuristic(
     0.5,
     "of a body's inertia",
