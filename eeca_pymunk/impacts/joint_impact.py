@@ -17,7 +17,6 @@ from ..jointed.columns import fill_free, fill_group, make_columns, weigh
 from ..jointed.component import answer, fit_speeds, ready
 from ..jointed.ends import end_here, shorten, under_way
 from ..jointed.gathered import find_places, gather_component
-
 from ..jointed.groups import find_groups
 from ..jointed.meet import meet
 from ..model.bodies import AT_REST

@@ -8,7 +8,7 @@ from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.joint_steps import POSES, SPEEDS, BodyStep, JointLedger
 from ..model.joints import APART, EDITED, GIVES_WAY, LEFT_APART, Workspace
-from ..model.parameters.joints import JOINT_APART, JOINT_TOUCH
+from ..model.parameters.joints import JOINT_APART
 from .bounds import gap, has_bound
 from .correct import correct, fitting_loss, speeds_fit
 from .entries import held
@@ -86,19 +86,6 @@ def closing_work(local: Rows[BodyStep], bodies: int) -> float:
 
 
 @nonallocating
-def hold_passed(W: Workspace) -> bool:
-    """Hold free limits that closing has brought beyond their bounds; whether there are any."""
-    found = False
-    compute_rows(W)
-    for k in range(W.joints):
-        for side in (-1, 1):
-            if W.link[k].side == 0 and W.link[k].bounded == 0 and has_bound(W.J.JOINT, W.link, k, side):
-                if gap(W.J.JOINT, W.J.HINGE, W.link, k, side) < -JOINT_TOUCH * W.J.HINGE[k].size:
-                    W.link[k].side, found = side, True
-    return found
-
-
-@nonallocating
 def keep_closed(W: Workspace) -> None:
     """Note how far closing has shifted bodies, and let joints hold what it reached."""
     hinge, link, local = W.J.HINGE, W.link, W.J.LOCAL
@@ -122,9 +109,6 @@ def close_joints(W: Workspace, h: float, ledger: JointLedger) -> bool:
     if apart:
         before = farthest(W)
         correct(W, POSES)
-        while hold_passed(W):
-            go_back(local, W.bodies)
-            correct(W, POSES)
         taken = springs_of(W) - stored
         cost = taken + closing_work(local, W.bodies)
         # What a step left apart closes at the cost of what moves.

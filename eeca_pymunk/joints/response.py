@@ -31,7 +31,7 @@ def taken_by(W: Workspace, k: int, c: int, full: bool, h: float) -> float:
     for d in range(6):
         if d == c or full:
             total += abs(W.J.STIFF[c, d]) * local[link.body[d // 3]].root[d % 3]
-    return 0.5 * abs(h) * total * root
+    return float(0.5 * abs(h) * total * root)
 
 
 @nonallocating
