@@ -20,29 +20,31 @@ from ..jointed.gathered import find_places, gather_component
 from ..jointed.groups import find_groups
 from ..jointed.meet import meet
 from ..model.bodies import AT_REST
-from ..model.contacts import SOLVED, JointedProblem, Row
+from ..model.contacts import SOLVED, JointedProblem, Row, Solved
 from ..model.joints import Joints
 from ..model.parameters.events import EVENT_LOOKS
 from ..model.parameters.impulses import WEDGED
 from ..model.parameters.joints import CLOSES, SOLUTION_WORK
 from ..model.scene import Scene
-from ..rows.blocks import solve_block
+from ..rows.blocks import TRUNCATED, close_block, solve_block
 from ..rows.bounded import room_for_rows
 from ..rows.build import aim, conserves, normal_rate, rubs
 from ..rows.coulomb import slip_freely
+from ..rows.energy import offset_gain, scale_to_lose
+from ..rows.gentle import excessive, sweep_gently
 from ..rows.sweeps import velocities
 from .resolution import finish, rejoin
-from .simultaneous import energy_owed, gather, make_block
+from .simultaneous import Block, energy_owed, gather, make_block
 
 
 @nonallocating
 def carried_along(J: Joints, s: int) -> bool:
-    """Whether component s is jointed to a moving partner; its bodies are in the scratch of `..joints`."""
+    """Whether what impulses do not change moves a part of component s: a moving partner, or a spin of infinite moment;
+    its bodies are in the scratch of `..joints`."""
     for i in range(J.COMPONENT[s].end_body - J.COMPONENT[s].first_body):
-        if J.LOCAL[i].freedoms == 0:
-            for c in range(3):
-                if J.LOCAL[i].v0[c] != 0.0:
-                    return True
+        for c in range(3):
+            if J.LOCAL[i].mobility[c] == 0.0 and J.LOCAL[i].v0[c] != 0.0:
+                return True
     return False
 
 
@@ -93,6 +95,38 @@ def list_ended(A: Scene, n: int) -> int:
 
 
 @kernel
+def settle_energy(
+    A: Scene, block: Block, n: int, L: FloatArray, BEFORE: FloatArray, FREE: FloatArray, driven: bool, owed: float,
+    exact: bool, OUT: Rows[Solved],
+) -> None:  # fmt: skip
+    """Enter the change of energy from velocities BEFORE to those of the block after its impulses L: FREE are those
+    without impulses, BEFORE or its part that joints allow; the other part is lost.
+
+    Where nothing moves but by impulses, all that walls have not done is lost, whatever the error of the response of
+    the joints, and impulses are scaled until that is `owed` at least (if `exact`, just that). Where a component is
+    `driven` by partners, what contacts and projections have not done is work of these.
+    """
+    P, Q, ROWS, V, IM, II, rows = block.A, block.B, block.ROWS, block.V, block.IM, block.II, len(block.ROWS)
+    outside = carried(P, Q, ROWS, L, V, V, IM, II, rows)
+    before, free = kinetic_energy(BEFORE, IM, II, n), kinetic_energy(FREE, IM, II, n)
+    gained, square = kinetic_energy(V, IM, II, n) - free, kinetic_energy(V - FREE, IM, II, n)
+    if driven:
+        OUT[0].restitution += kinetic_energy(BEFORE - FREE, IM, II, n)
+        A.PAR.external += free + gained - before + OUT[0].restitution + OUT[0].friction - outside
+        return
+    s, OUT[0].owed = scale_to_lose(outside - gained + square, square, owed, exact)
+    for z in range(rows):
+        L[z, 0], L[z, 1] = s * L[z, 0], s * L[z, 1]
+    for q in range(n):
+        for c in range(3):
+            V[q, c] = FREE[q, c] + s * (V[q, c] - FREE[q, c])
+    OUT[0].lock *= s
+    lost = s * (outside - gained + square) - s * s * square
+    OUT[0].restitution, OUT[0].friction = offset_gain(lost - s * OUT[0].friction, s * OUT[0].friction)
+    OUT[0].restitution += before - free
+
+
+@kernel
 def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     """The impact of shapes a and b, predicted for instant t, with the components of their bodies; results as
     `resolution.strike`, at PAR.now, the instant at which they meet on their paths with joints."""
@@ -130,7 +164,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     J.PROGRESS.effort += SOLUTION_WORK * C.AT[rows]
     fill_free(groups, C, Q, ROWS, block.IM, block.II, rows)
     BEFORE = V.copy()
-    INDEX = np.full(len(block.IM), -1, np.int64)
+    INDEX, driven = np.full(len(block.IM), -1, np.int64), False
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
         if s < 0:
@@ -140,6 +174,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
         PUSH = np.zeros((size, 3))
         # Only the part of the velocities that joints allow takes part in the impact.
         along = carried_along(J, s)
+        driven = driven or along
         if along:
             fit_speeds(J, s, length)
             for q in range(n):
@@ -175,20 +210,24 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
         status = solve_block(problem, L, V, owed, False, OUT)
         OUT[0].sweeps += sweeps
         OUT[0].direct += direct
+    exact, fastest = conserves(ROWS, rows), aim(ROWS, rows)
+    for q in range(n):
+        fastest = max(fastest, math.hypot(FITTED[q, 0], FITTED[q, 1]))
+    if excessive(L, rows, block.IM, n, fastest):
+        L[:] = 0.0
+        velocities(problem, L, FITTED, V)
+        OUT[0].residual = sweep_gently(problem, L, V)
+        close_block(problem, L, V, FITTED, owed, exact, OUT)
+        status = TRUNCATED
     # `fits`: whether the velocities satisfy the joints afterwards. If all contacts are elastic and without friction,
     # the part that joints do not allow is kept, unless a contact closes by it.
-    fits = not conserves(ROWS, rows)
+    fits = not exact
     if not fits:
         velocities(problem, L, BEFORE, V)
         fits = closes(P, Q, ROWS, BEFORE, V, rows)
     if fits:
-        # The part of the velocities that joints do not allow is lost.
         velocities(problem, L, FITTED, V)
-        OUT[0].restitution += kinetic_energy(BEFORE - FITTED, block.IM, block.II, n)
-    # The rest of the change of energy is work of moving partners.
-    gained = kinetic_energy(V, block.IM, block.II, n) - kinetic_energy(BEFORE, block.IM, block.II, n)
-    gained += OUT[0].restitution + OUT[0].friction
-    A.PAR.external += gained - carried(P, Q, ROWS, L, V, V, block.IM, block.II, rows)
+    settle_energy(A, block, n, L, BEFORE, FITTED if fits else BEFORE, driven, owed, exact, OUT)
     lost = OUT[0].restitution + OUT[0].friction - owed
     finish(A, block, n, m, L, OUT, status, t)
     A.STATE[i].version += 1

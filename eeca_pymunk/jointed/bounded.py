@@ -14,7 +14,7 @@ from ..compiled import kernel, nonallocating
 from ..joints.entries import held, interval_of, is_limit
 from ..model.contacts import Bounded
 from ..model.joints import GROOVE, PRESCRIBED, Joints
-from ..model.parameters.joints import BOUNDED_SWEEPS
+from ..model.parameters.joints import BOUNDED_SWEEPS, MOTOR_OFF
 from ..model.scene import Scene
 from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, bounded_rate, room_for_rows, sweep_bounded
 from .component import answer
@@ -39,7 +39,8 @@ def make_bounded(J: Joints, groups: Groups, limits: bool) -> Bounded:
 @nonallocating
 def note_row(A: Scene, J: Joints, B: Bounded, s: int, i: int, h: float, V: FloatArray) -> None:
     """Row i as it is at the end of the step h that component s has just taken, with velocities V there. A limit holds
-    the velocity that it has; one that has let go keeps its row."""
+    the velocity that it has; one that has let go keeps its row. An impulse inside its bounds that has not brought its
+    row to the target was at different bounds in parts of the step: it is given."""
     k, r = B.OF[i, 0], B.OF[i, 1]
     hinge = J.HINGE[k - J.COMPONENT[s].first_joint]
     B.ROWS[i].now = hinge.total[r]
@@ -54,9 +55,16 @@ def note_row(A: Scene, J: Joints, B: Bounded, s: int, i: int, h: float, V: Float
             B.ROW[i, 3 * end + c] = hinge.rows[r, 3 * end + c]
             if B.END[i, end] < 0:
                 B.ROWS[i].speed += B.ROW[i, 3 * end + c] * J.LOCAL[at].v0[c]
+    rate = bounded_rate(B, i, V)
+    off = B.ROWS[i].speed + rate
+    low, high = interval_of(J.COUPLING[k].kind, J.COUPLING[k].side, hinge.bound * h)
     if limit:
-        B.ROWS[i].speed = -bounded_rate(B, i, V)
-    B.ROWS[i].low, B.ROWS[i].high = interval_of(J.COUPLING[k].kind, J.COUPLING[k].side, hinge.bound * h)
+        B.ROWS[i].speed = -rate
+    elif B.ROWS[i].part == SINGLE and low < hinge.total[r] < high:
+        # What the bound makes of the speed is high / scale².
+        if abs(off) * hinge.scale[r] ** 2 > MOTOR_OFF * (high + abs(rate) * hinge.scale[r] ** 2):
+            low = high = hinge.total[r]
+    B.ROWS[i].low, B.ROWS[i].high = low, high
 
 
 @nonallocating

@@ -9,7 +9,7 @@ from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.joint_steps import JointStep
 from ..model.joints import GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, Coupling, Joint, Workspace
-from ..model.parameters.joints import JOINT_TOUCH
+from ..model.parameters.joints import JOINT_TOUCH, LIMIT_WAY
 from .entries import along, idle
 from .rows import joint_rows
 
@@ -38,16 +38,21 @@ def gap(joint: Rows[Joint], hinge: Rows[JointStep], link: Rows[Coupling], k: int
 
 
 @nonallocating
-def hold_limit(joint: Rows[Joint], hinge: Rows[JointStep], link: Rows[Coupling], k: int) -> None:
-    """Hold joint k, which stands on a limit, where it is for the rest of the step, however little is left of that.
+def hold_limits(W: Workspace) -> None:
+    """Hold joints that stand on a limit where they are, off their bound by round-off, however short the part is.
 
-    To close a gap of round-off in a part as short would take any force. Rows must be those of the present poses.
+    To close a gap of round-off in a short part would take any force. Rows must be those of the present poses.
     """
-    side = link[k].side
-    at = hinge[k].measure
-    bound = at + side * gap(joint, hinge, link, k, side)
-    off = 0.5 * (at * at / bound - bound) if link[k].kind == SLIDE else at - bound
-    hinge[k].target[link[k].rows - 1] = off
+    joint, hinge, link = W.J.JOINT, W.J.HINGE, W.link
+    for k in range(W.joints):
+        side, last = link[k].side, link[k].rows - 1
+        if side == 0 or link[k].bounded != 0:
+            continue
+        room = gap(joint, hinge, link, k, side)
+        if abs(room) <= JOINT_TOUCH * hinge[k].size:
+            at = hinge[k].measure
+            bound = at + side * room
+            hinge[k].target[last] = 0.5 * (at * at / bound - bound) if link[k].kind == SLIDE else at - bound
 
 
 @nonallocating
@@ -92,9 +97,26 @@ def release(W: Workspace) -> bool:
                 worst, which = pull, k
     if which < 0:
         return False
-    link[which].side = 0
+    link[which].let_go, link[which].side = link[which].side, 0
     W.J.HINGE[which].lam[link[which].rows - 1] = 0.0
     return True
+
+
+@nonallocating
+def begin_part(link: Rows[Coupling], joints: int) -> None:
+    """No limit has been let go since the start of the part."""
+    for k in range(joints):
+        link[k].let_go = 0
+
+
+@nonallocating
+def held_till_then(W: Workspace, k: int, side: int, instant: float) -> bool:
+    """Whether limit k, which is passed at about this instant, stood on its bound at the start of the part, was let go,
+    and has not left its bound before: its force changes sign later."""
+    link, hinge = W.link, W.J.HINGE
+    a, b = W.J.LOCAL[link[k].body[0]], W.J.LOCAL[link[k].body[1]]
+    rate = approach(hinge[k], link[k].rows, side, a.v0, b.v0)
+    return bool(link[k].let_go == side and rate * instant <= LIMIT_WAY * hinge[k].size)
 
 
 @inlined

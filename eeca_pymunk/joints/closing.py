@@ -56,7 +56,7 @@ def find_apart(W: Workspace, h: float) -> tuple[bool, bool, bool]:
             apart = True
             left = 1.0 - closing_share(joint, j, error, h)
             for r in range(rows):
-                hinge[k].target[r] = hinge[k].value[r] * left
+                hinge[k].target[r] = hinge[k].value[r] * left if held(link, k, r) else 0.0
             joint[j].touched = 0 if not left > 0.0 else LEFT_APART if was == LEFT_APART else APART
             own = own and was == LEFT_APART
     return edited, apart, own and not edited

@@ -11,7 +11,7 @@ from __future__ import annotations
 from ..compiled import nonallocating
 from ..model.joint_steps import ELASTIC, EXACT, HALVED, LINEAR
 from ..model.joints import GIVES_WAY, ROTARY_SPRING, SPRING, Workspace
-from ..model.parameters.joints import COMPONENT_BUDGET, ELASTIC_PARTS, HASTE, LEAST_SOLUTIONS, REPAID
+from ..model.parameters.joints import COMPONENT_BUDGET, ELASTIC_PARTS, HASTE, JOINT_GAIN, LEAST_SOLUTIONS, REPAID
 from .foresight import foretell, forget, recalls, remember
 from .ledger import clear_ledger
 from .limits import step_with_limits
@@ -89,20 +89,26 @@ def take_parts(W: Workspace, h: float, length: float, rung: int, parts: int, giv
 
 
 @nonallocating
-def repaid(W: Workspace) -> bool:
-    """Whether exact rows, which close at once what an earlier step left apart, give no more than that has taken, or
-    little beside what moved before, which is taken back."""
+def repaid(W: Workspace, h: float, own: bool) -> bool:
+    """Whether exact rows give no more energy than they have taken, or little, which is taken back.
+
+    What an earlier step left apart (`own`) closes at once, and gives little beside what moved before, or the step
+    fails. Other rows hold to round-off e of their places, and give e times their impulse over h: the shorter, the more.
+    """
     part = W.J.PART
     gain, had = part.closed - W.J.JOINT[W.link[0].joint].owed, 0.0
+    gain -= 0.0 if own else max(part.limited, 0.0)  # a limit in such a step loses as much more
     if not gain > 0.0 or not supports_rest(W.J.LOCAL, W.bodies):
         return True
     for i in range(W.bodies):
         for c in range(3):
             if W.J.LOCAL[i].mobility[c] > 0.0:
-                had += 0.5 * W.J.LOCAL[i].saved_velocity[c] ** 2 / W.J.LOCAL[i].mobility[c]
-    if not gain <= REPAID * had:
+                v, dv = W.J.LOCAL[i].saved_velocity[c], 0.0 if own else h * W.J.LOCAL[i].acceleration[c]
+                had += 0.5 * (v * v + dv * dv) / W.J.LOCAL[i].mobility[c]
+    if own and not gain <= REPAID * had:
         return False
-    part.closed -= lock_energy(W.J.LOCAL, W.bodies, gain)
+    if own or gain > JOINT_GAIN * had:
+        part.closed -= lock_energy(W.J.LOCAL, W.bodies, gain)
     return True
 
 
@@ -145,7 +151,7 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
         compliance = compliance_on(rung, h, yields, first.compliance)
         clear_ledger(W.J.PART)
         done = take_parts(W, h, length, rung, parts, compliance / (h / parts) ** 2, cold)
-        if done and (not own or rung >= ELASTIC_RUNG or repaid(W)):
+        if done and (rung >= ELASTIC_RUNG or repaid(W, h, own)):
             first.compliance = compliance
             return EXACT if rung <= WHOLE_STEP else HALVED if rung < ELASTIC_RUNG else ELASTIC
         # What has begun with what was foretold, or with impulses of redundant rows, is taken again without.

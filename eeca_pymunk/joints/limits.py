@@ -3,8 +3,10 @@
 A limit is a row that is either held (side = -1 on the lower, 1 on the upper bound), g = bound, lam side <= 0, or free.
 When a step would end beyond a bound, it is taken anew to the instant at which the bound is reached (secant on the end
 of the implicit step); there velocities into the bound vanish, and what that costs in kinetic energy enters the ledger.
-A held row that would pull is let go from the start of the part. The number of parts of a step is bounded; past it, rows
-land: they are held from where they are, g reaches its bound at the end of the part, and their work enters the ledger.
+A held row that would pull is let go from the start of the part. Where another limit is met within that, and up to its
+instant the row does not leave its bound, its force changes sign later: it is held up to there. The number of parts of a
+step is bounded; past it, rows land: they are held from where they are, g reaches its bound at the end of the part, and
+their work enters the ledger.
 
 The solutions of one interval differ by little: each looks first for the limit that the one before has met, at its
 instant.
@@ -24,7 +26,7 @@ from ..model.parameters.joints import (
     LIMIT_WAY,
     MEET_INSTANT,
 )
-from .bounds import approach, first_bound, gap, hold_limit, look, release, standing
+from .bounds import approach, begin_part, first_bound, gap, held_till_then, hold_limits, look, release, standing
 from .correct import correct, fitting_loss
 from .ledger import book
 from .motion import advance
@@ -62,6 +64,7 @@ def step_with_limits(
     if foreseen:
         meeting, side, when, events = component.met, component.met_side, component.met_at, 1
     last, before = 0.0, 0.0
+    begin_part(link, W.joints)
     while True:
         redundant = loops or standing(link, W.joints)
         if when > 1e-13 * abs(h) or h < 0.0:
@@ -115,10 +118,12 @@ def step_with_limits(
                 meeting, when = -1, left
                 continue
             k, other, instant = first_bound(W, when)
-            if k >= 0 and k != meeting and events < LIMIT_EVENTS and progress.effort <= progress.hurry:
-                # Another one is passed before.
-                meeting, side, low, high, secants, events = k, other, 0.0, when, 0, events + 1
-                when = instant
+            if k >= 0 and k != meeting:  # another one is passed before
+                if held_till_then(W, k, other, instant) or events >= LIMIT_EVENTS or progress.effort > progress.hurry:
+                    link[k].side, low, high, secants = other, 0.0, left, 0  # holds, or lands
+                else:
+                    meeting, side, low, high, secants, events = k, other, 0.0, when, 0, events + 1
+                    when = instant
                 continue
             a, b = local[link[meeting].body[0]], local[link[meeting].body[1]]
             rate = approach(hinge[meeting], link[meeting].rows, side, a.v0, b.v0)
@@ -131,15 +136,14 @@ def step_with_limits(
                     component.met, component.met_side, component.met_at, component.met_within = meeting, side, when, h
                 left -= when
         solved, foreseen = 0.0, False
+        begin_part(link, W.joints)
         link[meeting].side = side
         correct(W, SPEEDS)
         if when <= MEET_INSTANT * abs(h):
             link[meeting].side = side  # the velocity that lets go is round-off: forces press it to its bound at once
         ledger.limited += fitting_loss(local, W.bodies, ledger)
         drop_impulses(W)
-        for k in range(W.joints):
-            if link[k].side != 0 and link[k].bounded == 0:
-                hold_limit(W.J.JOINT, hinge, link, k)
+        hold_limits(W)
         if left <= 1e-13 * h:
             return True
         meeting, when = -1, left

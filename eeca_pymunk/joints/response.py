@@ -14,7 +14,7 @@ from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.joint_steps import FULL_BEND, NO_BEND, STEP
-from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, Coupling, Workspace
+from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, GROOVE, Coupling, Workspace
 from ..model.parameters.joints import CONDENSED_PASSES, REDUNDANT_EPSILON, RESPONSE_PASSES, TAUT
 from .motion import move
 from .newton import assemble, back, decompose, first_iterate
@@ -22,30 +22,42 @@ from .rows import joint_rows, start_joint
 
 
 @nonallocating
+def taken_by(W: Workspace, k: int, c: int, full: bool, h: float) -> float:
+    """The part of a body's inertia that the force of joint k may take by its stiffness at most: the sum of row c of
+    STIFF, scaled by the roots of mobilities; of what only turns (not `full`), the diagonal alone."""
+    link, local = W.link[k], W.J.LOCAL
+    root = local[link.body[c // 3]].root[c % 3]
+    total = 0.0
+    for d in range(6):
+        if d == c or full:
+            total += abs(W.J.STIFF[c, d]) * local[link.body[d // 3]].root[d % 3]
+    return float(0.5 * abs(h) * total * root)
+
+
+@nonallocating
 def bend(W: Workspace, k: int, h: float) -> None:
     """Let joint k have the impulse of the whole step, so that its rows take their force along as they turn; none if it
     presses, and all that presses on one of its bodies would take more than TAUT of that body's `inertia`.
 
-    A full STIFF is at most six times its diagonal, so that what is left of the inertia of all bodies is positive.
+    What a full STIFF takes is bounded by the sums of its rows (Gershgorin), so that what is left of the inertia of all
+    bodies is positive. A groove pushes along where it turns: its STIFF has both signs, whatever its diagonal.
     """
     hinge, local = W.J.HINGE, W.J.LOCAL
     hinge[k].lam[0], hinge[k].lam[1] = hinge[k].total[0], hinge[k].total[1]
     kind = joint_rows(W, k, h, True)
-    times = 3.0 if kind == FULL_BEND else 0.5
-    pulls, slight = True, True
-    for c in range(6):
-        at = W.link[k].body[0] if c < 3 else W.link[k].body[1]
-        # What does not move adds nothing, and what only turns does so by its angle alone.
-        taken = W.J.STIFF[c, c] * local[at].mobility[c % 3] if kind == FULL_BEND or c % 3 == 2 else 0.0
-        pulls = pulls and taken <= 0.0
-        slight = slight and local[at].inertia[c % 3] - times * abs(h * taken) >= 1.0 - TAUT
+    full = kind == FULL_BEND
+    pulls, slight = W.link[k].kind != GROOVE, True
+    for c in range(6 if kind != NO_BEND else 0):
+        if full or c % 3 == 2:
+            at = W.link[k].body[c // 3]
+            pulls = pulls and W.J.STIFF[c, c] * local[at].mobility[c % 3] <= 0.0
+            slight = slight and local[at].inertia[c % 3] - taken_by(W, k, c, full, h) >= 1.0 - TAUT
     if kind == NO_BEND or not (pulls or slight):
         hinge[k].lam[0] = hinge[k].lam[1] = 0.0
         return
     for c in range(0 if pulls else 6):
-        at = W.link[k].body[0] if c < 3 else W.link[k].body[1]
-        if kind == FULL_BEND or c % 3 == 2:
-            local[at].inertia[c % 3] -= times * abs(h * W.J.STIFF[c, c]) * local[at].mobility[c % 3]
+        if full or c % 3 == 2:
+            local[W.link[k].body[c // 3]].inertia[c % 3] -= taken_by(W, k, c, full, h)
 
 
 @nonallocating

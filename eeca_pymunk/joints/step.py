@@ -13,6 +13,7 @@ from ..compiled import nonallocating
 from ..model.joint_steps import ELASTIC, HALVED, LINEAR, JointLedger
 from ..model.joints import APART, GIVES_WAY, LEFT_APART, RATCHET, Workspace
 from ..model.parameters.joints import NEARLY_HELD
+from .bounds import hold_limits, standing
 from .closing import close_joints, farthest
 from .correct import kinetic
 from .ladder import climb, limit_work
@@ -67,9 +68,13 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
             local[i].shift[c] = 0.0
     save(local, W.bodies)
     own = touched and close_joints(W, h, ledger)
-    if bounded:
+    stands = standing(W.link, W.joints)
+    if bounded or stands:
         compute_rows(W)
+    if bounded:
         bounded_targets(W, h)
+    if stands:
+        hold_limits(W)
     for k in range(W.joints):
         W.J.JOINT[W.link[k].joint].side = W.link[k].side  # where the ladder begins anew
     limit_work(W)

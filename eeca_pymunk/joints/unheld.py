@@ -64,7 +64,7 @@ def take_gain(W: Workspace, h: float, status: int, before: float) -> int:
     if part.closed > first.owed:
         gain = part.closed - first.owed
         taken = lock_energy(local, W.bodies, gain)
-        part.closed -= taken
+        close_ledger(local, W.bodies, part)  # anew, as a gain may be large beside what is left of it
         if gain - taken > 1e-9 * gain + 1e-12 * first.owed and supports_rest(local, W.bodies):
             status, stopped = LINEAR, True
     if status == LINEAR and not farthest(W) <= before + LINEAR_APART:

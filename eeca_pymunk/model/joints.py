@@ -118,6 +118,7 @@ class Coupling(Record):
     kind: int  # as `Joint.kind`
     body: Annotated[IntArray, 2]  # bodies a and b by their numbers in the component
     side: int  # as `Joint.side`, in the present step
+    let_go: int  # `side` of a limit at the start of the present part of the step, if it was let go since, else 0
     bounded: int  # 0 for rows that hold exactly; BOUNDED, PRESCRIBED or BOXED
     rows: int  # number of rows, and first unknown of their impulses
     first_row: int

@@ -100,6 +100,17 @@ def resolve(
     return worst
 
 
+@nonallocating
+def close_block(
+    problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, owed: float, exact: bool, OUT: Rows[Solved]
+) -> None:  # fmt: skip
+    """Lock the energy of impulses L, and report what they lose; V is computed from them again, without the round-off
+    of many sweeps."""
+    velocities(problem, L, FREE, V)
+    OUT[0].lock, OUT[0].owed = lock(problem, L, V, FREE, owed, exact)
+    OUT[0].restitution, OUT[0].friction = works(problem, L, V)
+
+
 @kernel
 def solve_block(
     problem: AnyProblem, L: FloatArray, V: FloatArray, owed: float, hasty: bool, OUT: Rows[Solved]
@@ -145,11 +156,6 @@ def solve_block(
         if m <= SMALL_BLOCK:
             first = 4 * BLOCK_SWEEPS
     worst = resolve(problem, L, V, FREE, first, rounds, last, drifts, tolerance, OUT)
-    # Velocities are computed again from the impulses, without the round-off of many sweeps.
-    velocities(problem, L, FREE, V)
-    scale, left = lock(problem, L, V, FREE, owed, exact)
-    OUT[0].restitution, OUT[0].friction = works(problem, L, V)
-    OUT[0].lock = scale
-    OUT[0].owed = left
     OUT[0].residual, OUT[0].tolerance = worst, tolerance
+    close_block(problem, L, V, FREE, owed, exact, OUT)
     return CONVERGED if worst <= tolerance else TRUNCATED

@@ -50,6 +50,23 @@ def works(problem: AnyProblem, L: FloatArray, V: FloatArray) -> tuple[float, flo
 
 
 @nonallocating
+def scale_to_lose(p: float, q: float, owed: float, exact: bool) -> tuple[float, float]:
+    """The scale s of impulses that lose D(s) = s p - s^2 q: see `lock`, which also tells what is returned."""
+    if not q > 0.0:
+        return 1.0, max(owed, 0.0)
+    if not exact and p - q >= owed:
+        return 1.0, 0.0
+    square = p * p - 4.0 * q * owed
+    if square < 0.0 or p <= 0.0:
+        s = max(0.5 * p / q, 0.0)
+        return s, max(owed - s * (p - s * q), 0.0)
+    large = 0.5 * (p + math.sqrt(square))
+    s = large / q
+    other = owed / large if large > 0.0 else 0.0
+    return (other if abs(other - 1.0) < abs(s - 1.0) else s), 0.0
+
+
+@nonallocating
 def lock(
     problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, owed: float, exact: bool
 ) -> tuple[float, float]:
@@ -73,21 +90,7 @@ def lock(
         t0 = tangent_rate(A, B, ROWS, FREE, i)
         p -= 0.5 * (lam * (ROWS[i].un + n0) + beta * (ROWS[i].ut + t0))
         q += 0.5 * (lam * (normal_rate(A, B, ROWS, V, i) - n0) + beta * (tangent_rate(A, B, ROWS, V, i) - t0))
-    if not q > 0.0:
-        return 1.0, max(owed, 0.0)
-    if not exact and p - q >= owed:
-        return 1.0, 0.0
-    left = 0.0
-    square = p * p - 4.0 * q * owed
-    if square < 0.0 or p <= 0.0:
-        s = max(0.5 * p / q, 0.0)
-        left = max(owed - s * (p - s * q), 0.0)
-    else:
-        large = 0.5 * (p + math.sqrt(square))
-        s = large / q
-        other = owed / large if large > 0.0 else 0.0
-        if abs(other - 1.0) < abs(s - 1.0):
-            s = other
+    s, left = scale_to_lose(p, q, owed, exact)
     if s != 1.0:
         for i in range(problem.m):
             L[i, 0] *= s

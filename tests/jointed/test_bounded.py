@@ -11,6 +11,9 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk.compiled import plain
+from eeca_pymunk.jointed.bounded import list_rows
+from eeca_pymunk.model.joints import PRESCRIBED
+from eeca_pymunk.rows.bounded import room_for_rows
 
 from .measures import angular_momentum, apart, energy, kinetic, momentum, moving
 from .test_taut import bridge
@@ -230,3 +233,22 @@ def test_boxes_that_lie_in_each_other_and_that_a_tank_pushes_are_solved(unit: fl
         assert report.iterations <= 18
         assert all(b.velocity == (0.0, 0.0) and b.angular_velocity == 0.0 for b in lying)
     assert tank.position.x > 1.0 * unit
+
+
+@pytest.mark.parametrize("spin", [0.0, 0.3])
+def test_a_motor_at_different_bounds_in_parts_of_a_step_is_given(spin: float) -> None:
+    """Inside its bounds it holds the speed of its target; where it has not, it was at its bounds in turn."""
+    space = pymunk.Space()
+    a, b = pymunk.Body(1.0, 1.0), pymunk.Body(1.0, 2.0)
+    motor = pymunk.SimpleMotor(a, b, 0.0)
+    motor.max_force = 5.0
+    space.add(a, b, motor)
+    stepper = ep.EECA(space)
+    stepper.step(0.1)
+    scene, J = stepper.event_loop.scene, stepper.event_loop.joints
+    J.HINGE[0].total[0], J.COUPLING[0].bounded = 0.2, PRESCRIBED
+    scene.PLACE[:2] = 0, 1
+    B = room_for_rows(1, 2)
+    list_rows(scene, J, B, 0, 0.1, np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 1.0 + spin]]))
+    assert B.ROWS[0].now == 0.2
+    assert (B.ROWS[0].low, B.ROWS[0].high) == ((-0.5, 0.5) if spin == 0.0 else (0.2, 0.2))

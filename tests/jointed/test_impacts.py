@@ -137,3 +137,25 @@ def test_what_is_conveyed_into_a_corner_keeps_out_of_it(elasticity: float, ways:
         assert report.converged
         assert abs(report.ledger.external) <= 1.1 * most
         assert min(disk.position) >= 0.5 - 1e-6
+
+
+@pytest.mark.parametrize("off", [0.0, 0.3])
+def test_an_impact_does_not_stop_a_spin_of_infinite_moment(off: float) -> None:
+    """A wheel of infinite moment, a body joined to it, and what falls on that body; with the pivot off its centre the
+    wheel works."""
+    space = pymunk.Space()
+    wheel, other, ball = pymunk.Body(1.0, math.inf), pymunk.Body(1.0, 1.0), pymunk.Body(1.0, 1.0)
+    wheel.angular_velocity, other.position = 1.0, (2.0, 0.0)
+    ball.position, ball.velocity = (2.0, 1.0), (0.0, -3.0)
+    for body in (wheel, other, ball):
+        shape = pymunk.Circle(body, 0.3)
+        shape.elasticity = 0.8
+        space.add(body, shape)
+    space.add(pymunk.PivotJoint(wheel, other, (off, 0.0), (off - 2.0, 0.0)))
+    stepper, hits = ep.EECA(space), 0
+    for _ in range(20):
+        report = stepper.step(1.0 / 60.0)
+        hits += report.impulse.size
+        assert wheel.angular_velocity == 1.0
+        assert off > 0.0 or abs(report.ledger.external) < 1e-13
+    assert hits > 0

@@ -181,6 +181,29 @@ def test_what_planks_answer_is_the_derivative_of_a_step(slack: float) -> None:
     assert np.abs(foreseen - seen).max() <= 1e-3 * np.abs(seen).max()
 
 
+@pytest.mark.parametrize("force", [50.0, 2000.0, -2000.0])
+def test_what_a_groove_answers_is_positive(force: float) -> None:
+    """It pushes across itself, whatever it turns to: impulses on its bodies do no negative work."""
+    space = pymunk.Space()
+    rail, bead = pymunk.Body(1.0, 0.1), pymunk.Body(1.0, 1.0)
+    bead.position = 0.5, 0.0
+    space.add(rail, bead, pymunk.GrooveJoint(rail, bead, (-5.0, 0.0), (5.0, 0.0), (0.0, 0.0)))
+    space.add(pymunk.DampedRotarySpring(rail, bead, 0.0, 1e-6, 0.0))
+    stepper = ep.EECA(space)
+    J = scratch(stepper)
+    J.TALLY.order = 2
+    bead.force, rail.force, rail.torque = (0.0, force), (0.0, -force), -0.5 * force
+    stepper.step(0.1)
+    assert ready(J, 0, 0.1, True)
+    S = np.empty((6, 6))
+    for i in range(6):
+        PUSH = np.zeros((2, 3))
+        PUSH[i // 3, i % 3] = 1.0
+        answer(J, 0, True, PUSH)
+        S[:, i] = PUSH.ravel()
+    assert np.linalg.eigvalsh(S + S.T).min() >= -1e-12
+
+
 @pytest.mark.parametrize("kind", [PIVOT, PIN])
 @pytest.mark.parametrize("turned", [0.0, 2.0])
 def test_taut_is_what_pulls_hard(kind: int, turned: float) -> None:

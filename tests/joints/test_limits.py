@@ -153,6 +153,46 @@ def test_a_limit_whose_gap_opens_first_is_found(speed: float) -> None:
     assert report.ledger.restitution == pytest.approx(0.5 * speed**2, rel=1e-6)
 
 
+def test_what_hangs_at_its_limit_is_held_in_the_shortest_step() -> None:
+    """The bound is met but for round-off, which a short step must not close: that would take any force."""
+    space = empty()
+    weight = body(space, 2.0, 0.5, (0.0, -1.0 + 5e-13))
+    space.add(pymunk.SlideJoint(space.static_body, weight, (0, 0), (0, 0), 0.0, 1.0))
+    stepper = run(space, 1 / 60, 1)
+    assert weight.velocity.length <= 1e-12
+    stepper.step(1e-7)
+    assert weight.velocity.length <= 1e-8
+
+
+def test_closing_a_groove_does_not_pass_its_end() -> None:
+    """The anchor is beside a groove that turns as it is drawn there, and next to its end."""
+    space = pymunk.Space()
+    rail, bead = pymunk.Body(1.0, 0.1), pymunk.Body(1.0, 1.0)
+    space.add(rail, bead, pymunk.GrooveJoint(rail, bead, (0.0, 0.0), (2.0, 0.0), (0.0, 0.0)))
+    bead.position = 1.9999, 0.2
+    stepper, apart = ep.EECA(space), 0.2
+    for _ in range(20):
+        assert stepper.step(1.0 / 60.0).converged
+        at = rail.world_to_local(bead.position)
+        assert at.x <= 2.0 + 1e-12
+        assert abs(at.y) < apart
+        apart = abs(at.y)
+
+
+def test_a_limit_that_would_pull_later_is_held_up_to_the_instant_of_another() -> None:
+    """A spring turns a falling body onto its lower limit, and would turn it off later; before that a rope holds it."""
+    space = pymunk.Space()
+    bob, ground = pymunk.Body(1.0, 1.0), space.static_body
+    bob.velocity = 0.0, -1.0
+    space.add(bob, pymunk.DampedSpring(ground, bob, (1.0, -0.04), (1.0, 0.0), 0.0, 1.0, 0.0))
+    space.add(pymunk.RotaryLimitJoint(ground, bob, 0.0, 1.0))
+    space.add(pymunk.SlideJoint(ground, bob, (0.0, 1.0), (0.0, 0.0), 0.0, 1.02))
+    stepper = run(space, 0.1, 1)
+    assert abs(bob.angle) < 1e-12
+    assert bob.position.y == pytest.approx(-0.02, abs=1e-12)
+    assert stepper.components.arrays.PROGRESS.effort < 1e5  # the two are not met in turn
+
+
 @pytest.mark.parametrize("joint", [pymunk.GearJoint, pymunk.RotaryLimitJoint])
 def test_a_joint_of_angles_that_nothing_turns_does_nothing(joint: type) -> None:
     """Between a body of infinite moment and a kinematic one that turns; others go on as without it."""

@@ -66,6 +66,9 @@ NEARLY_HELD = accuracy(1e-08, "of the component", "Error of elastic joints up to
 REPAID = accuracy(
     1e-3, "of the kinetic energy", "Gain of closing joints that an earlier step left apart, up to which it is locked."
 )
+JOINT_GAIN = round_off(
+    1e-10, "of the kinetic energy", "Gain of joints that hold in a step, above which it is taken from what moves."
+)
 TAUT = heuristic(
     0.5,
     "of a body's inertia",
@@ -74,6 +77,11 @@ TAUT = heuristic(
 )
 ARM_ITERATIONS = work(6, "iterations", "Iterations of the motion in which arms of contacts become those of its middle.")
 ARM_ERROR = round_off(1e-15, "of the component", "Error of the arms of contacts at which these iterations end.")
+MOTOR_OFF = round_off(
+    1e-9,
+    "of the speed, and of its bound",
+    "Speed of a bounded row off its target, inside its bounds, that is an error.",
+)
 BOUNDED_SWEEPS = work(30, "sweeps", "Sweeps over bounded joint rows and contacts.")
 STRAIGHT_CHAIN = round_off(
     1e-12, "of length and coordinates", "Slack of a chain of joints between fixed points up to which it cannot move."
