@@ -22,12 +22,13 @@ from .sweeps import sweep, velocities
 def excessive(L: FloatArray, m: int, IM: FloatArray, n: int, speed: float) -> bool:
     """Whether the impulses L of m contacts are beyond all that n bodies of such a speed need: larger by
     EXCESSIVE_IMPULSE than their momenta; not finite ones are, too. IM (n,): inverse masses."""
-    mass, largest = 0.0, 0.0
+    mass = 0.0
     for q in range(n):
         mass += 1.0 / IM[q]
     for i in range(m):
-        largest = max(largest, abs(L[i, 0]) + abs(L[i, 1]))
-    return not largest <= EXCESSIVE_IMPULSE * mass * speed
+        if not abs(L[i, 0]) + abs(L[i, 1]) <= EXCESSIVE_IMPULSE * mass * speed:
+            return True
+    return False
 
 
 @nonallocating
@@ -45,6 +46,8 @@ def unwedge(problem: Problem, L: FloatArray, V: FloatArray, FREE: FloatArray, to
     """Impulses L (m, 2) and velocities V (k, 3) of contacts that are wedged: without friction, which their rows lose;
     or gentle ones, if these are excessive for such a speed, too. FREE (k, 3): velocities without impulses. Returns how
     far from solved they are (velocity)."""
+    L[:] = 0.0
+    copy(V, FREE)
     worst = solve_wedged(as_columns(problem), L, V, tolerance, COLUMN_SWEEPS_AFTER)
     if excessive(L, problem.m, problem.IM, problem.n, speed):
         L[:] = 0.0

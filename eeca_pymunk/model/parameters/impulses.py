@@ -13,7 +13,8 @@ JAMMED = round_off(1e-09, "of A_nn", "Mobility along the impulse of a slipping c
 WEDGED = heuristic(
     0.01,
     "of the speed",
-    "Velocity that a solve leaves from which on contacts of jointed bodies count as wedged: without friction.",
+    "Velocity that a solve leaves, or part of its impulses that the energy lock takes, from which on contacts count as "
+    "wedged: without friction.",
 )
 PROXIMAL_DENSE = round_off(
     100000000.0,

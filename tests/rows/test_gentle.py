@@ -1,0 +1,80 @@
+"""Contacts that friction wedges, and impulses that nothing explains (`rows/gentle.py`)."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from eeca_pymunk.model.contacts import Problem
+from eeca_pymunk.rows.build import normal_rate
+from eeca_pymunk.rows.columns import as_columns, breach
+from eeca_pymunk.rows.gentle import excessive, unwedge
+from eeca_pymunk.rows.laws import solve_columns
+from eeca_pymunk.rows.sweeps import push
+
+from .block import Block
+
+
+def corner(unit: float) -> tuple[Problem, Block]:
+    """A particle of mass 2 in a right-angled corner, into which it moves, with mu = 1, as an interval that has not been
+    solved: targets 0."""
+    pose, velocity = np.zeros((2, 3)), np.zeros((2, 3))
+    velocity[0, :2] = -3.0 * unit, -1.0 * unit
+    block = Block(pose, velocity, np.array([0.5, 0.0]), np.zeros(2))
+    block.wall(0, (-1.0, 0.0), 0.0)
+    block.wall(0, (0.0, -1.0), 0.0)
+    block.solve(0.0, 1.0)
+    block.rows["target"], block.rows["wake"] = 0.0, np.inf
+    return Problem(block.A, block.B, block.rows, block.im, block.ii, pose, 1, 2), block
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+def test_a_corner_holds_what_moves_into_it_without_self_stress(unit: float) -> None:
+    """With mu = 1 impulses along the edges of both cones cancel out: any multiple of them may be added to a solution.
+    Without friction the solution is unique: the momenta 6 and 2."""
+    problem, block = corner(unit)
+    stress = 1e8 * unit
+    L = np.array([[6.0 * unit + stress, -stress], [2.0 * unit + stress, stress]])
+    V = block.velocity.copy()
+    push(problem, L, 1.0, V)
+    assert np.abs(V).max() <= 1e-6 * unit
+    speed = 3.0 * unit
+    assert excessive(L, 2, problem.IM, 1, speed)
+    left = unwedge(problem, L, V, block.velocity.copy(), 1e-13 * unit, speed)
+    assert left <= 1e-13 * unit
+    assert np.abs(L - [[6.0 * unit, 0.0], [2.0 * unit, 0.0]]).max() <= 1e-13 * unit
+    assert np.abs(V).max() <= 1e-13 * unit
+
+
+def test_excessive_impulses_are_not_finite_or_many_times_the_momenta() -> None:
+    inverse = np.array([0.5, 2.0])  # masses 2 and 1/2
+    for normal, expected in ((1e4 * 2.5 * 3.0 * 0.999, False), (1e4 * 2.5 * 3.0 * 1.001, True), (np.nan, True)):
+        assert excessive(np.array([[normal, 0.0]]), 1, inverse, 2, 3.0) == expected
+
+
+def test_walls_that_approach_each_other_get_gentle_impulses() -> None:
+    """No impulse keeps a body between two walls that close from both sides: without friction there is no solution
+    either. What is left gives the body no more than the speed of the walls."""
+    pose, velocity = np.zeros((3, 3)), np.zeros((3, 3))
+    velocity[1, 0], velocity[2, 0] = 1.0, -1.0
+    block = Block(pose, velocity, np.array([1.0, 0.0, 0.0]), np.zeros(3))
+    block.contacts += [(0, 1, -1.0, 0.0, 0.0, 0.0), (0, 2, 1.0, 0.0, 0.0, 0.0)]
+    block.solve(0.0, 0.0)
+    block.rows["target"], block.rows["wake"] = 0.0, np.inf
+    problem = Problem(block.A, block.B, block.rows, block.im, block.ii, pose, 1, 2)
+    L, V = np.full((2, 2), np.inf), velocity.copy()
+    unwedge(problem, L, V, velocity.copy(), 1e-13, 1.0)
+    assert np.isfinite(L).all()
+    assert np.abs(L).max() <= 1e4
+    assert abs(V[0, 0]) <= 1.0
+
+
+def test_an_inactive_contact_breaks_its_law_beyond_the_velocity_that_activates_it() -> None:
+    """A contact that is active from -1 on, at a speed of -3: broken by 2, and solved once it is active."""
+    problem, block = corner(1.0)
+    block.rows["wake"][0] = -1.0
+    L, V = np.zeros((2, 2)), block.velocity.copy()
+    columns = as_columns(problem)
+    assert breach(columns, L, V) == pytest.approx(2.0, rel=1e-15)
+    assert solve_columns(columns, L, V, 1e-13, 0, 20) <= 1e-13
+    assert min(normal_rate(problem.A, problem.B, problem.ROWS, V, i) for i in range(2)) >= -1e-13
