@@ -18,6 +18,7 @@ from ..model.parameters.intervals import (
     LARGE_SWEEPS,
     LARGE_SWEEPS_HIT,
     NORMAL_TURN,
+    SMALL_SWEEPS,
     STICK,
     TOUCH,
 )
@@ -115,8 +116,11 @@ def before_end(A: Scene, t: float) -> bool:
 
 
 @nonallocating
-def sweeps_of_large(t: float) -> int:
-    """Sweeps of a large island in an interval from instant t: fewer after a hit, which begins with good forces."""
+def sweeps_of(n: int, t: float) -> int:
+    """Sweeps of an island of n bodies in an interval from instant t: fewer after a hit on a large one, whose solve
+    begins with good forces."""
+    if n < LARGE_ISLAND:
+        return SMALL_SWEEPS
     return LARGE_SWEEPS if t == 0.0 else LARGE_SWEEPS_HIT
 
 

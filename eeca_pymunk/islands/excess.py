@@ -15,10 +15,10 @@ from ..contacts.interval import make_contacts, step_island
 from ..contacts.single import move_to
 from ..contacts.unmet import spend
 from ..model.contacts import ENDED
-from ..model.parameters.intervals import INTERVAL_RETRY, LARGE_ISLAND, REPAY_ROUND_OFF, SMALL_SWEEPS
+from ..model.parameters.intervals import INTERVAL_RETRY, REPAY_ROUND_OFF
 from ..model.scene import Scene
 from ..pairs.lists import mark_pair
-from .candidates import sweeps_of_large
+from .candidates import sweeps_of
 from .depths import times_too_long
 from .local import clear_places, local_island, number_bodies, open_contacts, own_contacts
 
@@ -79,8 +79,7 @@ def repay(A: Scene, root: int, t: float) -> None:
     clear_places(A, MINE, n)
     contacts = make_contacts(len(found), len(isle.WHO))
     VN, OUT, owed = contacts.VN, contacts.OUT, max(-A.RESTING[root].lost, 0.0)
-    sweeps = SMALL_SWEEPS if n < LARGE_ISLAND else sweeps_of_large(start)
-    m = step_island(A, isle, contacts, n, s, sweeps, 0.0, owed, 0.0)
+    m = step_island(A, isle, contacts, n, s, sweeps_of(n, start), 0.0, owed, 0.0)
     spend(A, 2 * len(found), m, OUT[0].sweeps, OUT[0].direct)
     A.COUNT.solved += n
     A.COUNT.direct += OUT[0].direct

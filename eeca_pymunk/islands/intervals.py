@@ -17,7 +17,7 @@ from ..model.bodies import MOVED
 from ..model.contacts import Problem
 from ..model.islands import Island, IslandContacts
 from ..model.parameters.events import RESOLUTION
-from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, LARGE_ISLAND, SMALL_SWEEPS
+from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES
 from ..model.scene import Scene
 from ..model.step import AGAIN, CONTACTS, DONE, PUSHES_FULL
 from ..rows.build import rates
@@ -29,7 +29,7 @@ from .candidates import (
     interval_within_way,
     pairs_within,
     stick_time,
-    sweeps_of_large,
+    sweeps_of,
     travel_bound,
 )
 from .depths import driven, times_too_long
@@ -94,7 +94,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
     if COUNT.together > 0:
         for q in range(k):
             least = max(least, travel_bound(A, WHO[q], h))
-    sweeps = SMALL_SWEEPS if n < LARGE_ISLAND else sweeps_of_large(t)
+    sweeps = sweeps_of(n, t)
     m = 0
     with_supports = bodies_with_supports(A, isle, n)
     payable = math.inf

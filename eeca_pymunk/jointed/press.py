@@ -16,7 +16,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..contacts.targets import target
-from ..islands.candidates import before_end, sweeps_of_large
+from ..islands.candidates import before_end, sweeps_of
 from ..model.contacts import JointedProblem
 from ..model.joints import Joints
 from ..model.parameters.impulses import WEDGED
@@ -102,7 +102,7 @@ def press(
     if not exactly:
         rounds = OUTER_PART if before_end(A, interval.t + h) else OUTER_MANY
         if n >= LARGE_ISLAND:
-            most = sweeps_of_large(interval.t)
+            most = sweeps_of(n, interval.t)
     # Where many contacts do not come to an end, joints come near enough until the last step of the components.
     if J.PROGRESS.effort > J.PROGRESS.budget:
         rounds, most = OUTER_PART, min(most, PRESS_SWEEPS)
