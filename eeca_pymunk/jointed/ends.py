@@ -45,16 +45,17 @@ def under_way(A: Scene, root: int) -> bool:
 
 @nonallocating
 def take_back(A: Scene, root: int) -> None:
-    """Forget the contacts of the interval that an island has begun."""
-    c = 0
-    while c < A.COUNT.pushes:
+    """Forget the contacts of the interval that an island has begun. The others keep their order: those of an island,
+    and of a pair, are next to each other."""
+    kept = 0
+    for c in range(A.COUNT.pushes):
         if A.PUSHED_BY[c].root == root:
             mark_pair(A, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0)
-            last = A.COUNT.pushes - 1
-            A.PUSHED[c], A.PUSHED_BY[c] = A.PUSHED[last], A.PUSHED_BY[last]
-            A.COUNT.pushes = last
         else:
-            c += 1
+            if kept < c:
+                A.PUSHED[kept], A.PUSHED_BY[kept] = A.PUSHED[c], A.PUSHED_BY[c]
+            kept += 1
+    A.COUNT.pushes = kept
 
 
 @kernel

@@ -11,7 +11,9 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk.compiled.records import kind_of, zeros
+from eeca_pymunk.jointed.ends import take_back
 from eeca_pymunk.jointed.ledger import account_component
+from eeca_pymunk.model.contacts import Pair, Pushed
 from eeca_pymunk.model.joint_steps import JointLedger
 from eeca_pymunk.model.step import Step
 
@@ -119,6 +121,21 @@ def test_what_a_limit_stops_brings_no_work_from_outside(closed: float, work: flo
     account_component(scene, joints, 0)
     assert (scene.PAR.external, scene.PAR.restitution) == (work, loss)
     assert (joints.STEPPED[0].closed, joints.STEPPED[0].limited) == (0.0, 0.0)
+
+
+def test_contacts_of_an_island_stay_together_as_another_interval_is_taken_back() -> None:
+    """Contacts that are solved again up to a cut take the rows of those they replace, one after another."""
+    roots = (5, 7, 5, 7, 7, 2, 2)
+    pairs, pushes = zeros(len(roots), kind_of(Pair)), zeros(len(roots), kind_of(Pushed))
+    scene = SimpleNamespace(
+        PUSHED_BY=pairs, PUSHED=pushes, COUNT=SimpleNamespace(pushes=len(roots)), LIST=zeros(0, kind_of(Pair))
+    )
+    for c, root in enumerate(roots):
+        pairs[c].root, pairs[c].a, pushes[c].normal = root, c, float(c)
+    take_back(scene, 5)
+    left = range(scene.COUNT.pushes)
+    assert [int(pairs[c].root) for c in left] == [7, 7, 7, 2, 2]
+    assert [(int(pairs[c].a), pushes[c].normal) for c in left] == [(c, float(c)) for c in (1, 3, 4, 5, 6)]
 
 
 def test_ledger_closes_where_joints_contradict_each_other() -> None:
