@@ -18,7 +18,7 @@ import pymunk
 from ..layout import NOW
 from ..rehearsing import approach, changed
 from ..transfer import TURNS
-from . import private, private_joints, private_shapes
+from . import private, private_joints, private_shapes, private_versions
 from .decisions import Decisions, Rules
 from .edits import typings
 from .hearing import Hearing
@@ -45,7 +45,7 @@ class Rehearsal:
 
     def __init__(self, world: World) -> None:
         self.world, self.space = world, world.space
-        self._start, self._known = np.zeros_like(world.START), np.zeros_like(world.START)
+        self._start, self._known = np.zeros((2, *world.START.shape))
         self._approach = approach.bind(world.STATES, world.WALK, world.EXTRA, world.BODY, world.ENDS, self._start)
         self._lengths = 0.0, 0.0, 0.0, 1.0  # dt, gravity, factor of half a step's damping
         # Whether there are changes by begin and pre_solve, and changes by post_solve and separate; the last stage.
@@ -64,11 +64,18 @@ class Rehearsal:
     def _differ(self) -> list[Callable[[], int]]:
         return [changed.bind(self.world.STATES, self._known, table) for table in self.world.CHANGES]
 
-    def forget(self) -> None:
-        """Forget earlier steps, and what handlers may hear."""
-        self._hearing, self._unheard, self._later = None, False, 0
+    def forget(self, reshaped: bool) -> None:
+        """Forget earlier steps, and, if shapes have other sizes or places, what handlers may hear."""
+        if reshaped:
+            self._hearing = None
+        self._unheard, self._later = False, 0
         self._changed, self._recent, self._ignores = [False, False], 0, True
         self.world.CHANGES.fill(0.0)
+
+    def listen(self) -> None:
+        """Forget what handlers may hear, if there are new ones."""
+        if self._hearing is not None and self._hearing.handled != private_versions.handled(self.space):
+            self._hearing, self._unheard, self._later = None, False, 0
 
     def go_on(self, earlier: Rehearsal) -> None:
         """Take over what functions have done in a rehearsal of another world of the space."""
@@ -142,8 +149,11 @@ class Rehearsal:
         hooks = self.world.hooks
         if hooks.none_within_steps():
             private.step_without_end(self.space, dt)
+        elif hooks.joints is None:
+            with hooks.silent:
+                private.step_without_end(self.space, dt)
         else:
-            with hooks.silent(), self._silent_joints(hooks.joints):
+            with hooks.silent, self._silent_joints(hooks.joints):
                 private.step_without_end(self.space, dt)
 
     def _is_unheard(self, dt: float) -> bool:
@@ -195,11 +205,8 @@ class Rehearsal:
             ]
 
     @contextmanager
-    def _silent_joints(self, joints: JointRows | None) -> Iterator[None]:
+    def _silent_joints(self, joints: JointRows) -> Iterator[None]:
         """Within this block `pre_solve` of constraints is wrapped, and their other functions are not called."""
-        if joints is None:
-            yield
-            return
         mute = [item for item in joints.calling if item.pre_solve is None or item.a.space is None]
         with ExitStack() as held:
             if joints.partners.outside:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from functools import cached_property
+from functools import cache, cached_property, partial
 from typing import Any
 
 import pymunk
@@ -105,6 +105,8 @@ class World(Crossing):
         self._seen = [self._edits[0]]
         self._known = self._edits.in_place
         self.collisions = bool(private.handlers(self.space))
+        if "rehearsal" in self.__dict__:
+            self.rehearsal.listen()
         self._forget_rules()
         self.hooks = Hooks(self.space, self.bodies, self.joints, *self._functions)
         self.hooked = self.collisions or self.hooks.some or self.damping == 0.0
@@ -140,7 +142,7 @@ class World(Crossing):
         centred: BoolArray = (self.LINK["vertices"] == 1) & ~self.VERTEX[self.LINK["first"], :2].any(axis=1)
         return centred
 
-    @property
+    @cached_property
     def carried(self) -> int:
         """Number of shapes of bodies that are not static."""
         if len(self.shapes) == len(self.records):
@@ -156,9 +158,9 @@ class World(Crossing):
         return private.pointers(body for body, count in shape_counts(self.bodies, self.records).items() if count)
 
     @cached_property
-    def empty(self) -> Details:
-        """The arrays of a report without contacts."""
-        return nothing(self.bodies.items)
+    def empty(self) -> Callable[[], Details]:
+        """Function that returns the arrays of a report without contacts."""
+        return cache(partial(nothing, self.bodies.items))
 
     def stale(self, contents: tuple[int, ...]) -> set[Any] | None:
         """Shapes and bodies whose records may be out of date: edited, in the space or outside, or bodies of shapes that
@@ -177,7 +179,7 @@ class World(Crossing):
         if found is not None:
             self.patches += 1
             if "rehearsal" in self.__dict__:
-                self.rehearsal.forget()
+                self.rehearsal.forget(found.reach or found.moved)
             self._seen[0] = self._edits[0]
             if self.current():
                 self._known = self._edits.in_place
