@@ -53,8 +53,8 @@ class Rehearsal:
         self._wrapped: list[tuple[Any, str, Any, Any]] = []
         self._functions: list[tuple[Any, ...]] = []
         self.failure: BaseException | None = None
-        self.decided, self._ignores = False, True
-        self.left_out, self._without = False, 0
+        self.decided, self.left_out, self._ignores, self._without = False, False, not world.undecided, 0
+        self._sync: Sync | None = None  # of the last step
         # Whether the last step called nothing for certain; number of steps for which that is not asked again.
         self._unheard, self._later = False, 0
         self._hearing: Hearing | None = None
@@ -71,6 +71,10 @@ class Rehearsal:
         self._unheard, self._later = False, 0
         self._changed, self._recent, self._ignores = [False, False], 0, True
         self.world.CHANGES.fill(0.0)
+
+    def is_silent(self) -> bool:
+        """Whether nothing holds that functions have decided, and some steps in a row, all EECA's, called none."""
+        return self._without >= _LATER and self._unheard and self._sync is not None and self._sync.is_ours()
 
     def listen(self) -> None:
         """Forget what handlers may hear, if there are new ones."""
@@ -111,14 +115,14 @@ class Rehearsal:
         status = self._approach(*self._lengths)
         if status < 0:
             return status
-        self.failure, self.decided, self._stage = None, False, -1
+        self.failure, self.decided, self._stage, self._sync = None, False, -1, sync
         if True in self._changed:
             world.CHANGES.fill(0.0)
             self._changed = [False, False]
         if self._later > 0:
             self._later -= 1
         else:
-            self._unheard = sync is not None and sync.is_ours() and self._is_unheard(dt)
+            self._unheard = sync is not None and sync.goes_on() and self._is_unheard(dt)
             self._later = 0 if self._unheard else _LATER
         self.left_out = self._unheard and sync is not None and not sync.were_read() and self._without < _RENEW
         if self.left_out:
@@ -147,9 +151,7 @@ class Rehearsal:
 
     def _step(self, dt: float) -> None:
         hooks = self.world.hooks
-        if hooks.none_within_steps():
-            private.step_without_end(self.space, dt)
-        elif hooks.joints is None:
+        if hooks.joints is None or hooks.none_within_steps():
             with hooks.silent:
                 private.step_without_end(self.space, dt)
         else:
@@ -167,8 +169,7 @@ class Rehearsal:
 
     def make_up(self) -> None:
         """Take the step of pymunk that was left out, for its arbiters, unless the space has other bodies now."""
-        world = self.world
-        present = world.bodies.gather()
+        world, present = self.world, self.world.bodies.gather()
         if present is None:
             return
         np.copyto(world.STATES[NOW], self._start)

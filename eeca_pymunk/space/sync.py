@@ -112,6 +112,7 @@ class Sync:
         self._new = True  # bodies and joints may be new, with corrections and impulses of other steps of pymunk
         self.renews = False
         self.stamp = -1
+        self._before = past.stamp if past is not None and world.undecided else -1
 
     def reindexes(self, dt: float, status: int) -> bool:
         """Whether reindexing is enough for this step. Conditions:
@@ -178,6 +179,10 @@ class Sync:
     def is_ours(self) -> bool:
         """Whether pymunk has taken no step of its own since the last EECA step."""
         return self._timestamp() == self.stamp
+
+    def goes_on(self) -> bool:
+        """The same where a space was read anew since: for handlers, if they were silent before."""
+        return self._timestamp() in (self.stamp, self._before)
 
     def rest(self, dt: float) -> None:
         """Take a rest step, without functions of bodies; all bodies must have velocity 0, and may get velocities of

@@ -52,6 +52,7 @@ class World(Crossing):
         rules: decisions of collision handlers about pairs of rows of SHAPE in this step.
         frictionless: whether friction, also that of handlers, is left out.  lacks_friction: and there is some.
         joints: the constraints of the space, None if it has none.
+        undecided: whether it was read after steps that called no handlers, and nothing was edited in place meanwhile.
         read_at: `edits.clock` when shapes and bodies were read.
         patches: number of patches so far.  packed: the arrays of the rows, and the kernel that writes them.
         objects_read: number of bodies, shapes and constraints read from pymunk for this world; others were known.
@@ -75,6 +76,7 @@ class World(Crossing):
         self.records: Records
         self.records, count = records_of(space, bodies, {} if known is None else known.records, stale or ())
         self.objects_read = bodies.fresh + count
+        self.undecided = past is not None and not past.edited() and past.is_silent()
         self.memory: SceneMemory = SceneMemory() if past is None else past.memory
         self.frictionless = "friction" in ignore
         self.lacks_friction = self.frictionless and has_friction([s for s, r in self.records.items() if r is not None])
@@ -112,6 +114,10 @@ class World(Crossing):
         self.hooked = self.collisions or self.hooks.some or self.damping == 0.0
         self.plain = not self.hooked and self.joints is None
         self.current = private.watch(self.space, self._edits, self._seen)
+
+    def is_silent(self) -> bool:
+        """Whether collision handlers have not been called of late, and nothing holds that they have decided."""
+        return "rehearsal" in self.__dict__ and not self.rules.some and self.rehearsal.is_silent()
 
     def _forget_rules(self) -> None:
         if self.rules.some:

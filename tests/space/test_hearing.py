@@ -71,6 +71,14 @@ def played(
         if step[0] == 150:
             for shape in space.shapes:
                 shape.collision_type = (shape.collision_type + 1) % 10
+        if step[0] % 40 == 20:  # comes and goes
+            extra = pymunk.Body(1.0, 50.0)
+            extra.position, extra.velocity = (200.0, 20.0 + step[0] / 2), (100.0, -50.0)
+            disk = pymunk.Circle(extra, 5.0)
+            disk.elasticity, disk.collision_type = 0.5, step[0] // 40
+            space.add(extra, disk)
+        elif step[0] % 40 == 0 and step[0] > 0:
+            space.remove(extra, disk)
         stepper.step(DT)
         world = stepper._world
         left_out += world is not None and world.rehearsal.left_out
