@@ -102,8 +102,9 @@ class Sides:
     that have not changed and are near where the last step left them (see `transfer.take`), whatever their new rows are.
     Kinematic bodies with such shapes only have not been moved: what overlaps them is not lifted for nothing."""
 
-    def __init__(self, world: World, loop: EventLoop, sided: bool) -> None:
-        self._sided, self._known = sided, loop.sides.copy() if sided else _NO_SIDES
+    def __init__(self, world: World, known: Rows[Side] | None) -> None:
+        sided = known is not None
+        self._sided, self._known = sided, _NO_SIDES if known is None else known.copy()
         row, records = world.WALK[BODY_ROW].tolist(), world.records
         shapes = enumerate(zip(world.shapes, world.owner.tolist(), strict=True))
         # Without sides only kinematic bodies matter, whose rows come after those of dynamic ones.
@@ -143,17 +144,21 @@ class Sides:
         changed = {i for place, i in enumerate(owner) if place not in same} if kept else kept
         at = [i for i in kept if rows[i] >= 0 and (i not in changed if rows[i] >= world.dynamic else self._sided)]
         if at:
-            world.STATES[LEFT, at, :3] = world.state[at, :3]
             nudged = {i for i, way in ways.values() if way > 0.0}
-            world.BODY["due"][[rows[i] for i in at]] = [NUDGED if i in nudged else ANEW for i in at]
+            left, present, due = world.STATES[LEFT], world.state, world.BODY["due"]
+            for i in at:  # one by one: for few bodies numpy's indices take several times as long
+                left[i, :3] = present[i, :3]
+                due[rows[i]] = NUDGED if i in nudged else ANEW
         if self._sided and loop.thin:
             keep_sides(loop.table, self._known, np.array(of, np.int64))
 
 
 def sides_of(world: World, loop: EventLoop) -> Sides | None:
     """The remembered sides, None if there are none, nor a kinematic body."""
-    sided = loop.thin and bool((loop.sides["key"] > 0).any())
-    return Sides(world, loop, sided) if sided or len(world.BODY) - 1 > world.dynamic else None
+    known = loop.sides if loop.thin else None
+    if known is not None and not (known["key"] > 0).any():
+        known = None
+    return None if known is None and len(world.BODY) - 1 <= world.dynamic else Sides(world, known)
 
 
 def _outline(record: Record | None) -> object:

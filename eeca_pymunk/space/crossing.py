@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -23,7 +23,6 @@ from ..layout import (
     LEFT,
     NOW,
     PULL,
-    PUSH_TWIST,
     PUSH_X,
     SPEED,
     STATE_COLUMNS,
@@ -37,7 +36,7 @@ from . import private_batch
 from .bodies import STATE_FIELDS, Bodies
 
 _F = batch.BodyFields
-_FORCES = _F.FORCE | _F.TORQUE
+_FORCES = {0: _F.FORCE | _F.TORQUE}
 # Fields by the bit TURNS of a step's status: without or with angles and spins.
 _WHOLE = {0: _F.POSITION | _F.VELOCITY, TURNS: _F.POSITION | _F.ANGLE | _F.VELOCITY | _F.ANGULAR_VELOCITY}
 _SPEEDS = {0: _F.VELOCITY, TURNS: _F.VELOCITY | _F.ANGULAR_VELOCITY}
@@ -77,6 +76,7 @@ class Crossing:
     _scatter: _Writers
     _scatter_still: _Writers
     _scatter_speed: _Writers
+    _pulls: _Writers
 
     def __init__(self, space: pymunk.Space, past: Crossing | None) -> None:
         """Room for the bodies of a space, and their state now in STATES[NOW]. `past`: of the same space before, which
@@ -95,12 +95,13 @@ class Crossing:
         self.WALK[KNOWN] = self.WALK[FOUND]
         self._scatter = _Writers(self, _WHOLE, END, None if past is None else past._scatter)
         self._scatter_still = _Writers(self, _WHOLE, STILL, None if past is None else past._scatter_still)
+        self._pulls = _Writers(self, _FORCES, PULL, None if past is None else past._pulls)
         self._scatter_speed = _Writers(self, _SPEEDS, SPEED, None if past is None else past._scatter_speed)
 
     @cached_property
     def reset_forces(self) -> Callable[[], None]:
         """Function that writes the forces at the end of the step."""
-        return self.writer(_FORCES, PULL)
+        return self._pulls[0]
 
     def writer(self, fields: batch.BodyFields, start: int, last: Any = None) -> Callable[[], None]:
         """Function that writes the fields from the table that begins at `start` N in ENDS; `last`: one that did so
@@ -158,9 +159,21 @@ class Crossing:
         now: FloatArray = self.STATES[NOW]
         return now
 
-    def set_accelerations(self, change: FloatArray, dt: float) -> None:
-        """Set accelerations of the bodies with velocity functions: velocities change by (k, 3) within dt."""
-        self.EXTRA[self.bodies.velocity_hooks, PUSH_X : PUSH_TWIST + 1] = change / dt
+    def set_accelerations(self, change: Sequence[tuple[float, float, float]], dt: float) -> None:
+        """Set accelerations of the bodies with velocity functions: their velocities and spins change so within dt."""
+        # One by one: for few bodies numpy's indices take several times as long.
+        memory = self._extra
+        for at, (x, y, spin) in zip(self._pushed, change, strict=True):
+            memory[at], memory[at + 1], memory[at + 2] = x / dt, y / dt, spin / dt
+
+    @cached_property
+    def _extra(self) -> memoryview[float]:
+        return self.EXTRA.data.cast("B").cast("d")
+
+    @cached_property
+    def _pushed(self) -> list[int]:
+        """The places in EXTRA of the accelerations of the bodies with velocity functions."""
+        return [row * EXTRA_COLUMNS + PUSH_X for row in self.bodies.velocity_hooks.tolist()]
 
     def write_whole(self) -> int:
         """Write the end of the step to ENDS, with forces and angles in any case; returns its status bits."""

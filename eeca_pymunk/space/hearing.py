@@ -15,6 +15,7 @@ import numpy as np
 import pymunk
 
 from ..arrays import FloatArray
+from ..layout import BODY_ROW
 from ..rehearsing import HEARD_COLUMNS, nears
 from . import private, private_arbiters, private_shapes, private_versions
 from .edits import typings
@@ -31,13 +32,13 @@ class Hearing:
     """The pairs of a world that have handlers, sensors included.
 
     Attributes:
-        typings: `edits.typings` when they were found.
+        typings: `edits.typings` when they were found.  handled: the pairs of types that had handlers.
     """
 
     def __init__(self, world: World) -> None:
         self._space, self.typings = world.space, typings()
-        self._handled = private_versions.handled(world.space)
-        pairs = self._pairs(list(world.space.shapes))
+        self.handled = private_versions.handled(world.space)
+        pairs = self._pairs(list(world.records))
         place = {shape: k for k, shape in enumerate(dict.fromkeys(shape for pair in pairs or () for shape in pair))}
         heard = [_heard(world, shape) for shape in place]
         self._nears: Callable[[float, float], int] | None = None  # None if they are many, or a body is not in the space
@@ -54,7 +55,7 @@ class Hearing:
         for shape in shapes:
             of.setdefault(shape.collision_type, []).append(shape)
         found: list[tuple[pymunk.Shape, pymunk.Shape]] = []
-        for kinds in self._handled:
+        for kinds in self.handled:
             one, two = (shapes if kind is None else of.get(kind, []) for kind in kinds)
             if len(found) + len(one) * len(two) > _MOST:
                 return None
@@ -69,19 +70,25 @@ class Hearing:
         """Whether pymunk remembers that a pair has touched."""
         found = {private_arbiters.kinds(arbiter) for arbiter in private.raw_arbiters(self._space)}
         turned = {(b, a) for a, b in found}
-        return any(one in (None, a) and two in (None, b) for a, b in found | turned for one, two in self._handled)
+        return any(one in (None, a) and two in (None, b) for a, b in found | turned for one, two in self.handled)
 
 
 def _heard(world: World, shape: Any) -> tuple[float, ...] | None:
     """The row of HEARD of a shape, see `rehearsing.nears`; None if its body is not in the space."""
-    row, record = world.bodies.row.get(shape.body), world.records[shape]
-    points = private_shapes.outline(shape) if record is None else record.vertices
+    record = world.records[shape]
+    if record is None or record.outside:
+        body, points, rounding = shape.body, private_shapes.outline(shape), shape.radius
+    else:
+        body, points, rounding = record.body, record.vertices, record.numbers[0]
+    row = world.bodies.row.get(body)
     if row is None or points is None:
         return None
-    radius = _WIDER * shape.radius
-    if not world.bodies.static[row]:
+    radius = _WIDER * rounding
+    if world.WALK[BODY_ROW, row] >= 0:
         return row, 0.0, 0.0, 0.0, 0.0, 0.0, _WIDER * max([math.hypot(x, y) for x, y in points]) + radius
-    xs, ys = zip(*[shape.body.local_to_world(point) for point in points], strict=True)
+    at, angle = body.position, body.angle
+    c, s = math.cos(angle), math.sin(angle)
+    xs, ys = [at.x + c * x - s * y for x, y in points], [at.y + s * x + c * y for x, y in points]
     left, right, bottom, top = min(xs), max(xs), min(ys), max(ys)
     middle = 0.5 * (left + right), 0.5 * (bottom + top)
     return -1.0, *middle, 0.5 * (right - left), 0.5 * (top - bottom), radius, radius

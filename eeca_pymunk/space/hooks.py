@@ -11,10 +11,9 @@ Velocity and position functions are called with the real dt. The order of the ot
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import AbstractContextManager, nullcontext
+from functools import cached_property
 from typing import Any
 
-import numpy as np
 import pymunk
 
 from ..arrays import FloatArray
@@ -52,7 +51,7 @@ class Hooks:
         the space, with a warning."""
         if self.joints is not None:
             collisions = bool(private.handlers(self.space))
-            with private.locked(self.space), private_joints.time_step(self.space, dt):
+            with private.locked(self.space), private_joints.TimeStep(self.space, dt):
                 for item in self.joints.before:
                     if not collisions or item.a.space is None:
                         assert item.pre_solve is not None
@@ -60,7 +59,7 @@ class Hooks:
 
     def after(self, dt: float) -> None:
         """Call `post_solve` of the constraints, then the delayed ones of collisions."""
-        with private.locked(self.space), private_joints.time_step(self.space, dt):
+        with private.locked(self.space), private_joints.TimeStep(self.space, dt):
             for item in () if self.joints is None else self.joints.after:
                 assert item.post_solve is not None
                 item.post_solve(item, self.space)
@@ -76,18 +75,25 @@ class Hooks:
 
         return call
 
-    def velocity_changes(self, dt: float) -> FloatArray:
-        """(k, 3) changes of velocity and spin by the velocity functions; the bodies are restored."""
-        items = [self.bodies.items[row] for row in self.bodies.velocity_hooks]
-        with private_joints.time_step(self.space, dt):
-            found = private_functions.velocity_changes(items, self.space.gravity, self.space.damping**dt, dt)
-        return np.array(found)
+    @cached_property
+    def _steered(self) -> list[pymunk.Body]:
+        return [self.bodies.items[row] for row in self.bodies.velocity_hooks.tolist()] if self.steered else []
+
+    @cached_property
+    def _moved(self) -> list[pymunk.Body]:
+        return [self.bodies.items[row] for row in self.bodies.position_hooks.tolist()] if self.moved else []
+
+    def velocity_changes(self, dt: float) -> list[tuple[float, float, float]]:
+        """Changes of velocity and spin by the velocity functions; the bodies are restored."""
+        space = self.space
+        with private_joints.TimeStep(space, dt):
+            return private_functions.velocity_changes(self._steered, space.gravity, space.damping**dt, dt)
 
     def positions(self, state: FloatArray, end: FloatArray, dt: float) -> None:
         """Call the position functions on `state` (N, 9) with the velocity that leads to `end` (N, 9) within dt, and
         write their results to `end`."""
         ways = self.bodies.centers(end) - self.bodies.centers(state)
-        items = [self.bodies.items[row] for row in self.bodies.position_hooks]
+        items = self._moved
         # A rehearsal leaves corrections of overlaps that this step did not have; `update_position` would apply them.
         private_shapes.forget_corrections(private.pointers(items))
         for row, body in zip(self.bodies.position_hooks, items, strict=True):
@@ -99,14 +105,11 @@ class Hooks:
                 # A rehearsal of collisions has moved the body as pymunk does.
                 body.angle = float(state[row, ANGLE])
                 body.position = tuple(state[row, POSITION])
-            with private_joints.time_step(self.space, dt):
+            with private_joints.TimeStep(self.space, dt):
                 function(body, dt)
             end[row, POSITION], end[row, ANGLE] = body.position, body.angle
 
-    def silent(self) -> AbstractContextManager[None]:
+    @cached_property
+    def silent(self) -> private_functions.Without:
         """Within this block pymunk does not call velocity and position functions."""
-        if not self.some:
-            return nullcontext()
-        items = self.bodies.items
-        steered, moved = ([items[i] for i in at] for at in (self.bodies.velocity_hooks, self.bodies.position_hooks))
-        return private_functions.without(steered, moved)
+        return private_functions.Without(self._steered, self._moved)

@@ -53,7 +53,9 @@ class JointRows(Listing):
         others = [body for body in self.bodies if body not in row]
         self.partners: Partners = Partners(tuple(others), space, None if past is None else past.partners)
         self._row_of = {**row, **{body: n + i for i, body in enumerate(others)}}
-        if past is not None:
+        if past is not None and self.items == past.items:
+            self._memory[:] = past._memory
+        elif past is not None:
             here = [j for j, item in enumerate(self.items) if item in past.row]
             records(self.joint)[here] = records(past.joint)[[past.row[self.items[j]] for j in here]]
         self.joint["body"] = np.array([self._row_of[body] for body in self.bodies], np.int64)[self.ends]

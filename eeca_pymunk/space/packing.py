@@ -117,7 +117,8 @@ def records_of(
 
 def shape_counts(bodies: Bodies, records: Records) -> dict[Any, int]:
     """The number of shapes of each body that is not static."""
-    count = dict.fromkeys((body for body, static in zip(bodies.items, bodies.static, strict=True) if not static), 0)
+    still = bodies.static.tolist()
+    count = dict.fromkeys((body for body, rests in zip(bodies.items, still, strict=True) if not rests), 0)
     for shape, record in records.items():
         if (body := shape.body if record is None else record.body) in count:
             count[body] += 1

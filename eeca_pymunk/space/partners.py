@@ -9,14 +9,15 @@ from __future__ import annotations
 
 import math
 import struct
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 import pymunk
 from pymunk import batch
 
-from ..arrays import IntArray
+from ..arrays import FloatArray, IntArray
 from ..compiled.records import over, records
 from ..errors import NotFiniteError
 from ..model.bodies import Body
@@ -46,26 +47,32 @@ class Partners:
             before = {body: i for i, body in enumerate(past.items)}
             there = [before.get(body, -1) for body in self.items]
             self._known = [past._known[i] if i >= 0 else None for i in there]
-            if before:
+            if self.items == past.items:
+                self._memory[:] = past._memory
+            elif before:
                 records(self.PARTNER)[:] = records(past.PARTNER)[there]  # those that are new are written below
         self.still: IntArray = np.array([body.body_type == pymunk.Body.STATIC for body in self.items], np.int64)
         # Moved static bodies of the space are found where the states of all its bodies are read.
         self.outside = [i for i, body in enumerate(self.items) if body.space is not space]
         self.changed = self._read(range(len(self.items)))
-        # Motions of the bodies outside, with room for one more, and those of the last step with `edits.clock`.
-        self._motions = np.zeros(6 * (len(self.outside) + 1))
-        self._gather = private_batch.reader_of([self.items[i] for i in self.outside], _FIELDS, self._motions)
-        self._last: tuple[bytes, int] = b"", -1
+        self._last: tuple[bytes, int] = b"", -1  # motions of the bodies outside in the last step, and `edits.clock`
 
     def read(self) -> list[int]:
         """Read the bodies that may have moved; returns the rows of those that have."""
-        self._gather()
-        now = self._motions.tobytes(), clock()
+        motions, gather = self._motions
+        gather()
+        now = motions.tobytes(), clock()
         if now == self._last:
             return []
         moved = self._read(self.outside)
         self._last = now
         return moved
+
+    @cached_property
+    def _motions(self) -> tuple[FloatArray, Callable[[], None]]:
+        """Room for the motions of the bodies outside, and of one more, and the function that reads them."""
+        motions = np.zeros(6 * (len(self.outside) + 1))
+        return motions, private_batch.reader_of([self.items[i] for i in self.outside], _FIELDS, motions)
 
     def _read(self, rows: Sequence[int]) -> list[int]:
         changed = []

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from typing import Any
 
 import pymunk
@@ -40,23 +39,26 @@ def velocity_changes(
     return found
 
 
-@contextmanager
-def without(velocity: Sequence[pymunk.Body], position: Sequence[pymunk.Body]) -> Iterator[None]:
-    """Within this block pymunk's steps use its own functions in the place of these velocity functions and position
-    functions of bodies."""
-    set_velocity, set_position = lib.cpBodySetVelocityUpdateFunc, lib.cpBodySetPositionUpdateFunc
-    try:
-        for body in velocity:
-            set_velocity(body._body, _ACCELERATE)
-        for body in position:
-            set_position(body._body, _MOVE)
-        yield
-    finally:
+class Without:
+    """Within this block, which may be entered again later, pymunk's steps use its own functions in the place of these
+    velocity functions and position functions of bodies. A class as `reentry.FunctionsCalled`."""
+
+    __slots__ = ("_position", "_velocity")
+
+    def __init__(self, velocity: Sequence[pymunk.Body], position: Sequence[pymunk.Body]) -> None:
+        self._velocity, self._position = velocity, position
+
+    def __enter__(self) -> None:
+        for body in self._velocity:
+            lib.cpBodySetVelocityUpdateFunc(body._body, _ACCELERATE)
+        for body in self._position:
+            lib.cpBodySetPositionUpdateFunc(body._body, _MOVE)
+
+    def __exit__(self, *_: object) -> None:
         # Functions that were called meanwhile may have removed them.
-        own, moved = lib.ext_cpBodyVelocityFunc, lib.ext_cpBodyPositionFunc
-        for body in velocity:
+        for body in self._velocity:
             if body._velocity_func is not None:
-                set_velocity(body._body, own)
-        for body in position:
+                lib.cpBodySetVelocityUpdateFunc(body._body, lib.ext_cpBodyVelocityFunc)
+        for body in self._position:
             if body._position_func is not None:
-                set_position(body._body, moved)
+                lib.cpBodySetPositionUpdateFunc(body._body, lib.ext_cpBodyPositionFunc)

@@ -22,16 +22,21 @@ OF_CONSTRAINT = ("_constraint", BEFORE, AFTER)
 OF_SPRINGS = ((pymunk.DampedSpring, FORCE[1:]), (pymunk.DampedRotarySpring, TORQUE[1:]))
 
 
-@contextmanager
-def time_step(space: pymunk.Space, dt: float) -> Iterator[None]:
+class TimeStep:
     """Within this block, for calls of functions of the program, `space.current_time_step` is dt. Afterwards it is that
-    of pymunk's last step again, with which pymunk scales its stored impulses."""
-    before = lib.cpSpaceGetCurrentTimeStep(space._space)
-    lib.cpSpaceSetCurrentTimeStep(space._space, dt)
-    try:
-        yield
-    finally:
-        lib.cpSpaceSetCurrentTimeStep(space._space, before)
+    of pymunk's last step again, with which pymunk scales its stored impulses. A class as `reentry.FunctionsCalled`."""
+
+    __slots__ = ("_before", "_dt", "_space")
+
+    def __init__(self, space: pymunk.Space, dt: float) -> None:
+        self._space, self._dt = space._space, dt
+
+    def __enter__(self) -> None:
+        self._before = lib.cpSpaceGetCurrentTimeStep(self._space)
+        lib.cpSpaceSetCurrentTimeStep(self._space, self._dt)
+
+    def __exit__(self, *_: object) -> None:
+        lib.cpSpaceSetCurrentTimeStep(self._space, self._before)
 
 
 def replace_functions(

@@ -18,7 +18,7 @@ import pymunk
 from ..layout import NOW
 from ..rehearsing import approach, changed
 from ..transfer import TURNS
-from . import private, private_joints, private_shapes
+from . import private, private_joints, private_shapes, private_versions
 from .decisions import Decisions, Rules
 from .edits import typings
 from .hearing import Hearing
@@ -45,7 +45,7 @@ class Rehearsal:
 
     def __init__(self, world: World) -> None:
         self.world, self.space = world, world.space
-        self._start, self._known = np.zeros_like(world.START), np.zeros_like(world.START)
+        self._start, self._known = np.zeros((2, *world.START.shape))
         self._approach = approach.bind(world.STATES, world.WALK, world.EXTRA, world.BODY, world.ENDS, self._start)
         self._lengths = 0.0, 0.0, 0.0, 1.0  # dt, gravity, factor of half a step's damping
         # Whether there are changes by begin and pre_solve, and changes by post_solve and separate; the last stage.
@@ -53,8 +53,8 @@ class Rehearsal:
         self._wrapped: list[tuple[Any, str, Any, Any]] = []
         self._functions: list[tuple[Any, ...]] = []
         self.failure: BaseException | None = None
-        self.decided, self._ignores = False, True
-        self.left_out, self._without = False, 0
+        self.decided, self.left_out, self._ignores, self._without = False, False, not world.undecided, 0
+        self._sync: Sync | None = None  # of the last step
         # Whether the last step called nothing for certain; number of steps for which that is not asked again.
         self._unheard, self._later = False, 0
         self._hearing: Hearing | None = None
@@ -64,11 +64,22 @@ class Rehearsal:
     def _differ(self) -> list[Callable[[], int]]:
         return [changed.bind(self.world.STATES, self._known, table) for table in self.world.CHANGES]
 
-    def forget(self) -> None:
-        """Forget earlier steps, and what handlers may hear."""
-        self._hearing, self._unheard, self._later = None, False, 0
+    def forget(self, reshaped: bool) -> None:
+        """Forget earlier steps, and, if shapes have other sizes or places, what handlers may hear."""
+        if reshaped:
+            self._hearing = None
+        self._unheard, self._later = False, 0
         self._changed, self._recent, self._ignores = [False, False], 0, True
         self.world.CHANGES.fill(0.0)
+
+    def is_silent(self) -> bool:
+        """Whether nothing holds that functions have decided, and some steps in a row, all EECA's, called none."""
+        return self._without >= _LATER and self._unheard and self._sync is not None and self._sync.is_ours()
+
+    def listen(self) -> None:
+        """Forget what handlers may hear, if there are new ones."""
+        if self._hearing is not None and self._hearing.handled != private_versions.handled(self.space):
+            self._hearing, self._unheard, self._later = None, False, 0
 
     def go_on(self, earlier: Rehearsal) -> None:
         """Take over what functions have done in a rehearsal of another world of the space."""
@@ -104,14 +115,14 @@ class Rehearsal:
         status = self._approach(*self._lengths)
         if status < 0:
             return status
-        self.failure, self.decided, self._stage = None, False, -1
+        self.failure, self.decided, self._stage, self._sync = None, False, -1, sync
         if True in self._changed:
             world.CHANGES.fill(0.0)
             self._changed = [False, False]
         if self._later > 0:
             self._later -= 1
         else:
-            self._unheard = sync is not None and sync.is_ours() and self._is_unheard(dt)
+            self._unheard = sync is not None and sync.goes_on() and self._is_unheard(dt)
             self._later = 0 if self._unheard else _LATER
         self.left_out = self._unheard and sync is not None and not sync.were_read() and self._without < _RENEW
         if self.left_out:
@@ -140,10 +151,11 @@ class Rehearsal:
 
     def _step(self, dt: float) -> None:
         hooks = self.world.hooks
-        if hooks.none_within_steps():
-            private.step_without_end(self.space, dt)
+        if hooks.joints is None or hooks.none_within_steps():
+            with hooks.silent:
+                private.step_without_end(self.space, dt)
         else:
-            with hooks.silent(), self._silent_joints(hooks.joints):
+            with hooks.silent, self._silent_joints(hooks.joints):
                 private.step_without_end(self.space, dt)
 
     def _is_unheard(self, dt: float) -> bool:
@@ -157,8 +169,7 @@ class Rehearsal:
 
     def make_up(self) -> None:
         """Take the step of pymunk that was left out, for its arbiters, unless the space has other bodies now."""
-        world = self.world
-        present = world.bodies.gather()
+        world, present = self.world, self.world.bodies.gather()
         if present is None:
             return
         np.copyto(world.STATES[NOW], self._start)
@@ -195,11 +206,8 @@ class Rehearsal:
             ]
 
     @contextmanager
-    def _silent_joints(self, joints: JointRows | None) -> Iterator[None]:
+    def _silent_joints(self, joints: JointRows) -> Iterator[None]:
         """Within this block `pre_solve` of constraints is wrapped, and their other functions are not called."""
-        if joints is None:
-            yield
-            return
         mute = [item for item in joints.calling if item.pre_solve is None or item.a.space is None]
         with ExitStack() as held:
             if joints.partners.outside:

@@ -101,7 +101,6 @@ class Sync:
         self._pulls = self.space.sleep_time_threshold < math.inf
         sleepers = [bodies.items[i] for i in bodies.asleep.nonzero()[0]] if self._asleep else []
         self._stop = private_sleep.stop_woken(sleepers)
-        self._shapes = world.carried
         self._world = world
         self._timestamp: Callable[[], int] = private.timestamp(self.space)
         self.waits = partial(private.waits, self.space)
@@ -113,6 +112,7 @@ class Sync:
         self._new = True  # bodies and joints may be new, with corrections and impulses of other steps of pymunk
         self.renews = False
         self.stamp = -1
+        self._before = past.stamp if past is not None and world.undecided else -1
 
     def reindexes(self, dt: float, status: int) -> bool:
         """Whether reindexing is enough for this step. Conditions:
@@ -122,12 +122,12 @@ class Sync:
         * nothing touched in this step and the last one, or readers of arbiters call `renew`;
         * the number of shapes is at most SOME; with neither contacts nor joints at most FEW.
         """
-        if self.were_read() or self._reindexings == 0 or dt != self._dt or self._shapes > SOME:
+        if self.were_read() or self._reindexings == 0 or dt != self._dt or self._world.carried > SOME:
             return False
         if status & EVENTS or self._touched:
             if not self.renews:
                 return False
-        elif self._shapes > FEW and self._world.joints is None:
+        elif self._world.carried > FEW and self._world.joints is None:
             return False
         return self._timestamp() == self._rested
 
@@ -180,6 +180,10 @@ class Sync:
         """Whether pymunk has taken no step of its own since the last EECA step."""
         return self._timestamp() == self.stamp
 
+    def goes_on(self) -> bool:
+        """The same where a space was read anew since: for handlers, if they were silent before."""
+        return self._timestamp() in (self.stamp, self._before)
+
     def rest(self, dt: float) -> None:
         """Take a rest step, without functions of bodies; all bodies must have velocity 0, and may get velocities of
         round-off if there are joints."""
@@ -192,7 +196,7 @@ class Sync:
         slept = self._asleep and world.bodies.in_order()
         how = self.space, dt, world.joints, stored, self._choice() if self._asleep else None
         if world.hooks.some:
-            with world.hooks.silent():
+            with world.hooks.silent:
                 rest_step(*how)
         else:
             rest_step(*how)
@@ -201,7 +205,7 @@ class Sync:
         self._rested, self._dt, self._reindexings = self._timestamp(), dt, _RENEW
         self.stamp = self._rested
         self._stale = False
-        if not self.renews and self._shapes <= FEW:
+        if not self.renews and self._world.carried <= FEW:
             self._touched = bool(private.raw_arbiters(self.space))
 
     def _choice(self) -> Choice:

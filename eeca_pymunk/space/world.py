@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from functools import cached_property
+from functools import cache, cached_property, partial
 from typing import Any
 
 import pymunk
@@ -52,6 +52,7 @@ class World(Crossing):
         rules: decisions of collision handlers about pairs of rows of SHAPE in this step.
         frictionless: whether friction, also that of handlers, is left out.  lacks_friction: and there is some.
         joints: the constraints of the space, None if it has none.
+        undecided: whether it was read after steps that called no handlers, and nothing was edited in place meanwhile.
         read_at: `edits.clock` when shapes and bodies were read.
         patches: number of patches so far.  packed: the arrays of the rows, and the kernel that writes them.
         objects_read: number of bodies, shapes and constraints read from pymunk for this world; others were known.
@@ -75,6 +76,7 @@ class World(Crossing):
         self.records: Records
         self.records, count = records_of(space, bodies, {} if known is None else known.records, stale or ())
         self.objects_read = bodies.fresh + count
+        self.undecided = past is not None and not past.edited() and past.is_silent()
         self.memory: SceneMemory = SceneMemory() if past is None else past.memory
         self.frictionless = "friction" in ignore
         self.lacks_friction = self.frictionless and has_friction([s for s, r in self.records.items() if r is not None])
@@ -105,11 +107,17 @@ class World(Crossing):
         self._seen = [self._edits[0]]
         self._known = self._edits.in_place
         self.collisions = bool(private.handlers(self.space))
+        if "rehearsal" in self.__dict__:
+            self.rehearsal.listen()
         self._forget_rules()
         self.hooks = Hooks(self.space, self.bodies, self.joints, *self._functions)
         self.hooked = self.collisions or self.hooks.some or self.damping == 0.0
         self.plain = not self.hooked and self.joints is None
         self.current = private.watch(self.space, self._edits, self._seen)
+
+    def is_silent(self) -> bool:
+        """Whether collision handlers have not been called of late, and nothing holds that they have decided."""
+        return "rehearsal" in self.__dict__ and not self.rules.some and self.rehearsal.is_silent()
 
     def _forget_rules(self) -> None:
         if self.rules.some:
@@ -140,7 +148,7 @@ class World(Crossing):
         centred: BoolArray = (self.LINK["vertices"] == 1) & ~self.VERTEX[self.LINK["first"], :2].any(axis=1)
         return centred
 
-    @property
+    @cached_property
     def carried(self) -> int:
         """Number of shapes of bodies that are not static."""
         if len(self.shapes) == len(self.records):
@@ -156,9 +164,9 @@ class World(Crossing):
         return private.pointers(body for body, count in shape_counts(self.bodies, self.records).items() if count)
 
     @cached_property
-    def empty(self) -> Details:
-        """The arrays of a report without contacts."""
-        return nothing(self.bodies.items)
+    def empty(self) -> Callable[[], Details]:
+        """Function that returns the arrays of a report without contacts."""
+        return cache(partial(nothing, self.bodies.items))
 
     def stale(self, contents: tuple[int, ...]) -> set[Any] | None:
         """Shapes and bodies whose records may be out of date: edited, in the space or outside, or bodies of shapes that
@@ -177,7 +185,7 @@ class World(Crossing):
         if found is not None:
             self.patches += 1
             if "rehearsal" in self.__dict__:
-                self.rehearsal.forget()
+                self.rehearsal.forget(found.reach or found.moved)
             self._seen[0] = self._edits[0]
             if self.current():
                 self._known = self._edits.in_place

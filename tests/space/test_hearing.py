@@ -71,6 +71,14 @@ def played(
         if step[0] == 150:
             for shape in space.shapes:
                 shape.collision_type = (shape.collision_type + 1) % 10
+        if step[0] % 40 == 20:  # comes and goes
+            extra = pymunk.Body(1.0, 50.0)
+            extra.position, extra.velocity = (200.0, 20.0 + step[0] / 2), (100.0, -50.0)
+            disk = pymunk.Circle(extra, 5.0)
+            disk.elasticity, disk.collision_type = 0.5, step[0] // 40
+            space.add(extra, disk)
+        elif step[0] % 40 == 0 and step[0] > 0:
+            space.remove(extra, disk)
         stepper.step(DT)
         world = stepper._world
         left_out += world is not None and world.rehearsal.left_out
@@ -133,6 +141,62 @@ def test_a_step_of_pymunk_in_between_is_heard() -> None:
     bodies[1].position = 9.0, 0.0
     stepper.step(DT)
     assert told == ["begin", "separate"]
+
+
+def hear(space: pymunk.Space, a: int, b: int, told: list[str]) -> None:
+    """Tell when shapes of types a and b begin to touch."""
+
+    def begin(*_: object) -> bool:
+        told.append(f"{a} {b}")
+        return True
+
+    if hasattr(space, "on_collision"):
+        space.on_collision(a, b, begin=begin)
+    else:
+        space.add_collision_handler(a, b).begin = begin
+
+
+def test_handlers_of_other_types_are_heard_though_steps_were_left_out() -> None:
+    space, told = pymunk.Space(), list[str]()
+    for k, x in enumerate((0.0, 3.0, 50.0)):
+        (shape,) = add_disk(space, (x, 0.0), 0.5, velocity=(1.0 - k, 0.0)).shapes
+        shape.collision_type = k
+    hear(space, 0, 2, told)
+    stepper = ep.EECA(space)
+    for _ in range(10):
+        stepper.step(DT)
+    assert stepper._world is not None
+    assert stepper._world.rehearsal.left_out
+    hear(space, 0, 1, told)
+    for _ in range(200):
+        stepper.step(DT)
+    assert told == ["0 1"]
+
+
+def test_what_may_be_heard_is_found_again_after_edits_of_sizes() -> None:
+    space, told = pymunk.Space(), list[str]()
+    one, two = (add_disk(space, (x, 0.0), 0.5) for x in (0.0, 9.0))
+    (first,), (second,) = one.shapes, two.shapes
+    first.collision_type, second.collision_type = 0, 1
+    hear(space, 0, 1, told)
+    stepper = ep.EECA(space)
+    found = []
+    for friction in (0.1, 0.2, 0.3):
+        for _ in range(10):
+            stepper.step(DT)
+        world = stepper._world
+        assert world is not None
+        found.append((world, world.rehearsal._hearing))
+        first.friction = friction
+    assert found[1] == found[2]  # the first edit lets the space be read again
+    assert found[2][1] is not None
+    first.unsafe_set_radius(8.4)
+    for speed in (0.0, 1.3):
+        one.velocity = speed, 0.0
+        for _ in range(10):
+            stepper.step(DT)
+    assert stepper._world is world
+    assert told == ["0 1"]
 
 
 def test_pairs_are_near_within_twice_their_way() -> None:
