@@ -36,7 +36,7 @@ from . import private_batch
 from .bodies import STATE_FIELDS, Bodies
 
 _F = batch.BodyFields
-_FORCES = {0: _F.FORCE | _F.TORQUE}
+_FORCES = _F.FORCE | _F.TORQUE
 # Fields by the bit TURNS of a step's status: without or with angles and spins.
 _WHOLE = {0: _F.POSITION | _F.VELOCITY, TURNS: _F.POSITION | _F.ANGLE | _F.VELOCITY | _F.ANGULAR_VELOCITY}
 _SPEEDS = {0: _F.VELOCITY, TURNS: _F.VELOCITY | _F.ANGULAR_VELOCITY}
@@ -76,7 +76,6 @@ class Crossing:
     _scatter: _Writers
     _scatter_still: _Writers
     _scatter_speed: _Writers
-    _pulls: _Writers
 
     def __init__(self, space: pymunk.Space, past: Crossing | None) -> None:
         """Room for the bodies of a space, and their state now in STATES[NOW]. `past`: of the same space before, which
@@ -95,13 +94,13 @@ class Crossing:
         self.WALK[KNOWN] = self.WALK[FOUND]
         self._scatter = _Writers(self, _WHOLE, END, None if past is None else past._scatter)
         self._scatter_still = _Writers(self, _WHOLE, STILL, None if past is None else past._scatter_still)
-        self._pulls = _Writers(self, _FORCES, PULL, None if past is None else past._pulls)
+        self._last_reset: Any = None if past is None else past.__dict__.get("reset_forces", past._last_reset)
         self._scatter_speed = _Writers(self, _SPEEDS, SPEED, None if past is None else past._scatter_speed)
 
     @cached_property
     def reset_forces(self) -> Callable[[], None]:
         """Function that writes the forces at the end of the step."""
-        return self._pulls[0]
+        return self.writer(_FORCES, PULL, self._last_reset)
 
     def writer(self, fields: batch.BodyFields, start: int, last: Any = None) -> Callable[[], None]:
         """Function that writes the fields from the table that begins at `start` N in ENDS; `last`: one that did so
