@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from functools import cache, cached_property, partial
+from functools import cached_property
 from typing import Any
 
 import pymunk
@@ -164,9 +164,9 @@ class World(Crossing):
         return private.pointers(body for body, count in shape_counts(self.bodies, self.records).items() if count)
 
     @cached_property
-    def empty(self) -> Callable[[], Details]:
-        """Function that returns the arrays of a report without contacts."""
-        return cache(partial(nothing, self.bodies.items))
+    def empty(self) -> Details:
+        """The arrays of a report without contacts."""
+        return nothing(self.bodies.items)
 
     def stale(self, contents: tuple[int, ...]) -> set[Any] | None:
         """Shapes and bodies whose records may be out of date: edited, in the space or outside, or bodies of shapes that
