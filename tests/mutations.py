@@ -151,6 +151,8 @@ MUTATIONS = (
              "if gives(A, root, t):", "islands/test_excess.py", "flies_freely"),
     Mutation("excess: solved for the whole interval", "islands/excess.py", "n, s, sweeps_of(n, start), 0.0",
              "n, A.PAR.dt, sweeps_of(n, start), 0.0", "islands/test_excess.py", "flies_freely"),
+    Mutation("excess: half of the gain is taken", "islands/excess.py", "1.0 + lost / square",
+             "1.0 + 0.5 * lost / square", "islands/test_excess.py", "scaled_impulses"),
     Mutation("laws: inactive contacts break none", "rows/columns.py",
              "worst = max(worst, ROWS[i].wake - normal_rate(A, B, ROWS, V, i))", "worst = max(worst, 0.0)",
              "rows/test_gentle.py", "inactive"),

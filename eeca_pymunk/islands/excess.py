@@ -2,7 +2,9 @@
 
 Forces of an interval are right for the whole of it: a soft landing pushes before the shapes touch. Cut after s, an
 impulse J with the mean relative velocity u has lost D = -J.u, and has given energy if that is negative. Then the island
-is solved again, from the start of its interval to the cut, whose impulses lose energy, or none.
+is solved again, from the start of its interval to the cut, whose impulses lose energy, or none. Where that is no
+interval (bodies would move too far), all impulses are scaled by one q instead. With E = sum J.u > 0 and the energy C =
+sum m w^2 / 2 of the changes of velocity w that they cause, they give q (E - C) + q^2 C, which is 0 for q = 1 - E / C.
 """
 
 from __future__ import annotations
@@ -58,11 +60,40 @@ def pairs_of(A: Scene, root: int) -> IntArray:
     return found[:p]
 
 
+@nonallocating
+def scale_impulses(A: Scene, root: int, t: float) -> None:
+    """Scale the impulses of an island, whose bodies are at the start of its interval, so that they give no energy up to
+    instant t: q in the docstring of the module, or 0."""
+    BODY, PULL, lost, square, start = A.BODY, A.PULL, 0.0, 0.0, t
+    for c in range(A.COUNT.pushes):
+        if A.PUSHED_BY[c].root == root:
+            normal, tangential = losses(A, c, t)
+            lost, start = lost + normal + tangential, A.PUSHED[c].start
+    i = root
+    while i >= 0:
+        x, y, turn = BODY[i].ax - PULL[i, 0], BODY[i].ay - PULL[i, 1], BODY[i].angular - PULL[i, 2]
+        square += 0.5 * (x * x + y * y) * (t - start) ** 2 / BODY[i].inv_mass
+        if BODY[i].inv_inertia > 0.0:
+            square += 0.5 * (turn * (t - start)) ** 2 / BODY[i].inv_inertia
+        i = A.MEMBER[i].following
+    q = max(1.0 + lost / square, 0.0) if square > 0.0 else 0.0
+    i = root
+    while i >= 0:
+        BODY[i].ax = PULL[i, 0] + q * (BODY[i].ax - PULL[i, 0])
+        BODY[i].ay = PULL[i, 1] + q * (BODY[i].ay - PULL[i, 1])
+        BODY[i].angular = PULL[i, 2] + q * (BODY[i].angular - PULL[i, 2])
+        i = A.MEMBER[i].following
+    for c in range(A.COUNT.pushes):
+        if A.PUSHED_BY[c].root == root:
+            R = A.PUSHED[c]
+            R.normal, R.tangential, R.work, R.change = q * R.normal, q * R.tangential, q * R.work, q * R.change
+            R.un_before, R.un_after, R.ut_before, R.ut_after = 0.0, 0.0, 0.0, 0.0
+
+
 @kernel
 def repay(A: Scene, root: int, t: float) -> None:
     """Before the interval of an island ends at instant t: if its contacts have given energy up to t, solve them again
-    for the time up to t. If they become more, or move too far for one interval, all stays: this energy is owed
-    (`Rest.lost` < 0), and taken out by later solves."""
+    for the time up to t; if they become more, or move too far for one interval, scale their impulses."""
     if not gives(A, root, t):
         return
     found, first, count = pairs_of(A, root), -1, 0
@@ -84,6 +115,7 @@ def repay(A: Scene, root: int, t: float) -> None:
     A.COUNT.solved += n
     A.COUNT.direct += OUT[0].direct
     if m < 0 or m > count or times_too_long(A, isle, contacts, m, s) > INTERVAL_RETRY:
+        scale_impulses(A, root, t)
         return
     for c in range(first, first + count):
         A.PUSHED_BY[c].root = ENDED

@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pymunk
 import pytest
 
 import eeca_pymunk as ep
+from eeca_pymunk.compiled.records import rows
+from eeca_pymunk.contacts.single import move_to
+from eeca_pymunk.islands.excess import losses, scale_impulses
+from eeca_pymunk.model.bodies import Body, Member, Next
+from eeca_pymunk.model.contacts import Pair, Pushed
+from eeca_pymunk.model.scene import scene_with
+from eeca_pymunk.model.shapes import Link
 
 G, RISE, FALL, HIT, DT = 10.0, 0.2, -5.0, 0.02, 0.05  # m/s^2, m/s, m/s, s, s
 
@@ -53,3 +61,30 @@ def test_what_would_land_later_flies_freely_and_what_rests_keeps_its_force(size:
     assert seen == ({"plank", "block"} if on_plank else {"block"})
     assert report.ledger.restitution >= 0.0
     assert abs(report.ledger.residual) <= 1e-13 * size * size
+
+
+@pytest.mark.parametrize("t", [0.05, 0.3, 1.0, 1.4])
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
+def test_scaled_impulses_give_no_energy(size: float, t: float) -> None:
+    """A body of mass 1 that rises from a floor with 2 m/s and is to be at rest after 1.4 s, by a force from the start
+    on. Cut after t, kinetic and potential energy are what they were: with no force before t = 0.4, when it falls."""
+    g, v, h = G * size, 2.0 * size, 1.4
+    body, pushed, by, link, member = rows(Body, 2), rows(Pushed, 1), rows(Pair, 1), rows(Link, 2), rows(Member, 2)
+    body[0].inv_mass, body[0].vy, body[0].ay = 1.0, v, -v / h
+    pushed[0].normal, pushed[0].un_before, pushed[0].length, pushed[0].ny = g * h - v, v, h, 1.0
+    by[0].root, by[0].a, by[0].b, link[0].owner, link[1].owner = 0, 1, 0, 0, 1
+    member[0].following, member[0].bodies = -1, 1
+    scene = scene_with(
+        BODY=body, PUSHED=pushed, PUSHED_BY=by, LINK=link, MEMBER=member, STATE=rows(Next, 2),
+        PULL=np.array([[0.0, -g, 0.0], [0.0, 0.0, 0.0]]),
+    )  # fmt: skip
+    scene.COUNT.pushes = 1
+    scale_impulses(scene, 0, t)
+    move_to(body, 0, t)
+    assert sum(losses(scene, 0, t)) == 0.0
+    assert 0.5 * body[0].vy ** 2 + g * body[0].y == pytest.approx(0.5 * v * v, rel=1e-12)
+    if t < 0.4:
+        assert body[0].vy == pytest.approx(v - g * t, abs=1e-12 * size)
+        assert pushed[0].normal == 0.0
+    else:
+        assert pushed[0].normal > 0.0
