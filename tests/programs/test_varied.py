@@ -197,6 +197,13 @@ def test_steps_that_are_cut_press_nothing_through_walls(seed: int) -> None:
     Varied(seed, False).play()
 
 
+@pytest.mark.parametrize("seed", [52005, 830006, 830642, 832408])
+def test_what_rests_and_what_is_wedged_keeps_its_place_where_intervals_are_cut(seed: int) -> None:
+    """Contacts that have given energy are solved again up to the cut, those that friction wedges without friction, and
+    those that wait for an approach take part once others push them together."""
+    Varied(seed, False).play()
+
+
 @pytest.mark.parametrize(("seed", "steps"), [(700035, 120), (610181, 115)])
 def test_contacts_that_are_not_solved_take_no_work_from_walls(seed: int, steps: int) -> None:
     """Joints and walls that contradict each other: impulses that were no solution moved bodies through walls, and a
