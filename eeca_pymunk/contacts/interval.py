@@ -161,15 +161,15 @@ def step_island(
         )  # fmt: skip
         # Velocities are computed again from the impulses, without the round-off of many sweeps.
         velocities(problem, L, FREE, VN)
-        quick, most_contacts = fast + pull * h, COLUMN_CONTACTS if few else 0
-        wedged = worst > WEDGED * scale or excessive(L, m, IM, n, quick)
+        quick, exactly = fast + pull * h, few and m <= COLUMN_CONTACTS
+        wedged = exactly and (worst > WEDGED * scale or excessive(L, m, IM, n, quick))
         OUT[0].lock, OUT[0].owed = lock(problem, L, VN, FREE, owed, elastic)
-        if m <= most_contacts and (wedged or OUT[0].lock < 1.0 - WEDGED):
+        if wedged or (exactly and OUT[0].lock < 1.0 - WEDGED):
             worst = unwedge(problem, L, VN, FREE, INTERVAL_RESIDUAL * scale, quick)
             OUT[0].lock, OUT[0].owed = lock(problem, L, VN, FREE, owed, elastic)
         OUT[0].sweeps += sweeps
         OUT[0].direct += polishes
-        OUT[0].residual, OUT[0].tolerance = worst, INTERVAL_UNMET * scale if m <= most_contacts else np.inf
+        OUT[0].residual, OUT[0].tolerance = worst, INTERVAL_UNMET * scale if exactly else np.inf
         OUT[0].restitution, OUT[0].friction = works(problem, L, VN)
         remember_loads(ROWS, contacts.KEY, L, m, h, S.KEYS, S.FORCES, S.COUNT, S.PAR.stamp)
     else:

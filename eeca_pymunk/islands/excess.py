@@ -20,6 +20,7 @@ from ..model.contacts import ENDED
 from ..model.parameters.intervals import INTERVAL_RETRY, REPAY_ROUND_OFF
 from ..model.scene import Scene
 from ..pairs.lists import mark_pair
+from ..rows.energy import scale_to_lose
 from .candidates import sweeps_of
 from .depths import times_too_long
 from .local import clear_places, local_island, number_bodies, open_contacts, own_contacts
@@ -76,7 +77,7 @@ def scale_impulses(A: Scene, root: int, t: float) -> None:
         if BODY[i].inv_inertia > 0.0:
             square += 0.5 * (turn * (t - start)) ** 2 / BODY[i].inv_inertia
         i = A.MEMBER[i].following
-    q = max(1.0 + lost / square, 0.0) if square > 0.0 else 0.0
+    q, _ = scale_to_lose(lost + square, square, 0.0, False)
     i = root
     while i >= 0:
         BODY[i].ax = PULL[i, 0] + q * (BODY[i].ax - PULL[i, 0])
