@@ -20,10 +20,16 @@ from ..arrays import FlagArray, FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Problem, Row
-from ..model.parameters.impulses import DENSE_CONTACTS
-from ..model.parameters.intervals import CORRECTION_ROUND_OFF, CORRECTION_SHARE, CORRECTION_STEP, OVERLAP_LEFT
+from ..model.parameters.intervals import (
+    CORRECTION_ROUND_OFF,
+    CORRECTION_SHARE,
+    CORRECTION_STEP,
+    CORRECTION_SWEEPS,
+    CORRECTION_WORK,
+    OVERLAP_LEFT,
+)
 from ..rows.build import conserves, normal_rate
-from ..rows.lifting import lift
+from ..rows.lifting import keep_walls, lift
 from .works import against, moved
 
 
@@ -51,8 +57,9 @@ def lifting(
     if deepest >= -OVERLAP_LEFT * size or not budget >= 0.0:
         return
     D = np.zeros((len(IM), 3))
-    most = 10 + 1000 // m if m <= DENSE_CONTACTS else 8 + 200 // m
-    lift(problem, GAPS, np.zeros(m), D, 0.1 * OVERLAP_LEFT * size, most)
+    MU, near = np.zeros(m), 0.1 * OVERLAP_LEFT * size
+    if lift(problem, GAPS, MU, D, near, CORRECTION_SWEEPS + CORRECTION_WORK // m) > near:
+        keep_walls(problem, GAPS, MU, D)
     part = admissible(D, EXTENT, n)
     if part < 1.0:
         for i in range(n):

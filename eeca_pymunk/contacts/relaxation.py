@@ -1,8 +1,9 @@
 """The bounded solve of an island: sweeps while it moves; sweeps and direct solves in turn while it is near rest.
 
 Sweeps pass a stack's weight to its floor slowly; a direct solve does it at once, as soon as sweeps have found the
-active contacts. In disordered moving piles these change with every step, and sweeps alone cost less. Where both come to
-no end, as with light bodies wedged between heavy ones, few contacts are solved by homotopies (`..rows.laws`).
+active contacts. In disordered moving piles these change with every step, and sweeps alone cost less; more of them where
+a slow island waits for its next direct solve, as what creeps comes to rest no sooner than friction is solved. Where both
+come to no end, as with light bodies wedged between heavy ones, few contacts are solved by homotopies (`..rows.laws`).
 
 The state of an island lasts across steps (`Rest.augmentation`, `wait`, `backoff`): log10 of the augmentation R, steps
 to wait before the next direct solve, and the wait after its next failure.
@@ -24,6 +25,7 @@ from ..model.parameters.intervals import (
     LARGE_ISLAND,
     LONGEST_BACKOFF,
     SWEEPS_AFTER,
+    WAITING_SWEEPS,
 )
 from ..model.parameters.joints import COLUMN_CONTACTS
 from ..rows.conjugate import iterate
@@ -50,7 +52,8 @@ def relax(
     """
     if rounds == 0 or STATE.wait > 0.0:
         STATE.wait = max(STATE.wait - 1.0, 0.0)
-        sweeps, worst = iterate(problem, L, V, max(fine, coarse), most)
+        turns = most if rounds == 0 else WAITING_SWEEPS * most
+        sweeps, worst = iterate(problem, L, V, max(fine, coarse), turns)
         return sweeps, 0, worst
     sweeps, worst = 0, np.inf
     while sweeps < FIRST_SWEEPS and worst > fine:

@@ -24,6 +24,30 @@ def push_normal_jointed(problem: JointedProblem, i: int, d: float, D: FloatArray
 push_normal = Choice(push_normal_free, push_normal_jointed)
 
 
+@inlined
+def meet_gap(problem: AnyProblem, GAP: float, MU: FloatArray, D: FloatArray, i: int) -> float:
+    """Let the gap of contact i, which is GAP without displacements, meet its condition, with the other mu as they are;
+    how much it changes."""
+    g = GAP + normal_rate(problem.A, problem.B, problem.ROWS, D, i)
+    if g >= 0.0 and MU[i] == 0.0:
+        return 0.0
+    k = problem.ROWS[i].k_n
+    mu = max(MU[i] - k * g, 0.0)
+    d = mu - MU[i]
+    MU[i] = mu
+    push_normal(problem, i, d, D)
+    return float(abs(d) / k)
+
+
+@nonallocating
+def keep_walls(problem: Problem, GAPS: FloatArray, MU: FloatArray, D: FloatArray) -> None:
+    """After a `lift` that has come to no end: displace no body deeper into what nothing moves than it is."""
+    for i in range(problem.m):
+        if max(problem.A[i], problem.B[i]) >= problem.n:
+            if GAPS[i] + normal_rate(problem.A, problem.B, problem.ROWS, D, i) < min(GAPS[i], 0.0):
+                meet_gap(problem, max(GAPS[i], 0.0), MU, D, i)
+
+
 @nonallocating
 def lift(problem: AnyProblem, GAPS: FloatArray, MU: FloatArray, D: FloatArray, tolerance: float, most: int) -> float:
     """Solve for the displacements D, by at most `most` sweeps; returns the largest change of a gap in the last one.
@@ -32,19 +56,11 @@ def lift(problem: AnyProblem, GAPS: FloatArray, MU: FloatArray, D: FloatArray, t
         GAPS: (m,) length.  MU: (m,) in and out, mass times length.  D: (k, 3) in and out, length and rad.
         tolerance: change of a gap in a sweep at which the solve ends: length.
     """
-    A, B, ROWS, worst = problem.A, problem.B, problem.ROWS, 0.0
+    worst = 0.0
     for _ in range(most):
         worst = 0.0
         for i in range(problem.m):
-            g = GAPS[i] + normal_rate(A, B, ROWS, D, i)
-            if g >= 0.0 and MU[i] == 0.0:
-                continue
-            k = ROWS[i].k_n
-            mu = max(MU[i] - k * g, 0.0)
-            d = mu - MU[i]
-            MU[i] = mu
-            push_normal(problem, i, d, D)
-            worst = max(worst, abs(d) / k)
+            worst = max(worst, meet_gap(problem, GAPS[i], MU, D, i))
         if worst <= tolerance:
             break
     return worst

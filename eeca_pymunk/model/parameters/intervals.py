@@ -81,6 +81,12 @@ DIRECT_MOVING = work(
 )
 FIRST_SWEEPS = work(10, "sweeps", "Sweeps of an island before its first direct solution.")
 SWEEPS_AFTER = work(4, "sweeps", "Sweeps of an island after each direct solution.")
+WAITING_SWEEPS = work(
+    3,
+    "times those of a moving island",
+    "Sweeps of a slow island that waits for its next direct solution. With 1, piles of a thousand boxes creep for more "
+    "than fifteen seconds; with 2 to 4 they come to rest, at about the same cost.",
+)
 BACKOFF_CONTACTS = work(
     40, "contacts", "Number beyond which direct solutions that did not converge are suspended for some steps."
 )
@@ -98,6 +104,13 @@ CORRECTION_STEP = accuracy(
     "Way of any point of a body by the correction in one interval, at most: half of what would take its centre through "
     "a thin wall that it touches. More turns boxes in large piles to and fro, deeper and deeper into each other.",
 )
+CORRECTION_SWEEPS = work(
+    20,
+    "sweeps",
+    "Sweeps of the penetration correction, at least. With 8, piles of a thousand bodies without friction keep overlaps of "
+    "a tenth of a radius; with 40, falling piles cost .15 more.",
+)
+CORRECTION_WORK = work(1000, "contacts swept", "Work for further sweeps of the penetration correction of few contacts.")
 CORRECTION_ROUND_OFF = round_off(1e-14, "of its work", "Round-off of the work of a correction.")
 CORRECTION_SHARE = accuracy(
     0.99,
