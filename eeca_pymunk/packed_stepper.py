@@ -19,6 +19,7 @@ from __future__ import annotations
 from typing import TypeVar
 
 from .arrays import AnyArray
+from .compiled.records import as_integers
 from .hooked_stepper import HookedStepper
 from .layout import LEFT
 from .reentry import BUSY, refuse_within
@@ -76,22 +77,26 @@ class PackedStepper(HookedStepper):
             world = self._update_world(anew=True)
         report = self._step(world, dt)
         now = self._sleep
-        if now is not None and now.world is self._world:
-            if now.some and self.may_touch_sleepers(now):
-                now.wake(now.touched(report.contacts))  # by changes that functions have made
-            if now.rest(dt) and now.world.current():
-                now.fall_asleep(report.contacts, dt)
+        if now is not None and now.world is self._world and now.rest(dt) and now.world.current():
+            now.fall_asleep(report.contacts, dt)
+        return report
+
+    def _hooked_step(self, world: World, dt: float) -> StepReport:
+        report, now = super()._hooked_step(world, dt), self._sleep
+        if now is not None and now.some and now.world is self._world and self.may_touch_sleepers(now):
+            now.wake(now.touched(report.contacts))  # by changes that functions have made
         return report
 
     def may_touch_sleepers(self, sleep: Sleep) -> bool:
         """Whether the last step may have touched a sleeping body; if False, its report need not be made."""
         loop = self.event_loop
-        return loop is None or sleep.is_touched(loop.scene.LOG, loop.impulses)
+        return loop is None or sleep.is_touched(loop.log, loop.impulses)
 
     def rewound(self, world: World) -> list[AnyArray]:
         """Arrays that a step writes, and that one which takes its place needs as they were."""
         loop = self.event_loop
-        return [world.STATES[LEFT], *(() if loop is None else (loop.scene.SIDE,))]
+        left = world.STATES[LEFT]
+        return [left] if loop is None or not loop.thin else [left, as_integers(loop.scene.SIDE)]
 
     def _rewound_copy(self, world: World) -> list[AnyArray]:
         """A copy of `rewound`, if the step may have to be repeated."""

@@ -80,7 +80,7 @@ class EventLoop(Remembering):
         HELD = self._hold(BODY, SHAPE, LINK) if self.jointed else NO_HELD
         budget = STEP_LOOKS + STEP_LOOKS_BODY * n * max(n, MANY_BODIES) // MANY_BODIES
         self.table = memory.scene(BODY, SHAPE, LINK, VERTEX, HELD, limit, disks, together, budget)
-        (self._par, self._count, self._log), self._bound = memory.records(), UNBOUND
+        (self._par, self._count, self.log), self._bound = memory.records(), UNBOUND
         self._laid, self._memory, self.thin, self._ruled = self.table, memory, memory.thin > 0, False
         if self.jointed:
             self._plan(BODY)
