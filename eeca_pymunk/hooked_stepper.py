@@ -92,15 +92,15 @@ class HookedStepper(PackedSpace):
     def _take_hooked(self, world: World, dt: float) -> tuple[World, StepReport]:
         """The step without post-step callbacks, and its world."""
         world = self._start_hooked(world)
-        half_damping, lost = world.half_damping(dt), 0.0
+        half_damping, lost, hooks, called = world.half_damping(dt), 0.0, world.hooks, True
         try:
             if world.joints is not None:
                 world.joints.refresh()
                 if world.joints.before:
-                    world.hooks.before(dt)
+                    hooks.before(dt)
                     world.gather()
-            if world.hooks.steered:
-                world.set_accelerations(world.hooks.velocity_changes(dt), dt)
+            if hooks.steered:
+                world.set_accelerations(hooks.velocity_changes(dt), dt)
             if world.collisions:
                 sync = None if self._sleep is not None or self.decisions.laws else self._sync
                 if (status := world.rehearsal.run(dt, half_damping, sync)) < 0:
@@ -108,7 +108,9 @@ class HookedStepper(PackedSpace):
                 if self._sleep is not None and self._sleep.woken():
                     world = self._reread_awoken(world)
                 world.rules = world.rehearsal.rules(self.decisions)
-            status, hooks = self.advance(world, dt, half_damping), world.hooks
+                hooks = world.hooks
+                called = hooks.some or not world.rehearsal.left_out
+            bits = status = self.advance(world, dt, half_damping)
             if status < 0:
                 self._raise_failure(world, dt, status)
             outcome = self._outcome(dt)
@@ -121,11 +123,12 @@ class HookedStepper(PackedSpace):
                     hooks.positions(world.state, world.STATES[LEFT], dt)
                     world.bodies.check_finite(world.ended(), TOO_FAR)
                     bits = world.write_whole()
-            else:
+            elif called:
                 bits = world.write_whole()
-            forces, status = status & FORCES, status & EVENTS | bits
-            if alters or forces or hooks.some or world.joints is not None:
+            # Else bodies and their forces are as they were read.
+            if alters or status & FORCES or (called and (hooks.some or world.joints is not None)):
                 world.reset_forces()
+            status = status & EVENTS | bits
             self._write_hooked_end(world, dt, status)
             if alters:
                 # So that changes by functions after the step count as edits in the next one.
