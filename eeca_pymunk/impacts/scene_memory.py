@@ -70,7 +70,7 @@ class SceneMemory:
             BODY, SHAPE, LINK, VERTEX, HELD,
         )  # fmt: skip
         begin_scene(table, limit, disks, together, budget, lossy)
-        return filled(table, moving, k - moving)
+        return filled(table, SHAPE, moving)
 
     def records(self) -> tuple[memoryview, memoryview, memoryview]:
         """PAR as numbers, COUNT and LOG as integers, of the last scene."""
