@@ -12,6 +12,7 @@ from .layout import LEFT
 from .packed_space import TOO_FAR, PackedSpace
 from .reentry import FunctionsCalled
 from .report import Details, Outcome, StepReport
+from .space.sleeping import Sleep
 from .space.world import World
 from .transfer import EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES
 from .unmet import Unmet, of_missed
@@ -27,9 +28,8 @@ class HookedStepper(PackedSpace):
         parted = False
         joints = world.joints
         if joints is not None:
-            if joints.edited or not joints.idle():
-                with FunctionsCalled(self.space):
-                    joints.update(world.state, world.bodies.row, dt)
+            if not joints.idle():
+                joints.update(world.state, world.bodies.row, dt)
             if joints.replan or joints.ends_moved:
                 loop = self.event_loop
                 assert loop is not None  # other methods refuse joints
@@ -75,7 +75,15 @@ class HookedStepper(PackedSpace):
             self._sync.finish_rehearsal(dt, world.rehearsal.left_out)
         elif self.sync or (world.joints is not None and world.joints.calling):
             self._sync.call_back()
+        now = self._sleep
+        if now is not None and now.some and now.world is self._world and self.may_touch_sleepers(now):
+            now.wake(now.touched(report.contacts))  # by changes that functions have made
         return report
+
+    def may_touch_sleepers(self, sleep: Sleep) -> bool:
+        """Whether the last step may have touched a sleeping body; if False, its report need not be made."""
+        loop = self.event_loop
+        return loop is None or sleep.is_touched(loop.log, loop.impulses)
 
     def _start_hooked(self, world: World) -> World:
         """Read the state of all bodies; returns their world, which may be new."""

@@ -16,6 +16,7 @@ Steps that call functions of the program have their own method, `HookedStepper._
 
 from __future__ import annotations
 
+from math import inf
 from typing import TypeVar
 
 from .arrays import AnyArray
@@ -56,8 +57,8 @@ class PackedStepper(HookedStepper):
     def step(self, dt: float) -> StepReport:
         if BUSY:
             refuse_within(self.space)
-        dt = check_dt(dt)
-        if dt == 0.0:
+        dt = float(dt)
+        if not 0.0 < dt < inf and check_dt(dt) == 0.0:
             return StepReport.without_contacts(self.time)
         world = self._world
         if world is None or not world.current():
@@ -80,17 +81,6 @@ class PackedStepper(HookedStepper):
         if now is not None and now.world is self._world and now.rest(dt) and now.world.current():
             now.fall_asleep(report.contacts, dt)
         return report
-
-    def _hooked_step(self, world: World, dt: float) -> StepReport:
-        report, now = super()._hooked_step(world, dt), self._sleep
-        if now is not None and now.some and now.world is self._world and self.may_touch_sleepers(now):
-            now.wake(now.touched(report.contacts))  # by changes that functions have made
-        return report
-
-    def may_touch_sleepers(self, sleep: Sleep) -> bool:
-        """Whether the last step may have touched a sleeping body; if False, its report need not be made."""
-        loop = self.event_loop
-        return loop is None or sleep.is_touched(loop.log, loop.impulses)
 
     def rewound(self, world: World) -> list[AnyArray]:
         """Arrays that a step writes, and that one which takes its place needs as they were."""

@@ -89,7 +89,7 @@ class Rehearsal:
         """Before a function is called: read the bodies, if pymunk has reached another stage."""
         if self._stage != stage:
             self.world.gather()
-            np.copyto(self._known, self.world.STATES[NOW])
+            self._known[:] = self.world.STATES[NOW]
             self._stage = stage
 
     def after_call(self, stage: int) -> None:
@@ -144,7 +144,7 @@ class Rehearsal:
         if self.failure is not None:
             raise self.failure
         if self._stage >= 0:  # else nothing was read meanwhile
-            np.copyto(world.STATES[NOW], self._start)
+            world.STATES[NOW] = self._start
         if self._changed[0]:
             world.STATES[NOW] += world.CHANGES[0]
         return status
@@ -172,7 +172,7 @@ class Rehearsal:
         world, present = self.world, self.world.bodies.gather()
         if present is None:
             return
-        np.copyto(world.STATES[NOW], self._start)
+        world.STATES[NOW] = self._start
         self._approach(*self._lengths)
         world.scatter(TURNS)
         try:
