@@ -10,7 +10,7 @@ from .energy.ledger import AFTER, DAMPED
 from .errors import NotFiniteError
 from .layout import LEFT
 from .packed_space import TOO_FAR, PackedSpace
-from .reentry import FunctionsCalled
+from .reentry import BUSY
 from .report import Details, Outcome, StepReport
 from .space.sleeping import Sleep
 from .space.world import World
@@ -69,8 +69,11 @@ class HookedStepper(PackedSpace):
 
     def _hooked_step(self, world: World, dt: float) -> StepReport:
         """A step of a space in which functions of bodies or constraints, or collision handlers, are called."""
-        with FunctionsCalled(self.space):
+        BUSY.add(self.space)
+        try:
             world, report = self._take_hooked(world, dt)
+        finally:
+            BUSY.discard(self.space)
         if world.collisions:
             self._sync.finish_rehearsal(dt, world.rehearsal.left_out)
         elif self.sync or (world.joints is not None and world.joints.calling):
@@ -190,7 +193,7 @@ class HookedStepper(PackedSpace):
     def _outcome(self, dt: float) -> Outcome:
         """The outcome of the step. NotFiniteError, before the space is changed, if the energy overflows though
         positions and velocities do not."""
-        outcome = self.outcome()
+        outcome = self._method.outcome()
         book = outcome[0]
         if book is not None and not isfinite(book[AFTER]):
             self._world = None

@@ -120,8 +120,8 @@ class Sync:
         * pymunk has taken no step since the last rest step, which had this dt and was no more than `_RENEW` steps ago;
         * arbiters were not read after the last step, other than for a picture;
         * nothing touched in this step and the last one, or readers of arbiters call `renew`;
-        * the number of shapes is at most SOME; with neither contacts nor joints at most FEW; with joints any, if readers
-          of arbiters call `renew`.
+        * the number of shapes is at most SOME; with neither contacts nor joints at most FEW; there may be any number
+          with joints, if readers of arbiters call `renew`.
         """
         if self.were_read() or self._reindexings == 0 or dt != self._dt:
             return False
