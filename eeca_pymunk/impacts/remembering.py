@@ -18,7 +18,7 @@ from ..model.scene import Scene, scene_of
 from ..model.shapes import Side
 from ..model.step import Count, Step
 from ..pairs.grid import relist
-from ..pairs.setup import NEAR, near_lists
+from ..pairs.setup import refilled
 from ..report import Outcome
 from .memory import OF_SCENE, ROOM, gathered, recalled, remembered
 from .scene_memory import SceneMemory
@@ -184,14 +184,9 @@ class Remembering:
 
     def _list_anew(self) -> None:
         """Make near lists for the present places of bodies, as for a new loop."""
-        scene = self.scene
-        near = near_lists(scene, len(scene.LIST), self.table)
-        pairs = [(np.asarray(getattr(scene, name)), np.asarray(getattr(near, name))) for name in NEAR]
-        if all(old.shape == new.shape for old, new in pairs):
-            # The addresses that machine code uses remain.
-            for old, new in pairs:
-                old[...] = new
+        table = refilled(self.table)
+        if table is self.table:
             self.fresh[:] = self.own
-            return
-        self.scene = near
-        self.keep_fresh()
+        else:
+            self.scene = scene_of(table)
+            self.keep_fresh()
