@@ -231,6 +231,8 @@ MUTATIONS = (
              "        pass\n    return s, left", "rows/test_blocks.py", "debt"),
     Mutation("correction: the common turn is the other way", "contacts/correction.py", "return -gained / inertia",
              "return gained / inertia", "contacts/test_piles.py", "free_island"),
+    Mutation("correction: turns move no point", "contacts/correction.py", " + abs(D[i, 2]) * EXTENT[i])", ")",
+             "islands/test_penetration.py", "no_point"),
     Mutation("correction: sign of its work", "contacts/correction.py", "work = -against(", "work = against(",
              "contacts/test_piles.py", "push_out"),
     Mutation("rest: forces keep half of the length of the step", "islands/at_rest.py", "longer = dt / R.length",

@@ -2,8 +2,9 @@
 losses of the same island and interval.
 
 delta = M^-1 G^T mu with 0 <= mu _|_ g + A mu >= 0 for the gaps g at the end, scaled so that the potential energy it
-costs is at most the losses, and no displacement exceeds CORRECTION_STEP of the size: so the correction gives no energy,
-and no body passes through a wall by it. Gaps above -OVERLAP_LEFT of the size are not corrected.
+costs is at most the losses, and no point of a body moves farther than CORRECTION_STEP of the size of the smallest one:
+so the correction gives no energy, no body passes through a wall by it, and gaps stay about linear in the displacements.
+Gaps above -OVERLAP_LEFT of the size are not corrected.
 
 Displacements change the orbital angular momentum by sum m delta x v. If an island is free (without bodies that impulses
 do not move), a common rotation of its velocities about the centre of mass removes that change.
@@ -28,7 +29,7 @@ from .works import against, moved
 
 @kernel
 def lifting(
-    problem: Problem, POSE: FloatArray, VN: FloatArray, ACC: FloatArray, h: float, size: float, budget: float,
+    problem: Problem, POSE: FloatArray, VN: FloatArray, ACC: FloatArray, h: float, EXTENT: FloatArray, budget: float,
     JUMP: FloatArray,
 ) -> None:  # fmt: skip
     """Compute the corrections JUMP (k, 6) of pose and velocity at the end of an interval of length h.
@@ -36,10 +37,11 @@ def lifting(
     Args:
         problem: its contacts, with gaps at the start.  POSE: (k, 3) at the middle of the interval.
         VN: (k, 3) velocities at the end.  ACC: (k, 3) accelerations without contacts.
-        size: extent of the smallest body, length.
+        EXTENT: (k,) lengths from the bodies' centres of mass to their farthest points.
         budget: energy that the correction may cost; below 0 nothing is corrected, with 0 what costs nothing.
     """
     A, B, ROWS, IM, II, _, n, m = problem
+    size = least_of(EXTENT, n)
     JUMP[:] = 0.0
     GAPS = np.empty(m)
     deepest = 0.0
@@ -51,13 +53,11 @@ def lifting(
     D = np.zeros((len(IM), 3))
     most = 10 + 1000 // m if m <= DENSE_CONTACTS else 8 + 200 // m
     lift(problem, GAPS, np.zeros(m), D, 0.1 * OVERLAP_LEFT * size, most)
-    far = 0.0
-    for i in range(n):
-        far = max(far, math.sqrt(D[i, 0] * D[i, 0] + D[i, 1] * D[i, 1]))
-    if far > CORRECTION_STEP * size:
+    part = admissible(D, EXTENT, n)
+    if part < 1.0:
         for i in range(n):
             for c in range(3):
-                D[i, c] *= CORRECTION_STEP * size / far
+                D[i, c] *= part
     work = -against(ACC, IM, II, n, D)
     END, NEW = moved(POSE, VN, 0.5 * h), np.empty((n, 3))
     turn = x = y = square = 0.0
@@ -93,6 +93,16 @@ def least_of(EXTENT: FloatArray, n: int) -> float:
     for i in range(n):
         size = min(size, EXTENT[i])
     return size
+
+
+@nonallocating
+def admissible(D: FloatArray, EXTENT: FloatArray, n: int) -> float:
+    """The part of displacements D (k, 3) of n bodies by which no point moves too far: see CORRECTION_STEP."""
+    far = 0.0
+    for i in range(n):
+        far = max(far, math.sqrt(D[i, 0] * D[i, 0] + D[i, 1] * D[i, 1]) + abs(D[i, 2]) * EXTENT[i])
+    most = CORRECTION_STEP * least_of(EXTENT, n)
+    return most / far if far > most else 1.0
 
 
 @nonallocating

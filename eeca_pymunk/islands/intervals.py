@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
-from ..contacts.correction import budget_of, least_of, lifting
+from ..contacts.correction import budget_of, lifting
 from ..contacts.geometry import gather
 from ..contacts.interval import make_contacts, step_island
 from ..contacts.unmet import note_unmet, spend
@@ -200,7 +200,7 @@ def find_lifts(
     if payable < math.inf:
         budget = math.inf
     problem = Problem(P, Q, ROWS, isle.IM, isle.II, isle.POSE, n, m)
-    lifting(problem, POSE, VN, isle.ACC, h, least_of(isle.EXTENT, n), budget, contacts.JUMP)
+    lifting(problem, POSE, VN, isle.ACC, h, isle.EXTENT, budget, contacts.JUMP)
     return payable
 
 

@@ -8,11 +8,11 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..compiled import kernel
-from ..contacts.correction import least_of, turn_by, unturn
+from ..contacts.correction import admissible, least_of, turn_by, unturn
 from ..contacts.works import against
 from ..model.contacts import JointedProblem
 from ..model.joints import Joints
-from ..model.parameters.intervals import CORRECTION_STEP, OVERLAP_LEFT
+from ..model.parameters.intervals import OVERLAP_LEFT
 from ..model.parameters.joints import JOINTED_CORRECTION_SWEEPS
 from ..model.scene import Scene
 from ..rows.bounded import room_for_rows
@@ -67,11 +67,7 @@ def correct(A: Scene, J: Joints, interval: Interval, end: float, budget: float) 
     weigh(groups, C, P, Q, KEEP, m)
     D = np.zeros_like(V)
     raise_gaps(JointedProblem(P, Q, KEEP, C, room_for_rows(0, 0), m), GAPS, D, 1e-3 * -deepest)
-    far = 0.0
-    for q in range(n):
-        far = max(far, (math.sqrt(D[q, 0] ** 2 + D[q, 1] ** 2) + abs(D[q, 2]) * isle.EXTENT[q]) / isle.EXTENT[q])
-    cost = -against(isle.ACC, isle.IM, isle.II, n, D)
-    part = min(1.0, CORRECTION_STEP / far) if far > 0.0 else 0.0
+    cost, part = -against(isle.ACC, isle.IM, isle.II, n, D), admissible(D, isle.EXTENT, n)
     if cost * part > 0.5 * budget:
         part = 0.5 * budget / cost
     HELD = np.zeros(len(groups.COMPONENT))

@@ -9,7 +9,7 @@ import numpy as np
 
 from eeca_pymunk.compiled import table_of
 from eeca_pymunk.compiled.records import columns, rows
-from eeca_pymunk.contacts.correction import budget_of, least_of, lifting
+from eeca_pymunk.contacts.correction import budget_of, lifting
 from eeca_pymunk.contacts.interval import make_contacts, step_island
 from eeca_pymunk.contacts.memory import forget
 from eeca_pymunk.contacts.works import carried, moved
@@ -126,7 +126,7 @@ class Pile:
         if m > 0:
             problem, middle = Problem(c.A, c.B, c.ROWS, self.im, self.ii, self.pose, n, m), moved(self.pose, V, 0.5 * h)
             budget = budget_of(c.ROWS, m, float(self.losses.sum()), 0.0)
-            lifting(problem, middle, c.VN, self.acc, h, least_of(self.extent, n), budget, c.JUMP)
+            lifting(problem, middle, c.VN, self.acc, h, self.extent, budget, c.JUMP)
 
     def carried(self, vn: np.ndarray) -> float:
         """External work of the contacts, with velocities `vn` after the step."""

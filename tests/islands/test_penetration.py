@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
+
 import pymunk
 import pytest
 from pymunk import Vec2d
 
 import eeca_pymunk as ep
+from eeca_pymunk.model.parameters.intervals import CORRECTION_STEP
 
 DT = 1 / 60
 
@@ -95,3 +98,24 @@ def test_a_floor_that_slides_under_an_overlap_of_others_does_no_work(speed: floa
         ledger = stepper.step(1 / 60).ledger
         assert ledger is not None
         assert abs(ledger.external) <= 1e-13
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+@pytest.mark.parametrize("arm", [0.02, 0.05, 0.1])
+def test_no_point_of_a_body_moves_farther_than_a_quarter_of_its_size_as_overlaps_are_corrected(
+    unit: float, arm: float
+) -> None:
+    """A rod that is easily turned lies on a peg near its middle, which to first order a turn of a radian clears."""
+    space = pymunk.Space()
+    rod = pymunk.Body(1.0, 1e-4 * unit**2)
+    outline = [(-1.0, -0.1), (1.0, -0.1), (1.0, 0.1), (-1.0, 0.1)]
+    space.add(rod, pymunk.Poly(rod, [(x * unit, y * unit) for x, y in outline]))
+    space.add(pymunk.Circle(space.static_body, 0.1 * unit, (arm * unit, -0.17 * unit)))
+    stepper = ep.EECA(space)
+    for _ in range(10):
+        place, angle = rod.position, rod.angle
+        book = stepper.step(DT).ledger
+        assert book is not None
+        assert book.residual == 0.0
+        way = (rod.position - place).length + abs(rod.angle - angle) * math.hypot(1.0, 0.1) * unit
+        assert way <= CORRECTION_STEP * math.hypot(1.0, 0.1) * unit * (1.0 + 1e-9)

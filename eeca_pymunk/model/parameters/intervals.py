@@ -95,8 +95,8 @@ OVERLAP_LEFT = accuracy(1e-09, "of the smallest body", "Overlap that is not corr
 CORRECTION_STEP = accuracy(
     0.25,
     "of the smaller body",
-    "Displacement of a body by the correction in one interval, at most: half of what would take its centre through a "
-    "thin wall that it touches.",
+    "Way of any point of a body by the correction in one interval, at most: half of what would take its centre through "
+    "a thin wall that it touches. More turns boxes in large piles to and fro, deeper and deeper into each other.",
 )
 CORRECTION_ROUND_OFF = round_off(1e-14, "of its work", "Round-off of the work of a correction.")
 CORRECTION_SHARE = accuracy(
