@@ -56,6 +56,7 @@ class Hooks:
                     if not collisions or item.a.space is None:
                         assert item.pre_solve is not None
                         item.pre_solve(item, self.space)
+        self.__dict__.pop("_settings", None)  # which these may have changed
 
     def after(self, dt: float) -> None:
         """Call `post_solve` of the constraints, then the delayed ones of collisions."""
