@@ -86,7 +86,7 @@ class EECA(RunningStepper):
         self._sync.renew(drawn)
         if world is None or loop is None or not self._sync.is_ours():
             return None
-        step = loop.scene.PAR.stamp
+        step = loop.stamp
         if self._shown[0] != step or self._shown[1] is not world:
             self._shown = step, world, Touches(touches(loop.events, world.shapes))
         return self._shown[2]

@@ -10,8 +10,9 @@ from .energy.ledger import AFTER, DAMPED
 from .errors import NotFiniteError
 from .layout import LEFT
 from .packed_space import TOO_FAR, PackedSpace
-from .reentry import FunctionsCalled
+from .reentry import BUSY
 from .report import Details, Outcome, StepReport
+from .space.sleeping import Sleep
 from .space.world import World
 from .transfer import EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES
 from .unmet import Unmet, of_missed
@@ -27,9 +28,8 @@ class HookedStepper(PackedSpace):
         parted = False
         joints = world.joints
         if joints is not None:
-            if joints.edited or not joints.idle():
-                with FunctionsCalled(self.space):
-                    joints.update(world.state, world.bodies.row, dt)
+            if not joints.idle():
+                joints.update(world.state, world.bodies.row, dt)
             if joints.replan or joints.ends_moved:
                 loop = self.event_loop
                 assert loop is not None  # other methods refuse joints
@@ -69,13 +69,24 @@ class HookedStepper(PackedSpace):
 
     def _hooked_step(self, world: World, dt: float) -> StepReport:
         """A step of a space in which functions of bodies or constraints, or collision handlers, are called."""
-        with FunctionsCalled(self.space):
+        BUSY.add(self.space)
+        try:
             world, report = self._take_hooked(world, dt)
+        finally:
+            BUSY.discard(self.space)
         if world.collisions:
             self._sync.finish_rehearsal(dt, world.rehearsal.left_out)
         elif self.sync or (world.joints is not None and world.joints.calling):
             self._sync.call_back()
+        now = self._sleep
+        if now is not None and now.some and now.world is self._world and self.may_touch_sleepers(now):
+            now.wake(now.touched(report.contacts))  # by changes that functions have made
         return report
+
+    def may_touch_sleepers(self, sleep: Sleep) -> bool:
+        """Whether the last step may have touched a sleeping body; if False, its report need not be made."""
+        loop = self.event_loop
+        return loop is None or sleep.is_touched(loop.log, loop.impulses)
 
     def _start_hooked(self, world: World) -> World:
         """Read the state of all bodies; returns their world, which may be new."""
@@ -92,15 +103,15 @@ class HookedStepper(PackedSpace):
     def _take_hooked(self, world: World, dt: float) -> tuple[World, StepReport]:
         """The step without post-step callbacks, and its world."""
         world = self._start_hooked(world)
-        half_damping, lost = world.half_damping(dt), 0.0
+        half_damping, lost, hooks, called = world.half_damping(dt), 0.0, world.hooks, True
         try:
             if world.joints is not None:
                 world.joints.refresh()
                 if world.joints.before:
-                    world.hooks.before(dt)
+                    hooks.before(dt)
                     world.gather()
-            if world.hooks.steered:
-                world.set_accelerations(world.hooks.velocity_changes(dt), dt)
+            if hooks.steered:
+                world.set_accelerations(hooks.velocity_changes(dt), dt)
             if world.collisions:
                 sync = None if self._sleep is not None or self.decisions.laws else self._sync
                 if (status := world.rehearsal.run(dt, half_damping, sync)) < 0:
@@ -108,7 +119,9 @@ class HookedStepper(PackedSpace):
                 if self._sleep is not None and self._sleep.woken():
                     world = self._reread_awoken(world)
                 world.rules = world.rehearsal.rules(self.decisions)
-            status, hooks = self.advance(world, dt, half_damping), world.hooks
+                hooks = world.hooks
+                called = hooks.some or not world.rehearsal.left_out
+            bits = status = self.advance(world, dt, half_damping)
             if status < 0:
                 self._raise_failure(world, dt, status)
             outcome = self._outcome(dt)
@@ -121,11 +134,12 @@ class HookedStepper(PackedSpace):
                     hooks.positions(world.state, world.STATES[LEFT], dt)
                     world.bodies.check_finite(world.ended(), TOO_FAR)
                     bits = world.write_whole()
-            else:
+            elif called:
                 bits = world.write_whole()
-            forces, status = status & FORCES, status & EVENTS | bits
-            if alters or forces or hooks.some or world.joints is not None:
+            # Else bodies and their forces are as they were read.
+            if alters or status & FORCES or (called and (hooks.some or world.joints is not None)):
                 world.reset_forces()
+            status = status & EVENTS | bits
             self._write_hooked_end(world, dt, status)
             if alters:
                 # So that changes by functions after the step count as edits in the next one.
@@ -179,7 +193,7 @@ class HookedStepper(PackedSpace):
     def _outcome(self, dt: float) -> Outcome:
         """The outcome of the step. NotFiniteError, before the space is changed, if the energy overflows though
         positions and velocities do not."""
-        outcome = self.outcome()
+        outcome = self._method.outcome()
         book = outcome[0]
         if book is not None and not isfinite(book[AFTER]):
             self._world = None

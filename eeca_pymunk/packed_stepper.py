@@ -16,9 +16,11 @@ Steps that call functions of the program have their own method, `HookedStepper._
 
 from __future__ import annotations
 
+from math import inf
 from typing import TypeVar
 
 from .arrays import AnyArray
+from .compiled.records import as_integers
 from .hooked_stepper import HookedStepper
 from .layout import LEFT
 from .reentry import BUSY, refuse_within
@@ -55,8 +57,8 @@ class PackedStepper(HookedStepper):
     def step(self, dt: float) -> StepReport:
         if BUSY:
             refuse_within(self.space)
-        dt = check_dt(dt)
-        if dt == 0.0:
+        dt = float(dt)
+        if not 0.0 < dt < inf and check_dt(dt) == 0.0:
             return StepReport.without_contacts(self.time)
         world = self._world
         if world is None or not world.current():
@@ -76,22 +78,15 @@ class PackedStepper(HookedStepper):
             world = self._update_world(anew=True)
         report = self._step(world, dt)
         now = self._sleep
-        if now is not None and now.world is self._world:
-            if now.some and self.may_touch_sleepers(now):
-                now.wake(now.touched(report.contacts))  # by changes that functions have made
-            if now.rest(dt) and now.world.current():
-                now.fall_asleep(report.contacts, dt)
+        if now is not None and now.world is self._world and now.rest(dt) and now.world.current():
+            now.fall_asleep(report.contacts, dt)
         return report
-
-    def may_touch_sleepers(self, sleep: Sleep) -> bool:
-        """Whether the last step may have touched a sleeping body; if False, its report need not be made."""
-        loop = self.event_loop
-        return loop is None or sleep.is_touched(loop.scene.LOG, loop.impulses)
 
     def rewound(self, world: World) -> list[AnyArray]:
         """Arrays that a step writes, and that one which takes its place needs as they were."""
         loop = self.event_loop
-        return [world.STATES[LEFT], *(() if loop is None else (loop.scene.SIDE,))]
+        left = world.STATES[LEFT]
+        return [left] if loop is None or not loop.thin else [left, as_integers(loop.scene.SIDE)]
 
     def _rewound_copy(self, world: World) -> list[AnyArray]:
         """A copy of `rewound`, if the step may have to be repeated."""

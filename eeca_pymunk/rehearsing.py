@@ -37,6 +37,7 @@ from .transfer import (
 )  # fmt: skip
 
 HEARD_COLUMNS = 7
+AHEAD = 2.0  # ways of a step for which pairs that approach are near before they meet
 PRESS = 1e-7  # part of its height by which a body is moved towards its support in a rehearsal
 
 
@@ -124,9 +125,36 @@ def as_read(STATES: FloatArray, EXTRA: FloatArray) -> None:
 
 
 @kernel
+def nears(STATES: FloatArray, ENDS: FloatArray, HEARD: FloatArray, PAIRS: IntArray, dt: float, ahead: float) -> int:
+    """Whether any of the PAIRS (p, 2) of rows of HEARD comes near in a step of length dt that `approach` has begun: at
+    the end of free flight, each body within `ahead` times its way there.
+
+    HEARD (m, HEARD_COLUMNS): row of the body, -1 for static shapes; centre (2), half sides (2) and rounding of a box
+    that contains the shape; its radius at rest. Of shapes that move the box is a circle about the origin of the body,
+    whose centre and radius are written.
+    """
+    now, N = STATES[NOW], STATES.shape[1]
+    end = ENDS[END * N :]
+    for k in range(HEARD.shape[0]):
+        i = int(HEARD[k, 0])
+        if i >= 0:
+            x, y = end[6 * i] + dt * now[i, 3], end[6 * i + 1] + dt * now[i, 4]
+            way = math.hypot(x - now[i, 0], y - now[i, 1])
+            HEARD[k, 1], HEARD[k, 2], HEARD[k, 5] = x, y, HEARD[k, 6] + ahead * way
+    for p in range(PAIRS.shape[0]):
+        a, b = PAIRS[p, 0], PAIRS[p, 1]
+        x = max(abs(HEARD[a, 1] - HEARD[b, 1]) - HEARD[a, 3] - HEARD[b, 3], 0.0)
+        y = max(abs(HEARD[a, 2] - HEARD[b, 2]) - HEARD[a, 4] - HEARD[b, 4], 0.0)
+        reach = HEARD[a, 5] + HEARD[b, 5]
+        if x * x + y * y <= reach * reach:
+            return 1
+    return 0
+
+
+@kernel
 def approach(
     STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, BODY: Rows[Body], ENDS: FloatArray, KEPT: FloatArray,
-    dt: float, gx: float, gy: float, half_damping: float,
+    HEARD: FloatArray, PAIRS: IntArray, dt: float, gx: float, gy: float, half_damping: float,
 ) -> int:  # fmt: skip
     """Copy the present state to KEPT (N, 9). Write to ENDS, to the table END with angles and spins, the poses from
     which a step of pymunk leads to the end of free flight. pymunk moves bodies before it accelerates them, so that they
@@ -141,7 +169,8 @@ def approach(
     one.
 
     Returns:
-        0; NOT_FINITE or OVERFLOW if a number at the start or the end is not finite.
+        1 if one of PAIRS comes near (`nears`), else 0; NOT_FINITE or OVERFLOW if a number at the start or the end is
+        not finite.
     """
     now = STATES[NOW]
     N = WALK.shape[1]
@@ -180,34 +209,7 @@ def approach(
                 x, y = x - dx, y - dy
         end[6 * i], end[6 * i + 1], end[6 * i + 2] = x, y, angle
         end[6 * i + 3], end[6 * i + 4], end[6 * i + 5] = vx, vy, spin
-    return 0
-
-
-@kernel
-def nears(STATES: FloatArray, ENDS: FloatArray, HEARD: FloatArray, PAIRS: IntArray, dt: float, ahead: float) -> int:
-    """Whether any of the PAIRS (p, 2) of rows of HEARD comes near in a step of length dt that `approach` has begun: at
-    the end of free flight, each body within `ahead` times its way there.
-
-    HEARD (m, HEARD_COLUMNS): row of the body, -1 for static shapes; centre (2), half sides (2) and rounding of a box
-    that contains the shape; its radius at rest. Of shapes that move the box is a circle about the origin of the body,
-    whose centre and radius are written.
-    """
-    now, N = STATES[NOW], STATES.shape[1]
-    end = ENDS[END * N :]
-    for k in range(HEARD.shape[0]):
-        i = int(HEARD[k, 0])
-        if i >= 0:
-            x, y = end[6 * i] + dt * now[i, 3], end[6 * i + 1] + dt * now[i, 4]
-            way = math.hypot(x - now[i, 0], y - now[i, 1])
-            HEARD[k, 1], HEARD[k, 2], HEARD[k, 5] = x, y, HEARD[k, 6] + ahead * way
-    for p in range(PAIRS.shape[0]):
-        a, b = PAIRS[p, 0], PAIRS[p, 1]
-        x = max(abs(HEARD[a, 1] - HEARD[b, 1]) - HEARD[a, 3] - HEARD[b, 3], 0.0)
-        y = max(abs(HEARD[a, 2] - HEARD[b, 2]) - HEARD[a, 4] - HEARD[b, 4], 0.0)
-        reach = HEARD[a, 5] + HEARD[b, 5]
-        if x * x + y * y <= reach * reach:
-            return 1
-    return 0
+    return nears(STATES, ENDS, HEARD, PAIRS, dt, AHEAD)
 
 
 @kernel

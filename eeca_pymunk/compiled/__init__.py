@@ -13,7 +13,7 @@ Open first `backend.py`, which chooses among the three. `entries.py` declares th
 from .backend import start
 from .kernels import Choice, Kernel, inlined, kernel, nonallocating, prepare
 from .prefetch import fetch
-from .tables import Opener, Table, table_of
+from .tables import Opener, Table, replaced, table_of
 
 __all__ = [
     "Choice",
@@ -26,6 +26,7 @@ __all__ = [
     "nonallocating",
     "plain",
     "prepare",
+    "replaced",
     "start",
     "table_of",
 ]

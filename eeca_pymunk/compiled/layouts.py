@@ -48,12 +48,13 @@ def lay_out(PLAN: IntArray, NUMBERS: IntArray, TABLE: IntArray, address: int) ->
     return at
 
 
-class Layout(Generic[T]):
-    """Memory for the arrays of one table after the other.
+class Plan(Generic[T]):
+    """Which arrays a table has, for its `Layout`; one plan serves many.
 
     Args:
         kind: named tuple of the arrays, one of `entries.TABLES`.
-        own: the arrays in this memory, in this order; of which the first `zeros` are 0, the rest of any content.
+        own: the arrays in the memory of the layout, in this order; of which the first `zeros` are 0, the rest of any
+            content.
         elsewhere: arrays in other memory.  constant: others, which stay the same.
         dimensions: of arrays with more than one, COUNT for the number of rows.
     """
@@ -62,25 +63,32 @@ class Layout(Generic[T]):
         self, kind: type[T], own: Sequence[str], zeros: int, elsewhere: Sequence[str],
         constant: Mapping[str, AnyArray], dimensions: Mapping[str, tuple[int, ...]],
     ) -> None:  # fmt: skip
-        self._kind, self._own, self._elsewhere, self._constant = kind, tuple(own), tuple(elsewhere), dict(constant)
+        self.kind, self.own, self.elsewhere, self.constant = kind, tuple(own), tuple(elsewhere), dict(constant)
         fields = table_fields(kind.__name__)
-        self._first_word = {name: WORDS * i for i, (name, *_) in enumerate(fields)}
-        self._dtypes = {name: dtype for name, dtype, _ in fields}
-        self._dimensions = {name: dimensions.get(name, (COUNT,) * many) for name, _, many in fields}
-        words = np.zeros(WORDS * len(fields), np.int64)
+        self.first_word = {name: WORDS * i for i, (name, *_) in enumerate(fields)}
+        self.dtypes = {name: dtype for name, dtype, _ in fields}
+        self.dimensions = {name: dimensions.get(name, (COUNT,) * many) for name, _, many in fields}
+        self.words: IntArray = np.zeros(WORDS * len(fields), np.int64)
         rows = []
         for name in (*own, *elsewhere):
-            shape, dtype = self._dimensions[name], self._dtypes[name]
+            shape, dtype = self.dimensions[name], self.dtypes[name]
             width = math.prod(length for length in shape if length != COUNT)
-            rows.append((self._first_word[name], width * dtype.itemsize, width, *lengths(shape)))
-        plan = np.array(rows, np.int64)
+            rows.append((self.first_word[name], width * dtype.itemsize, width, *lengths(shape)))
+        self.rows: IntArray = np.array(rows, np.int64)
         for name, array in constant.items():
-            words[self._first_word[name] :][:WORDS] = words_of(array)
+            self.words[self.first_word[name] :][:WORDS] = words_of(array)
+        self.end = self.first_word[own[zeros]] if zeros < len(own) else None
+
+
+class Layout(Generic[T]):
+    """Memory for the arrays of one table after the other."""
+
+    def __init__(self, plan: Plan[T]) -> None:
+        self._plan, words = plan, plan.words.copy()
         self._table = words.data
-        self._end = self._first_word[own[zeros]] if zeros < len(own) else None
-        self._numbers = np.zeros(len(plan) + len(elsewhere), np.int64)
+        self._numbers = np.zeros(len(plan.rows) + len(plan.elsewhere), np.int64)
         self._put, self._into = struct.Struct(f"{len(self._numbers)}q").pack_into, self._numbers.data
-        self._write = lay_out.bind(plan, self._numbers, words)
+        self._write = lay_out.bind(plan.rows, self._numbers, words)
         self._memory = Memory()
         self._pointers = Pointers(tuple, words) if start().entries else None
 
@@ -90,7 +98,7 @@ class Layout(Generic[T]):
         memory = self._memory
         address = memory.address
         total = self._write(address)
-        memory.provide(total if self._end is None else self._table[self._end] - address, total)
+        memory.provide(total if self._plan.end is None else self._table[self._plan.end] - address, total)
         if memory.address != address:
             self._write(memory.address)
         if self._pointers is None:
@@ -100,14 +108,16 @@ class Layout(Generic[T]):
 
     def _arrays(self, elsewhere: Sequence[AnyArray]) -> T:
         """The arrays of the last table."""
-        others = dict(zip(self._elsewhere, elsewhere, strict=True))
-        return self._kind(**self._constant, **others, **{name: self.array(name) for name in self._own})
+        plan = self._plan
+        others = dict(zip(plan.elsewhere, elsewhere, strict=True))
+        return plan.kind(**plan.constant, **others, **{name: self.array(name) for name in plan.own})
 
     def array(self, name: str) -> Any:
         """An array of this memory in the last table."""
-        count, at = self._into[self._own.index(name)], self._table[self._first_word[name]] - self._memory.address
-        shape = tuple([count if length == COUNT else length for length in self._dimensions[name]])
-        array = self._memory.array(shape or (1,), self._dtypes[name], at)
+        plan = self._plan
+        count, at = self._into[plan.own.index(name)], self._table[plan.first_word[name]] - self._memory.address
+        shape = tuple([count if length == COUNT else length for length in plan.dimensions[name]])
+        array = self._memory.array(shape or (1,), plan.dtypes[name], at)
         return array if shape else array[0]
 
     def floats(self, name: str) -> memoryview:
@@ -119,11 +129,11 @@ class Layout(Generic[T]):
         return self._memory.integers[self._part(name)]
 
     def _part(self, name: str) -> slice:
-        word = self._first_word[name]
+        word = self._plan.first_word[name]
         first = (self._table[word] - self._memory.address) // 8
-        return slice(first, first + self._table[word + 1] * self._dtypes[name].itemsize // 8)
+        return slice(first, first + self._table[word + 1] * self._plan.dtypes[name].itemsize // 8)
 
     def until(self, name: str) -> IntArray:
         """The memory before this array, as integers."""
-        end = self._table[self._first_word[name]] - self._memory.address
+        end = self._table[self._plan.first_word[name]] - self._memory.address
         return self._memory.bytes[:end].view(np.int64)

@@ -127,7 +127,7 @@ def from_bytes(kind: type[R], content: Sequence[bytes]) -> Rows[R]:
     return over(kind, bytearray().join(content))
 
 
-def over(kind: type[R], memory: bytearray) -> Rows[R]:
+def over(kind: type[R], memory: bytearray | memoryview) -> Rows[R]:
     """The records in this memory."""
     return np.frombuffer(memory, kind.TYPE)  # type: ignore[return-value]
 

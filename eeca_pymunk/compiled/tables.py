@@ -12,7 +12,7 @@ from typing import Any, Generic, TypeAlias, TypeVar
 
 import numpy as np
 
-from ..arrays import address_of, lengths
+from ..arrays import AnyArray, address_of, lengths
 from .backend import start
 from .entries import TABLES, table_fields
 from .kernels import Compilable
@@ -77,6 +77,16 @@ def table_of(arrays: Any, like: Table | None = None) -> Table:
     for (field, dtype, dimensions), array in zip(fields, arrays, strict=True):
         numbers += _words(name, field, dtype, dimensions, array)
     return Pointers(lambda: arrays, np.array(numbers, np.int64))
+
+
+def replaced(table: Table, kind: type[Any], name: str, array: AnyArray) -> Table:
+    """The table of a named tuple of this kind, with another array of this name. numpy's arrays are not made for it."""
+    if not isinstance(table, Pointers):
+        return table._replace(**{name: array})
+    words, fields = table.words.copy(), table_fields(kind.__name__)
+    place = [field for field, *_ in fields].index(name)
+    words[WORDS * place : WORDS * (place + 1)] = _words(kind.__name__, *fields[place], array)
+    return Pointers(lambda: table.arrays._replace(**{name: array}), words)
 
 
 def _words(name: str, field: str, dtype: np.dtype[Any] | None, dimensions: int, a: Any) -> tuple[int, ...]:

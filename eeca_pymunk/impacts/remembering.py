@@ -18,14 +18,14 @@ from ..model.scene import Scene, scene_of
 from ..model.shapes import Side
 from ..model.step import Count, Step
 from ..pairs.grid import relist
-from ..pairs.setup import NEAR, near_lists
+from ..pairs.setup import refilled
 from ..report import Outcome
 from .memory import OF_SCENE, ROOM, gathered, recalled, remembered
 from .scene_memory import SceneMemory
 
 _STEP, _COUNT = Step.TYPE.names or (), Count.TYPE.names or ()
 _BOOK = slice(_STEP.index("restitution"), _STEP.index("after") + 1)
-_LOCK = _STEP.index("lock")
+_LOCK, _STAMP = _STEP.index("lock"), _STEP.index("stamp")
 _UNMET, _SOLVES, _BLOCKS, _LOGGED = map(_COUNT.index, ("unmet", "solves", "blocks", "logged"))
 _IMPULSE = Impulse.TYPE.itemsize // 8
 UNBOUND: tuple[tuple[AnyArray | None, ...], Callable[..., int]] = (None,) * 4, int
@@ -38,14 +38,18 @@ _OF_PROCESS = (
     "_first",
     "_par",
     "_count",
-    "_log",
+    "log",
     "_laid",
     "_memory",
 )  # attributes that no copy has
 
 
 class Remembering:
-    """What an event loop stores of earlier steps."""
+    """What an event loop stores of earlier steps.
+
+    Attributes:
+        log: the memory of LOG; another object once that is elsewhere.
+    """
 
     jointed: bool
     joint: Rows[Joint]
@@ -65,7 +69,7 @@ class Remembering:
         # These are read in every step. Fields of records take thirty times as long, entries of arrays three times.
         self._par: memoryview = numbers(arrays.PAR).data
         self._count: memoryview = numbers(arrays.COUNT).data
-        self._log: memoryview = as_integers(arrays.LOG).data
+        self.log: memoryview = as_integers(arrays.LOG).data
 
     @property
     def sides(self) -> Rows[Side]:
@@ -89,13 +93,18 @@ class Remembering:
         return book, par[_LOCK], count[_UNMET] == 0, count[_SOLVES] + count[_BLOCKS]
 
     @property
+    def stamp(self) -> float:
+        """The number of the last step."""
+        return float(self._par[_STAMP])
+
+    @property
     def impulses(self) -> int:
         """Number of impulses of the last step."""
         return int(self._count[_LOGGED])
 
     def logged(self) -> bytes:
         """The impulses of the last step: to copy arrays takes three times as long."""
-        return self._log[: self._count[_LOGGED] * _IMPULSE].tobytes()
+        return self.log[: self._count[_LOGGED] * _IMPULSE].tobytes()
 
     def __getstate__(self) -> dict[str, object]:
         state = {key: value for key, value in self.__dict__.items() if key not in _OF_PROCESS}
@@ -175,14 +184,9 @@ class Remembering:
 
     def _list_anew(self) -> None:
         """Make near lists for the present places of bodies, as for a new loop."""
-        scene = self.scene
-        near = near_lists(scene, len(scene.LIST), self.table)
-        pairs = [(np.asarray(getattr(scene, name)), np.asarray(getattr(near, name))) for name in NEAR]
-        if all(old.shape == new.shape for old, new in pairs):
-            # The addresses that machine code uses remain.
-            for old, new in pairs:
-                old[...] = new
+        table = refilled(self.table)
+        if table is self.table:
             self.fresh[:] = self.own
-            return
-        self.scene = near
-        self.keep_fresh()
+        else:
+            self.scene = scene_of(table)
+            self.keep_fresh()

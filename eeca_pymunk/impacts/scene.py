@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import AnyArray, FloatArray, IntArray
+from ..compiled import replaced
 from ..compiled.library import check
 from ..compiled.records import R, Rows, columns, from_bytes, put, rows
 from ..contacts.memory import forget
@@ -19,6 +20,7 @@ from ..model.bodies import CHECK, Body
 from ..model.contacts import Force, Impulse
 from ..model.joints import Held, Joint
 from ..model.parameters.events import MANY_BODIES, STEP_LOOKS, STEP_LOOKS_BODY
+from ..model.scene import Scene
 from ..model.shapes import Link, Shape
 from ..model.step import Missed
 from ..pairs.setup import with_more_room
@@ -80,8 +82,9 @@ class EventLoop(Remembering):
         HELD = self._hold(BODY, SHAPE, LINK) if self.jointed else NO_HELD
         budget = STEP_LOOKS + STEP_LOOKS_BODY * n * max(n, MANY_BODIES) // MANY_BODIES
         self.table = memory.scene(BODY, SHAPE, LINK, VERTEX, HELD, limit, disks, together, budget)
-        (self._par, self._count, self._log), self._bound = memory.records(), UNBOUND
-        self._laid, self._memory, self.thin, self._ruled = self.table, memory, memory.thin > 0, False
+        (self._par, self._count, self.log), self._bound = memory.records(), UNBOUND
+        self._laid, self._memory, self.thin = self.table, memory, memory.thin > 0
+        self._rules: dict[tuple[int, int], tuple[float, float, float, float]] = {}  # those of the table
         if self.jointed:
             self._plan(BODY)
         else:
@@ -202,12 +205,10 @@ class EventLoop(Remembering):
     def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
         """Set the law of pairs of shapes a < b: elasticity (below 0: they pass through each other), friction and
         surface velocity (2)."""
-        if not (rules or self._ruled):
-            return
-        self._ruled = len(rules) > 0
-        table = np.array([(*pair, *what) for pair, what in rules.items()], float).reshape(-1, RULE_COLUMNS)
-        if not np.array_equal(table, self.scene.RULE):
-            self.scene = self.scene._replace(RULE=table)
+        if rules != self._rules:
+            self._rules = dict(rules)
+            table = np.array([(*pair, *what) for pair, what in rules.items()], float).reshape(-1, RULE_COLUMNS)
+            self.table, self._bound = replaced(self.table, Scene, "RULE", table), UNBOUND
 
     @property
     def events(self) -> Rows[Impulse]:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import Table
-from ..compiled.layouts import COUNT, Layout
+from ..compiled.layouts import COUNT, Layout, Plan
 from ..compiled.records import Rows, rows
 from ..geometry.corners import side_rows
 from ..joints.workspace import JointMemory
@@ -28,6 +30,15 @@ _ZEROS = (*OF_SCENE, "PULL", "BEGAN", "HEAP_TIME", "HEAP_BODY", "BLOCK", "BOX", 
 _FILLED = "LOG", "KEYS", "FORCES", "PUSHED_BY", "PUSHED"  # before they are read
 
 
+@cache
+def _arrays() -> Plan[Scene]:
+    return Plan(
+        Scene, _ZEROS + _FILLED, len(_ZEROS), ("BODY", "SHAPE", "LINK", "VERTEX", "HELD"),
+        {"RULE": _NO_RULE, "CSR": NO_GRID},
+        {"CORE": (2, COUNT, 4), "PULL": (COUNT, 3), "BEGAN": (COUNT, 3), "BOX": (COUNT, 4), "VERTEX": (COUNT, 4)},
+    )  # fmt: skip
+
+
 class SceneMemory:
     """Memory for the scenes of one stepper: each replaces the one before, whose arrays it overwrites.
 
@@ -39,11 +50,7 @@ class SceneMemory:
     thin: int
 
     def __init__(self) -> None:
-        self._layout = Layout(
-            Scene, _ZEROS + _FILLED, len(_ZEROS), ("BODY", "SHAPE", "LINK", "VERTEX", "HELD"),
-            {"RULE": _NO_RULE, "CSR": NO_GRID},
-            {"CORE": (2, COUNT, 4), "PULL": (COUNT, 3), "BEGAN": (COUNT, 3), "BOX": (COUNT, 4), "VERTEX": (COUNT, 4)},
-        )  # fmt: skip
+        self._layout = Layout(_arrays())
         self._sizes: IntArray = np.zeros(MEASURES, np.int64)
         self.joints, self.log = JointMemory(), 0
         self._unjointed: tuple[Table, int] = None, 0
@@ -70,7 +77,7 @@ class SceneMemory:
             BODY, SHAPE, LINK, VERTEX, HELD,
         )  # fmt: skip
         begin_scene(table, limit, disks, together, budget, lossy)
-        return filled(table, moving, k - moving)
+        return filled(table, SHAPE, moving)
 
     def records(self) -> tuple[memoryview, memoryview, memoryview]:
         """PAR as numbers, COUNT and LOG as integers, of the last scene."""

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 from ..arrays import IntArray
 from ..compiled import Table, inlined, kernel, nonallocating
-from ..compiled.layouts import COUNT, Layout
+from ..compiled.layouts import COUNT, Layout, Plan
 from ..compiled.records import Rows
 from ..model.bodies import Body
 from ..model.joints import Joint, Joints, Workspace, joints_of
@@ -67,12 +69,17 @@ _PLAN = "TALLY", "PROGRESS", "PART", "STIFF", "COMPONENT", "JOINED", "COUPLING",
 _OF_ONE = "LOCAL", "HINGE", "PIVOTS", "MATRIX", "RIGHT", "MORE"  # scratch of one component
 
 
+@cache
+def _arrays() -> Plan[Joints]:
+    own = _PLAN + _OF_ONE
+    return Plan(Joints, own, len(own), ("JOINT", "PARTNER"), {}, {"STIFF": (COUNT, 6)})
+
+
 class JointMemory:
     """Memory for one plan of joints after the other."""
 
     def __init__(self) -> None:
-        own = _PLAN + _OF_ONE
-        self._layout = Layout(Joints, own, len(own), ("JOINT", "PARTNER"), {}, {"STIFF": (COUNT, 6)})
+        self._layout = Layout(_arrays())
         self._room: IntArray = np.ones(len(_OF_ONE), np.int64)
         self._most: tuple[int, ...] = (1, 1, 1, 1, 2, 1)  # of one component so far
 

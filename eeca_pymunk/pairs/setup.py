@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import IntArray, side_by_side
-from ..compiled import Table, table_of
+from ..compiled import Table, replaced, table_of
+from ..compiled.records import Rows
 from ..model.parameters.detection import ALL_PAIRS, ALL_WALLS, NEIGHBOURS
 from ..model.scene import Scene, scene_of
-from ..model.shapes import Cell, Grid, List, Mark
+from ..model.shapes import Cell, Grid, List, Mark, Shape
 from .grid import build
 from .margins import DONE, begin_lists, fill_lists
 
@@ -32,19 +33,33 @@ def near_lists(scene: Scene, moving: int, like: Table | None = None) -> Scene:
     )  # fmt: skip
     GRID[0].moving = moving
     scene = scene._replace(**dict(zip(NEAR, (MARK, CELL, LIST, POOL, FLAG, HEAD, GRID[0], BOX, NO_GRID), strict=True)))
-    return scene_of(filled(table_of(scene, like), moving, walls))
+    return scene_of(filled(table_of(scene, like), scene.SHAPE, moving))
 
 
-def filled(table: Table, moving: int, walls: int) -> Table:
-    """The table of a scene, with so many moving and static shapes and arrays NEAR as in a new one, with its first
-    lists."""
-    few = moving <= ALL_PAIRS and walls <= ALL_WALLS
+def refilled(table: Table) -> Table:
+    """The table of a scene with lists as `near_lists` makes them, in their place if they fit there."""
+    scene = scene_of(table)
+    moving, room = len(scene.LIST), (len(scene.POOL), len(scene.HEAD))
+    if room != pool_sizes(moving):
+        return table_of(near_lists(scene, moving, table), table)
+    for name in NEAR:
+        if name != "CSR":
+            array = np.asarray(getattr(scene, name))
+            np.ndarray(array.nbytes, np.uint8, array).fill(0)
+    scene.GRID.moving = moving
+    return filled(table, scene.SHAPE, moving, scene.CSR)
+
+
+def filled(table: Table, SHAPE: Rows[Shape], moving: int, CSR: IntArray = NO_GRID) -> Table:
+    """The table of a scene with these shapes, the first ones of which move, and with arrays NEAR as in a new one, with
+    its first lists. CSR: that of the table, to be written if it fits."""
+    few = moving <= ALL_PAIRS and len(SHAPE) - moving <= ALL_WALLS
     found = begin_lists(table, few)
     if few:
         return table if found == DONE else _with_more_room(table)
-    if found > 0:
-        table = table_of(scene_of(table)._replace(CSR=np.zeros(found, np.int64)), table)
-    bounds = np.sort(scene_of(table).SHAPE["bound"][:moving])
+    if found > 0 and (CSR is NO_GRID or len(CSR) != found):
+        table = replaced(table, Scene, "CSR", np.zeros(found, np.int64))
+    bounds = np.sort(SHAPE["bound"][:moving])
     halved = fill_lists(table, bounds, NEIGHBOURS, 0, False)
     while halved != DONE:
         table = _with_more_room(table)

@@ -103,6 +103,11 @@ class ConstraintValues(NamedTuple):
         return math.isfinite(self.force[0])
 
     @property
+    def shape(self) -> tuple[object, ...]:
+        """All values on which `plan` and `reach` depend."""
+        return self[:6]
+
+    @property
     def plan(self) -> tuple[object, ...]:
         """The values on which the plan of its component depends."""
         (ax, ay), (bx, by) = self.anchor_a, self.anchor_b

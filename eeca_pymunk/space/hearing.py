@@ -7,16 +7,15 @@ are neither, a rehearsal would call none.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pymunk
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..layout import BODY_ROW
-from ..rehearsing import HEARD_COLUMNS, nears
+from ..rehearsing import HEARD_COLUMNS
 from . import private, private_arbiters, private_shapes, private_versions
 from .edits import typings
 
@@ -24,7 +23,6 @@ if TYPE_CHECKING:
     from .world import World
 
 _MOST = 1024  # pairs that are looked at in a step; more are not worth it
-_AHEAD = 2.0  # ways of a step for which pairs that approach are near before they meet
 _WIDER = 1.01  # factor of sizes, for round-off
 
 
@@ -33,6 +31,7 @@ class Hearing:
 
     Attributes:
         typings: `edits.typings` when they were found.  handled: the pairs of types that had handlers.
+        arrays: HEARD and PAIRS of `rehearsing.nears`; None if they are many, or a body is not in the space.
     """
 
     def __init__(self, world: World) -> None:
@@ -41,13 +40,13 @@ class Hearing:
         pairs = self._pairs(list(world.records))
         place = {shape: k for k, shape in enumerate(dict.fromkeys(shape for pair in pairs or () for shape in pair))}
         heard = [_heard(world, shape) for shape in place]
-        self._nears: Callable[[float, float], int] | None = None  # None if they are many, or a body is not in the space
+        self.arrays: tuple[FloatArray, IntArray] | None = None
         if pairs is not None and None not in heard:
             HEARD: FloatArray = np.array(heard, float).reshape(-1, HEARD_COLUMNS)
             # Static shapes do not meet each other, nor do those of one body.
             body = [-1.0 if row is None else row[0] for row in heard]
             found = [(place[a], place[b]) for a, b in pairs if body[place[a]] != body[place[b]]]
-            self._nears = nears.bind(world.STATES, world.ENDS, HEARD, np.array(found, np.int64).reshape(-1, 2))
+            self.arrays = HEARD, np.array(found, np.int64).reshape(-1, 2)
 
     def _pairs(self, shapes: list[pymunk.Shape]) -> list[tuple[pymunk.Shape, pymunk.Shape]] | None:
         """All pairs of types that have handlers; None if they are too many."""
@@ -61,10 +60,6 @@ class Hearing:
                 return None
             found += product(one, two)
         return found
-
-    def near(self, dt: float) -> bool:
-        """Whether a pair may meet in the step of length dt that `rehearsing.approach` has begun, or soon after."""
-        return self._nears is None or self._nears(dt, _AHEAD) != 0
 
     def remembered(self) -> bool:
         """Whether pymunk remembers that a pair has touched."""

@@ -56,6 +56,7 @@ class Hooks:
                     if not collisions or item.a.space is None:
                         assert item.pre_solve is not None
                         item.pre_solve(item, self.space)
+        self.__dict__.pop("_settings", None)  # which these may have changed
 
     def after(self, dt: float) -> None:
         """Call `post_solve` of the constraints, then the delayed ones of collisions."""
@@ -85,9 +86,14 @@ class Hooks:
 
     def velocity_changes(self, dt: float) -> list[tuple[float, float, float]]:
         """Changes of velocity and spin by the velocity functions; the bodies are restored."""
-        space = self.space
-        with private_joints.TimeStep(space, dt):
-            return private_functions.velocity_changes(self._steered, space.gravity, space.damping**dt, dt)
+        gravity, damping = self._settings
+        with private_joints.TimeStep(self.space, dt):
+            return private_functions.velocity_changes(self._steered, gravity, damping**dt, dt)
+
+    @cached_property
+    def _settings(self) -> tuple[pymunk.Vec2d, float]:
+        """Gravity and damping, as velocity functions take them."""
+        return self.space.gravity, self.space.damping
 
     def positions(self, state: FloatArray, end: FloatArray, dt: float) -> None:
         """Call the position functions on `state` (N, 9) with the velocity that leads to `end` (N, 9) within dt, and

@@ -12,6 +12,7 @@ import pymunk
 from ..arrays import FloatArray, IntArray
 from ..compiled.records import over, records
 from ..model.joints import EDITED, Joint
+from ..reentry import FunctionsCalled
 from . import private
 from .constraint_impulses import Impulses
 from .constraints import read
@@ -108,9 +109,10 @@ class JointRows(Listing):
             item, before = self.items[j], self.values[j]
             values.put(self._memory, j, *(self._row_of[body] for body in self.pairs[item]))
             self.values[j] = values
-            self.ends_moved |= before.reach != values.reach
-            if before.plan != values.plan:
-                self.replan = others = True
+            if before.shape != values.shape:
+                self.ends_moved |= before.reach != values.reach
+                if before.plan != values.plan:
+                    self.replan = others = True
             calls = calls_of(item)
             others |= calls != self.calls[j]
             self.calls[j] = calls
@@ -187,11 +189,14 @@ class JointRows(Listing):
         self.refresh()
         if self.partners.outside and (moved := self.partners.read()):
             self.touch([self._n + i for i in moved])
-            self.ends_moved |= any(self.partners.still[i] for i in moved)
-        for j in self.functions:
-            item = self.items[j]
-            a, b = (self._motion(body, state, place) for body in (item.a, item.b))
-            self.rates[item] = put_law(item, a, b, dt, self.joint[j], self.rates.get(item))
+            for i in moved:
+                self.ends_moved |= bool(self.partners.still[i])
+        if self.functions:
+            with FunctionsCalled(self.space):
+                for j in self.functions:
+                    item = self.items[j]
+                    a, b = (self._motion(body, state, place) for body in (item.a, item.b))
+                    self.rates[item] = put_law(item, a, b, dt, self.joint[j], self.rates.get(item))
 
     def _motion(self, body: pymunk.Body, state: FloatArray, place: Mapping[pymunk.Body, int]) -> Motion:
         row = self._row_of[body]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 from array import array
 from collections.abc import Collection, Mapping
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import chain
 from math import isfinite
 from typing import Any, NamedTuple, TypeAlias
@@ -13,8 +13,8 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 import pymunk
 
-from ..arrays import AnyArray, FloatArray, IntArray
-from ..compiled.layouts import COUNT, Layout
+from ..arrays import FloatArray, IntArray
+from ..compiled.layouts import COUNT, Layout, Plan
 from ..compiled.records import Rows, as_integers, from_bytes
 from ..layout import EXTRA_COLUMNS, STATE_COLUMNS
 from ..model.bodies import Body
@@ -50,14 +50,6 @@ class Record(NamedTuple):
     points: bytes
 
 
-_ROWS = (
-    Reading, ("TOLD", "BODY", "SHAPE", "LINK", "VERTEX", "ORDER"), 6,
-    ("BODIES", "SHAPES", "OWNER", "POINT", "STATES", "WALK", "EXTRA"), dict[str, AnyArray](),
-    {
-        "VERTEX": (COUNT, 4), "POINT": (COUNT, 2), "STATES": (2, COUNT, STATE_COLUMNS), "WALK": (4, COUNT),
-        "EXTRA": (COUNT, EXTRA_COLUMNS),
-    },
-)  # fmt: skip
 Records: TypeAlias = dict[pymunk.Shape, Record | None]
 
 
@@ -125,6 +117,18 @@ def shape_counts(bodies: Bodies, records: Records) -> dict[Any, int]:
     return count
 
 
+@cache
+def _arrays() -> Plan[Reading]:
+    return Plan(
+        Reading, ("TOLD", "BODY", "SHAPE", "LINK", "VERTEX", "ORDER"), 6,
+        ("BODIES", "SHAPES", "OWNER", "POINT", "STATES", "WALK", "EXTRA"), {},
+        {
+            "VERTEX": (COUNT, 4), "POINT": (COUNT, 2), "STATES": (2, COUNT, STATE_COLUMNS), "WALK": (4, COUNT),
+            "EXTRA": (COUNT, EXTRA_COLUMNS),
+        },
+    )  # fmt: skip
+
+
 class Packed:
     """Rows of a space's bodies and solid shapes.
 
@@ -151,7 +155,7 @@ class Packed:
         row = bodies.row
         owner: IntArray = np.array([row[record.body] for record in known], np.int64)
         moving, v = N - bodies.VALUES["kind"].tolist().count(STATIC), len(self._points)
-        self._layout = layout = Layout(*_ROWS) if past is None else past._layout
+        self._layout = layout = Layout(_arrays()) if past is None else past._layout
         self._table = layout.lay(
             (TOLD, moving + 1, k, k, v, k + N + 2, N, k, k, v, N, N, N), bodies.VALUES, self._shapes, owner,
             self._points, crossing.STATES, crossing.WALK, crossing.EXTRA,

@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pymunk
 
+from ..arrays import FloatArray, IntArray
 from ..layout import NOW
-from ..rehearsing import approach, changed
+from ..rehearsing import HEARD_COLUMNS, approach, changed
 from ..transfer import TURNS
 from . import private, private_joints, private_shapes, private_versions
 from .decisions import Decisions, Rules
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
 _LATER = 4  # steps for which pymunk may remember pairs that were near
 _RENEW = 32  # steps in a row that are left out at most: as reindexing (`sync.py`), that leaves unused handles
 _POST_SOLVE = private.PHASES[2]
+_NONE: tuple[FloatArray, IntArray] = np.zeros((0, HEARD_COLUMNS)), np.zeros((0, 2), np.int64)  # nothing is heard
 
 
 class Rehearsal:
@@ -46,7 +48,7 @@ class Rehearsal:
     def __init__(self, world: World) -> None:
         self.world, self.space = world, world.space
         self._start, self._known = np.zeros((2, *world.START.shape))
-        self._approach = approach.bind(world.STATES, world.WALK, world.EXTRA, world.BODY, world.ENDS, self._start)
+        self._approach = self._bound(None)
         self._lengths = 0.0, 0.0, 0.0, 1.0  # dt, gravity, factor of half a step's damping
         # Whether there are changes by begin and pre_solve, and changes by post_solve and separate; the last stage.
         self._changed, self._stage = [False, False], -1
@@ -89,7 +91,7 @@ class Rehearsal:
         """Before a function is called: read the bodies, if pymunk has reached another stage."""
         if self._stage != stage:
             self.world.gather()
-            np.copyto(self._known, self.world.STATES[NOW])
+            self._known[:] = self.world.STATES[NOW]
             self._stage = stage
 
     def after_call(self, stage: int) -> None:
@@ -122,17 +124,17 @@ class Rehearsal:
         if self._later > 0:
             self._later -= 1
         else:
-            self._unheard = sync is not None and sync.goes_on() and self._is_unheard(dt)
+            self._unheard = sync is not None and sync.goes_on() and self._is_unheard(status > 0)
             self._later = 0 if self._unheard else _LATER
         self.left_out = self._unheard and sync is not None and not sync.were_read() and self._without < _RENEW
         if self.left_out:
             self._without += 1
-            return status
+            return 0
         self._without = 0
         world.scatter(TURNS)
         if self._unheard:
             self._step(dt)
-            return status
+            return 0
         self._wrap()
         try:
             for handler, phase, _, watched in self._wrapped:
@@ -144,10 +146,10 @@ class Rehearsal:
         if self.failure is not None:
             raise self.failure
         if self._stage >= 0:  # else nothing was read meanwhile
-            np.copyto(world.STATES[NOW], self._start)
+            world.STATES[NOW] = self._start
         if self._changed[0]:
             world.STATES[NOW] += world.CHANGES[0]
-        return status
+        return 0
 
     def _step(self, dt: float) -> None:
         hooks = self.world.hooks
@@ -158,21 +160,32 @@ class Rehearsal:
             with hooks.silent, self._silent_joints(hooks.joints):
                 private.step_without_end(self.space, dt)
 
-    def _is_unheard(self, dt: float) -> bool:
-        """Whether pymunk's step would call nothing."""
+    def _bound(self, hearing: Hearing | None) -> Callable[[float, float, float, float], int]:
+        """See `rehearsing.approach`."""
+        world, heard = self.world, None if hearing is None else hearing.arrays
+        return approach.bind(
+            world.STATES, world.WALK, world.EXTRA, world.BODY, world.ENDS, self._start, *(heard or _NONE)
+        )  # fmt: skip
+
+    def _is_unheard(self, near: bool) -> bool:
+        """Whether pymunk's step would call nothing; `near`: whether a pair may meet in it, or soon after."""
         joints = self.world.joints
         if self._recent > 0 or self._ignores or (joints is not None and joints.calling):
             return False
         if self._hearing is None or self._hearing.typings != typings():
             self._hearing, self._unheard = Hearing(self.world), False
-        return not self._hearing.near(dt) and (self._unheard or not self._hearing.remembered())
+            self._approach = self._bound(self._hearing)
+            near = self._approach(*self._lengths) > 0
+        if near or self._hearing.arrays is None:
+            return False
+        return self._unheard or not self._hearing.remembered()
 
     def make_up(self) -> None:
         """Take the step of pymunk that was left out, for its arbiters, unless the space has other bodies now."""
         world, present = self.world, self.world.bodies.gather()
         if present is None:
             return
-        np.copyto(world.STATES[NOW], self._start)
+        world.STATES[NOW] = self._start
         self._approach(*self._lengths)
         world.scatter(TURNS)
         try:

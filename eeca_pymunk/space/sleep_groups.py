@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 import pymunk
@@ -15,12 +15,13 @@ from .edits import leader
 
 
 def resting_groups(
-    space: pymunk.Space, bodies: Bodies, ready: BoolArray, contacts: Contacts
-) -> list[list[pymunk.Body]]:
+    space: pymunk.Space, bodies: Bodies, ready: BoolArray, contacts: Contacts,
+    jointed: Iterable[tuple[pymunk.Body, pymunk.Body]],
+) -> list[list[pymunk.Body]]:  # fmt: skip
     """The groups of bodies that touch or are jointed, all of which have been at rest for long enough.
 
     Args:
-        ready: (N,) whether a body has.  contacts: of the last step.
+        ready: (N,) whether a body has.  contacts: of the last step.  jointed: the bodies of each constraint.
     """
     groups = list(range(len(bodies)))
 
@@ -33,7 +34,7 @@ def resting_groups(
     awake: BoolArray = bodies.dynamic & ~ready
     pairs = list(zip(contacts.body_a.tolist(), contacts.body_b.tolist(), strict=True))
     # pymunk keeps a contact with a sleeping body for good, so that both bodies must sleep or none.
-    for one, two in (*((c.a, c.b) for c in space.constraints), *private.touching(space)):
+    for one, two in (*jointed, *private.touching(space)):
         if one in bodies.row and two in bodies.row:
             pairs.append((bodies.row[one], bodies.row[two]))
     for a, b in pairs:

@@ -25,7 +25,7 @@ import numpy as np
 import pymunk
 
 from ..arrays import BoolArray, FloatArray, IntArray
-from ..compiled.records import Rows
+from ..compiled.records import over
 from ..layout import BODY_ROW, FOUND, KNOWN
 from ..model.contacts import Impulse
 from ..report import Contacts
@@ -77,7 +77,7 @@ class Sleep:
         self._far: FloatArray = self._size + np.hypot(*bodies.center_of_gravity.T)  # from the body's origin
         self._rests = rests.bind(world.STATES, world.WALK, world.BODY, self._size, self._rested, self._ready)
         self._still = bodies.asleep.astype(np.int64), bodies.static.astype(np.int64)
-        self._touches: tuple[Rows[Impulse] | None, Callable[[int], int]] = None, int  # bound to this log
+        self._touches: tuple[memoryview | None, Callable[[int], int]] = None, int  # bound to this log
         # Bodies that something other than the solver moves: all, if functions are called; else kinematic ones.
         movers: tuple[BoolArray, BoolArray] = ~bodies.static, ~bodies.static & ~bodies.dynamic
         self._moves: list[IntArray] = [np.flatnonzero(moves) for moves in movers]
@@ -200,12 +200,12 @@ class Sleep:
         self.wake(woken)
         return bool(woken)
 
-    def is_touched(self, LOG: Rows[Impulse], count: int) -> bool:
-        """Whether a moving body has touched a sleeping one in the first `count` impulses of LOG."""
-        log, call = self._touches
-        if log is not LOG:
-            call = touches.bind(LOG, self.world.owner, *self._still)
-            self._touches = LOG, call
+    def is_touched(self, log: memoryview, count: int) -> bool:
+        """Whether a moving body has touched a sleeping one in the first `count` impulses of this memory."""
+        known, call = self._touches
+        if known is not log:
+            call = touches.bind(over(Impulse, log), self.world.owner, *self._still)
+            self._touches = log, call
         return bool(call(count))
 
     def touched(self, contacts: Contacts) -> list[pymunk.Body]:
@@ -229,12 +229,15 @@ class Sleep:
     def fall_asleep(self, contacts: Contacts, dt: float) -> None:
         """Put groups to sleep all of whose bodies have been at rest for long enough, unless something would wake them
         in a step of length dt."""
-        bodies = self.world.bodies
+        bodies, joints = self.world.bodies, self.world.joints
         self._wait = _AGAIN
-        islands = self._left_alone(resting_groups(self.space, bodies, self._ready != 0, contacts), dt)
         # Putting bodies to sleep reads the world again and loses contact forces, so small groups wait.
-        falling = sum(map(len, islands))
-        if falling * _SHARE < np.count_nonzero(bodies.dynamic) and self._since < _PATIENCE:
+        enough = np.count_nonzero(bodies.dynamic) / _SHARE if self._since < _PATIENCE else 0.0
+        if np.count_nonzero(self._ready) < enough:
+            return
+        jointed = () if joints is None else joints.pairs.values()
+        islands = self._left_alone(resting_groups(self.space, bodies, self._ready != 0, contacts, jointed), dt)
+        if sum(map(len, islands)) < enough:
             return
         self._since = 0
         for first, *others in islands:

@@ -30,9 +30,9 @@ from .private_joints import restore_motions, silent, strengthen, weaken, with_la
 if TYPE_CHECKING:
     from .world import World
 
-# Numbers of moving shapes up to which reindexing is used: without contacts and joints, and with. Measured, it costs
-# less than a rest step without contacts up to 25 shapes in a tree and 10 in a hash; with contacts for any number in a
-# tree, and up to 15 in a hash; with joints up to 50 and 30.
+# Numbers of moving shapes up to which reindexing is used: without contacts, and with; with joints for any number.
+# Measured, it costs less than a rest step without contacts up to 30 shapes in a tree and 6 in a hash; with contacts up
+# to 70 and 8. With joints it costs a fifth for any number in a tree; in a hash it costs less up to 16, for many twice.
 FEW, SOME = 12, 32
 _RENEW = 32  # steps after which reindexing gives way to a rest step
 
@@ -120,14 +120,15 @@ class Sync:
         * pymunk has taken no step since the last rest step, which had this dt and was no more than `_RENEW` steps ago;
         * arbiters were not read after the last step, other than for a picture;
         * nothing touched in this step and the last one, or readers of arbiters call `renew`;
-        * the number of shapes is at most SOME; with neither contacts nor joints at most FEW.
+        * the number of shapes is at most SOME; with neither contacts nor joints at most FEW; there may be any number
+          with joints, if readers of arbiters call `renew`.
         """
-        if self.were_read() or self._reindexings == 0 or dt != self._dt or self._world.carried > SOME:
+        if self.were_read() or self._reindexings == 0 or dt != self._dt:
             return False
-        if status & EVENTS or self._touched:
-            if not self.renews:
-                return False
-        elif self._world.carried > FEW and self._world.joints is None:
+        touches, jointed = status & EVENTS or self._touched, self._world.joints is not None
+        if touches and not self.renews:
+            return False
+        if not (jointed and self.renews) and self._world.carried > (SOME if touches or jointed else FEW):
             return False
         return self._timestamp() == self._rested
 

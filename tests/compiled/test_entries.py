@@ -14,7 +14,7 @@ import pytest
 import eeca_pymunk
 from eeca_pymunk.compiled.entries import ENTRIES, SOURCES, TABLES, is_array, table_fields
 from eeca_pymunk.compiled.kernels import Kernel, kernels
-from eeca_pymunk.compiled.tables import table_of
+from eeca_pymunk.compiled.tables import replaced, table_of
 from eeca_pymunk.model.islands import Island, IslandContacts
 from eeca_pymunk.model.joints import Joints
 from eeca_pymunk.model.run import RunArrays
@@ -121,3 +121,15 @@ def test_table_like_another_has_the_words_of_what_was_replaced() -> None:
     like = table_of(other, table)
     assert like.arrays is other
     assert like.words.tolist() == table_of(other).words.tolist() != table.words.tolist()
+
+
+def test_a_replaced_array_is_in_the_words_and_in_the_arrays() -> None:
+    arrays, other = scene_with(), np.zeros((2, 3))
+    table = table_of(arrays)
+    new, wanted = replaced(table, Scene, "BEGAN", other), arrays._replace(BEGAN=other)
+    if table is not arrays:
+        assert new.words.tolist() == table_of(wanted).words.tolist() != table.words.tolist()
+        with pytest.raises(TypeError, match=r"Scene\.BEGAN"):
+            replaced(table, Scene, "BEGAN", np.zeros(3))
+        new = new.arrays
+    assert all(one is two for one, two in zip(new, wanted, strict=True))

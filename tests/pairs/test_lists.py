@@ -10,6 +10,7 @@ import pytest
 from eeca_pymunk.compiled import table_of
 from eeca_pymunk.compiled.records import columns, put
 from eeca_pymunk.model.bodies import ACCELERATION, VELOCITY
+from eeca_pymunk.model.scene import scene_of
 from eeca_pymunk.model.shapes import LEVELS
 from eeca_pymunk.pairs import cells, grid, setup
 from eeca_pymunk.pairs.lists import mark_pair
@@ -123,6 +124,21 @@ def test_the_same_lists_bit_by_bit_a_second_time() -> None:
             near.renew(s, float(rng.uniform()))
         found.append((near.listed(), near.near.MARK.tobytes()))
     assert found[0] == found[1]
+
+
+@pytest.mark.parametrize("walls", [3, 30, 300])
+@pytest.mark.parametrize("disks", [3, 60])
+def test_lists_made_in_their_place_are_those_of_a_new_scene(disks: int, walls: int) -> None:
+    rng = np.random.default_rng(7)
+    near = Crowd.of(crowd(rng, 10.0 ** rng.uniform(-1.0, 0.0, disks), boxes=3, walls=walls))
+    for s in rng.integers(0, near.moving, 50 if walls < 300 else 0).tolist():
+        near.renew(s, float(rng.uniform()))
+    table, grown = table_of(near.near), len(near.near.POOL) > setup.pool_sizes(near.moving)[0]
+    again, made = setup.refilled(table), setup.near_lists(near.near, near.moving)
+    assert (again is table) != grown
+    for name in setup.NEAR:
+        one, two = (np.asarray(getattr(scene, name)) for scene in (scene_of(again), made))
+        assert one.tobytes() == two.tobytes(), name
 
 
 def test_a_full_pool_is_told_and_more_room_helps() -> None:

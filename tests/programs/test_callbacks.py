@@ -372,3 +372,28 @@ def test_functions_read_the_time_step_that_they_are_in(sync: bool) -> None:
         found.append(read)
     assert found[1] == found[0]
     assert set(found[0]) == {"velocity", "position", "before", "after"}
+
+
+def test_velocity_functions_get_the_gravity_that_pre_solve_has_set_in_this_step() -> None:
+    def gravities(stepped: bool) -> list[float]:
+        space, got = pymunk.Space(), list[float]()
+        space.gravity = (0.0, -1.0)
+        a, b = pymunk.Body(1.0, 1.0), pymunk.Body(1.0, 1.0)
+        b.position = (0.0, 3.0)
+        joint = pymunk.PinJoint(a, b)
+
+        def pull(joint: pymunk.Constraint, space: pymunk.Space) -> None:
+            space.gravity = (0.0, 2.0 * space.gravity.y)
+
+        def note(body: pymunk.Body, gravity: pymunk.Vec2d, damping: float, dt: float) -> None:
+            got.append(gravity[1])
+            pymunk.Body.update_velocity(body, gravity, damping, dt)
+
+        joint.pre_solve, a.velocity_func = pull, note
+        space.add(a, b, joint)
+        step = ep.EECA(space).step if stepped else space.step
+        for _ in range(4):
+            step(0.01)
+        return got
+
+    assert gravities(True) == gravities(False) == [-2.0, -4.0, -8.0, -16.0]

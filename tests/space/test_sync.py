@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import pymunk
 import pytest
 
@@ -63,6 +65,21 @@ def test_few_shapes_are_reindexed_and_the_broad_phase_renewed_now_and_then(monke
     stepper.step(DT)
     stepper.step(DT)
     assert ways == ["rest", "rest"]
+
+
+def test_spaces_with_joints_are_reindexed_whatever_their_size(monkeypatch: pytest.MonkeyPatch) -> None:
+    space = crowd(2 * sync.SOME)
+    bodies = list(space.bodies)
+    space.add(*[pymunk.PinJoint(a, b) for a, b in itertools.pairwise(bodies)])
+    stepper = ep.EECA(space)
+    ways = counted(stepper, monkeypatch)
+    for _ in range(5):
+        stepper.step(DT)
+    assert ways == ["rest"] + 4 * ["reindex"]
+    for body in bodies:
+        found = space.point_query_nearest(body.position, 0.0, pymunk.ShapeFilter())
+        assert found is not None
+        assert found.shape in body.shapes
 
 
 def test_what_only_a_step_of_pymunk_does_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
