@@ -233,6 +233,8 @@ MUTATIONS = (
              "return gained / inertia", "contacts/test_piles.py", "free_island"),
     Mutation("correction: turns move no point", "contacts/correction.py", " + abs(D[i, 2]) * EXTENT[i])", ")",
              "islands/test_penetration.py", "no_point"),
+    Mutation("correction: walls have no last word", "rows/lifting.py", "meet_gap(problem, max(GAPS[i], 0.0), MU, D, i)",
+             "pass", "rows/test_lifting.py", "without_room"),
     Mutation("correction: sign of its work", "contacts/correction.py", "work = -against(", "work = against(",
              "contacts/test_piles.py", "push_out"),
     Mutation("rest: forces keep half of the length of the step", "islands/at_rest.py", "longer = dt / R.length",

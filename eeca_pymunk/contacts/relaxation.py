@@ -1,8 +1,8 @@
 """The bounded solve of an island: sweeps while it moves; sweeps and direct solves in turn while it is near rest.
 
 Sweeps pass a stack's weight to its floor slowly; a direct solve does it at once, as soon as sweeps have found the
-active contacts. In disordered moving piles these change with every step, and sweeps alone cost less; more of them where
-a slow island waits for its next direct solve, as what creeps comes to rest no sooner than friction is solved. Where both
+active contacts. In disordered moving piles these change with every step, and sweeps alone cost less; a slow island that
+waits for its next direct solve gets more of them, as what creeps comes to rest when its friction is solved. Where both
 come to no end, as with light bodies wedged between heavy ones, few contacts are solved by homotopies (`..rows.laws`).
 
 The state of an island lasts across steps (`Rest.augmentation`, `wait`, `backoff`): log10 of the augmentation R, steps

@@ -107,8 +107,8 @@ CORRECTION_STEP = accuracy(
 CORRECTION_SWEEPS = work(
     20,
     "sweeps",
-    "Sweeps of the penetration correction, at least. With 8, piles of a thousand bodies without friction keep overlaps of "
-    "a tenth of a radius; with 40, falling piles cost .15 more.",
+    "Sweeps of the penetration correction, at least. With 8, piles of a thousand bodies without friction keep overlaps "
+    "of a tenth of a radius; with 40, falling piles cost .15 more.",
 )
 CORRECTION_WORK = work(1000, "contacts swept", "Work for further sweeps of the penetration correction of few contacts.")
 CORRECTION_ROUND_OFF = round_off(1e-14, "of its work", "Round-off of the work of a correction.")
