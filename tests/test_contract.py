@@ -9,7 +9,7 @@ import pymunk
 import pytest
 
 import eeca_pymunk as ep
-from eeca_pymunk.space import private
+from eeca_pymunk.space.private import spaces as private
 from scenes.scene import add_disk, add_walls
 
 from .steppers import ALL, ARRAYS, Make, one_disk, state

@@ -14,7 +14,7 @@ import pytest
 
 import eeca_pymunk as ep
 import scenes
-from eeca_pymunk.space import private
+from eeca_pymunk.space.private import spaces as private
 
 Step = Callable[[float], object]
 DT = 1 / 60

@@ -20,7 +20,9 @@ from eeca_pymunk.errors import NotFiniteError
 from eeca_pymunk.model.contacts import Impulse
 from eeca_pymunk.packed_stepper import PackedStepper
 from eeca_pymunk.report import Details, Outcome, of_events
-from eeca_pymunk.space import packing, private, private_shapes
+from eeca_pymunk.space import packing
+from eeca_pymunk.space.private import shapes as private_shapes
+from eeca_pymunk.space.private import spaces as private
 from eeca_pymunk.space.world import World
 from scenes.scene import add_disk
 

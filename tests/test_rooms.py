@@ -1,4 +1,4 @@
-"""The cut of the package: imports go down only, pymunk stays at the edge, its private names in one file."""
+"""The cut of the package: imports go down only, pymunk stays at the edge, its private names in one room."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 
 import eeca_pymunk
-from eeca_pymunk.space import private, private_joints
+from eeca_pymunk.space.private import joints as private_joints
+from eeca_pymunk.space.private import spaces as private
 
 PACKAGE = Path(eeca_pymunk.__file__).parent
 FILES = sorted(PACKAGE.rglob("*.py"))
@@ -101,7 +102,7 @@ NAMES |= {"_body", "_shape", "_arbiter", "_force_func", "_torque_func", "_float_
 PRIVATE = re.compile(rf"_chipmunk|\bcp[A-Z]\w+|\.({'|'.join(sorted(NAMES))})\b")
 
 
-@pytest.mark.parametrize("path", [p for p in FILES if not name(p).startswith("space/private")], ids=name)
+@pytest.mark.parametrize("path", [p for p in FILES if not name(p).startswith("space/private/")], ids=name)
 def test_private_names_of_pymunk_stand_in_one_place(path: Path) -> None:
     text = re.sub(r"self\._\w+", "", path.read_text())
     assert PRIVATE.findall(text) == []

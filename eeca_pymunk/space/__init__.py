@@ -1,4 +1,4 @@
-"""The edge: all that reads or writes pymunk, and the only room that uses its private names.
+"""The edge: all that reads or writes pymunk, and alone uses its private names, in `private`.
 
 In: a `pymunk.Space`, its bodies, shapes, settings, functions and handlers. Out: arrays, and errors for unsupported
 features. Back: the arrays of the end of a step, written into the space.
@@ -15,7 +15,7 @@ Open first `world.py`, the space as packed arrays, and `checks.py`, the unsuppor
 | pymunk's own state after a step | `sync.py` (shapes), `arbiters.py` (contacts), `constraint_impulses.py` |
 | sleeping bodies | `sleeping.py`, `sleep_groups.py` |
 | other readers | `measure.py` (energy), `describe.py` (one line of text) |
-| private names of pymunk | `private.py` and the files `private_*.py` |
+| private names of pymunk | the room `private` |
 
 Four files replace methods or properties of pymunk's classes, which then act as before for all other spaces:
 `edits.py` (setters of shapes and bodies; `Body.sleep` at import), `joint_edits.py` (`Constraint.__setattr__`),

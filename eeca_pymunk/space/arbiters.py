@@ -21,7 +21,8 @@ from pymunk import batch
 
 from ..compiled.records import Rows
 from ..model.contacts import Impulse
-from . import private, private_arbiters
+from .private import arbiters as private_arbiters
+from .private import spaces as private
 
 
 class Touch(NamedTuple):

@@ -15,7 +15,9 @@ from ..compiled.records import Rows, columns, from_bytes, put
 from ..errors import NotFiniteError
 from ..layout import STATE_COLUMNS
 from ..model.values import DYNAMIC, STATIC, BodyValues
-from . import body_values, private_batch, private_sleep
+from . import body_values
+from .private import batch as private_batch
+from .private import sleep as private_sleep
 
 _FIELDS = batch.BodyFields
 _STATE = _FIELDS.POSITION | _FIELDS.ANGLE | _FIELDS.VELOCITY | _FIELDS.ANGULAR_VELOCITY | _FIELDS.FORCE | _FIELDS.TORQUE

@@ -8,7 +8,7 @@ import struct
 import pymunk
 
 from ..model.values import DYNAMIC, KINEMATIC, STATIC
-from . import private
+from .private import spaces as private
 
 _KIND = {pymunk.Body.DYNAMIC: DYNAMIC, pymunk.Body.KINEMATIC: KINEMATIC, pymunk.Body.STATIC: STATIC}
 _VALUES = struct.Struct("4q9d2q")

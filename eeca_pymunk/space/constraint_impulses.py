@@ -16,7 +16,7 @@ import pymunk
 
 from ..compiled.records import Rows
 from ..model.joints import ROTARY_SPRING, SPRING, Joint
-from . import private
+from .private import spaces as private
 
 
 class Impulses:

@@ -32,8 +32,8 @@ from ..model.bodies import Body
 from ..model.values import STATIC
 from ..rehearsing import alter_end, as_read, copy_start
 from ..transfer import FORCES, TURNS, place_anew, write_ends, write_still_ends
-from . import private_batch
 from .bodies import STATE_FIELDS, Bodies
+from .private import batch as private_batch
 
 _F = batch.BodyFields
 _FORCES = _F.FORCE | _F.TORQUE

@@ -18,8 +18,9 @@ import pymunk
 from ..arrays import FloatArray
 from ..compiled.records import Rows
 from ..model.shapes import Shape
-from . import private, private_arbiters
-from .private_versions import processed
+from .private import arbiters as private_arbiters
+from .private import spaces as private
+from .private.versions import processed
 
 if TYPE_CHECKING:
     from .world import World

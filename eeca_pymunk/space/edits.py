@@ -20,7 +20,7 @@ from weakref import WeakKeyDictionary
 
 import pymunk
 
-from . import private_versions
+from .private import versions as private_versions
 
 _PROPERTIES: tuple[tuple[type, tuple[str, ...]], ...] = (
     (pymunk.Shape, ("mass", "density", "sensor", "filter", "elasticity", "friction", "surface_velocity", "body")),

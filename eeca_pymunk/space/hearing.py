@@ -16,8 +16,11 @@ import pymunk
 from ..arrays import FloatArray, IntArray
 from ..layout import BODY_ROW
 from ..rehearsing import HEARD_COLUMNS
-from . import private, private_arbiters, private_shapes, private_versions
 from .edits import typings
+from .private import arbiters as private_arbiters
+from .private import shapes as private_shapes
+from .private import spaces as private
+from .private import versions as private_versions
 
 if TYPE_CHECKING:
     from .world import World

@@ -17,9 +17,12 @@ from typing import Any
 import pymunk
 
 from ..arrays import FloatArray
-from . import private, private_functions, private_joints, private_shapes
 from .bodies import ANGLE, POSITION, Bodies
 from .joints import JointRows
+from .private import functions as private_functions
+from .private import joints as private_joints
+from .private import shapes as private_shapes
+from .private import spaces as private
 
 
 class Hooks:

@@ -13,12 +13,12 @@ from ..arrays import FloatArray, IntArray
 from ..compiled.records import over, records
 from ..model.joints import EDITED, Joint
 from ..reentry import FunctionsCalled
-from . import private
 from .constraint_impulses import Impulses
 from .constraints import read
 from .joint_edits import Edits
 from .listing import Listing, calls_of
 from .partners import Partners
+from .private import spaces as private
 from .spring_functions import Motion, Rate, law, put_law
 
 _ROUND_OFF = 1e-12  # of the length of a pin

@@ -12,7 +12,7 @@ import pymunk
 
 from ..arrays import BoolArray, FloatArray, IntArray, rotated
 from ..errors import UnsupportedFeature
-from . import private_shapes
+from .private import shapes as private_shapes
 
 _STRAIGHT = 1e-12  # of its coordinates: distance of a vertex from the line of its neighbours that is round-off
 

@@ -21,11 +21,11 @@ from ..model.bodies import Body
 from ..model.shapes import Link, Shape
 from ..model.values import CORNERS, STATIC, TOLD, Reading, ShapeValues
 from ..world_rows import read_space, write_rows
-from . import private_shapes
 from .bodies import Bodies
 from .checks import check_shape, shape_body
 from .crossing import Crossing
 from .outlines import local_outline
+from .private import shapes as private_shapes
 
 _WORD = (1 << 64) - 1  # the lowest 64 bits of a filter's numbers, which equality and `&` need
 _VALUES = struct.Struct("2q3Q5dq")

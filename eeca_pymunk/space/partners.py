@@ -21,8 +21,9 @@ from ..arrays import FloatArray, IntArray
 from ..compiled.records import over, records
 from ..errors import NotFiniteError
 from ..model.bodies import Body
-from . import private_batch, private_joints
 from .edits import clock
+from .private import batch as private_batch
+from .private import joints as private_joints
 
 _FIELDS = batch.BodyFields.POSITION | batch.BodyFields.ANGLE | batch.BodyFields.VELOCITY
 _FIELDS |= batch.BodyFields.ANGULAR_VELOCITY

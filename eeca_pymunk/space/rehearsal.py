@@ -19,11 +19,14 @@ from ..arrays import FloatArray, IntArray
 from ..layout import NOW
 from ..rehearsing import HEARD_COLUMNS, approach, changed
 from ..transfer import TURNS
-from . import private, private_joints, private_shapes, private_versions
 from .decisions import Decisions, Rules
 from .edits import typings
 from .hearing import Hearing
 from .joints import JointRows
+from .private import joints as private_joints
+from .private import shapes as private_shapes
+from .private import spaces as private
+from .private import versions as private_versions
 from .watched import Watched
 
 if TYPE_CHECKING:

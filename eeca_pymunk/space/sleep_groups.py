@@ -9,9 +9,10 @@ import pymunk
 
 from ..arrays import BoolArray, IntArray
 from ..report import Contacts
-from . import private, private_sleep
 from .bodies import Bodies
 from .edits import leader
+from .private import sleep as private_sleep
+from .private import spaces as private
 
 
 def resting_groups(

@@ -30,7 +30,9 @@ from ..layout import BODY_ROW, FOUND, KNOWN
 from ..model.contacts import Impulse
 from ..report import Contacts
 from ..sleepers import approaches, rests, touches
-from . import private, private_shapes, private_sleep
+from .private import shapes as private_shapes
+from .private import sleep as private_sleep
+from .private import spaces as private
 from .sleep_groups import resting_groups
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ import pymunk
 
 from ..errors import NotFiniteError
 from ..model.joints import Joint
-from . import private_joints
+from .private import joints as private_joints
 
 _POINT = 0.5 / math.sqrt(3.0)  # of Gauss, from the middle, over the length of the interval
 _NEAR = 1e-6  # an interval shorter than this, over the length it is at, has no secant

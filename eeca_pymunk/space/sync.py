@@ -22,10 +22,15 @@ import pymunk
 
 from ..reentry import BUSY
 from ..transfer import EVENTS
-from . import private, private_arbiters, private_joints, private_rest, private_shapes, private_sleep
 from .bodies import ANGULAR_VELOCITY, VELOCITY
 from .joints import JointRows
-from .private_joints import restore_motions, silent, strengthen, weaken, with_laws
+from .private import arbiters as private_arbiters
+from .private import joints as private_joints
+from .private import rest as private_rest
+from .private import shapes as private_shapes
+from .private import sleep as private_sleep
+from .private import spaces as private
+from .private.joints import restore_motions, silent, strengthen, weaken, with_laws
 
 if TYPE_CHECKING:
     from .world import World

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from . import private
-from .private_versions import answer
+from .private import spaces as private
+from .private.versions import answer
 
 if TYPE_CHECKING:
     from .rehearsal import Rehearsal

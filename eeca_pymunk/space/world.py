@@ -14,7 +14,6 @@ from ..impacts.scene_memory import SceneMemory
 from ..layout import BODY_ROW, KNOWN
 from ..report import Details, nothing
 from ..transfer import take
-from . import private
 from .bodies import Bodies
 from .checks import has_friction, settings
 from .crossing import Crossing
@@ -24,6 +23,7 @@ from .hooks import Hooks
 from .joints import JointRows
 from .packing import Packed, Records, records_of, shape_counts
 from .patching import Patched, patch
+from .private import spaces as private
 from .rehearsal import Rehearsal
 
 

@@ -10,7 +10,12 @@ import pymunk
 import pymunk.batch
 import pytest
 
-from eeca_pymunk.space import edits, private, private_batch, private_functions, private_shapes, private_sleep
+from eeca_pymunk.space import edits
+from eeca_pymunk.space.private import batch as private_batch
+from eeca_pymunk.space.private import functions as private_functions
+from eeca_pymunk.space.private import shapes as private_shapes
+from eeca_pymunk.space.private import sleep as private_sleep
+from eeca_pymunk.space.private import spaces as private
 from scenes.scene import add_disk
 
 

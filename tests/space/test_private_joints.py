@@ -9,7 +9,11 @@ import numpy as np
 import pymunk
 import pytest
 
-from eeca_pymunk.space import private, private_batch, private_joints, private_sleep, private_versions
+from eeca_pymunk.space.private import batch as private_batch
+from eeca_pymunk.space.private import joints as private_joints
+from eeca_pymunk.space.private import sleep as private_sleep
+from eeca_pymunk.space.private import spaces as private
+from eeca_pymunk.space.private import versions as private_versions
 
 DT = 0.01
 

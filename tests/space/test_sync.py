@@ -8,7 +8,8 @@ import pymunk
 import pytest
 
 import eeca_pymunk as ep
-from eeca_pymunk.space import private_rest, sync
+from eeca_pymunk.space import sync
+from eeca_pymunk.space.private import rest as private_rest
 from scenes.scene import add_disk
 
 from ..test_packed_stepper import FreeFlight

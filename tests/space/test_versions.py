@@ -11,7 +11,8 @@ import pymunk
 import pytest
 
 import eeca_pymunk as ep
-from eeca_pymunk.space import private, private_versions
+from eeca_pymunk.space.private import spaces as private
+from eeca_pymunk.space.private import versions as private_versions
 from scenes.scene import add_disk
 
 DT = 1 / 60

@@ -1,7 +1,7 @@
-"""Private names of pymunk that this package uses, one function each; those of constraints are in `private_joints`.
+"""Private names of pymunk's spaces, bodies and handlers, one function each; the check of all of them at import.
 
-Each has a test in `tests/space/test_private.py` or `test_private_joints.py`. All are looked up when the package is
-imported, so that a pymunk that has renamed one raises ImportError with the name.
+Each has a test in `tests/space/test_private.py` or `test_private_joints.py`. Those of the whole room are looked up when
+the package is imported, so that a pymunk that has renamed one raises ImportError with the name.
 """
 
 from __future__ import annotations
@@ -15,16 +15,14 @@ from typing import Any
 
 import pymunk
 
-from . import (
-    private_arbiters,
-    private_batch,
-    private_functions,
-    private_joints,
-    private_shapes,
-    private_sleep,
-    private_versions,
-)
-from .private_versions import REQUIRED, bodies
+from . import arbiters as private_arbiters
+from . import batch as private_batch
+from . import functions as private_functions
+from . import joints as private_joints
+from . import shapes as private_shapes
+from . import sleep as private_sleep
+from . import versions as private_versions
+from .versions import REQUIRED, bodies
 
 try:
     from pymunk._chipmunk_cffi import ffi, lib

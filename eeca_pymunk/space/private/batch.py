@@ -10,7 +10,7 @@ import pymunk
 from pymunk import batch
 from pymunk._chipmunk_cffi import ffi, lib
 
-from ..arrays import AnyArray, FloatArray, IntArray
+from ...arrays import AnyArray, FloatArray, IntArray
 
 OF_LIBRARY = ("cpSpaceEachBody", "pmSpaceBodyGetIteratorFuncBatched", "pmSpaceBodySetIteratorFuncBatched")
 TYPES = ("pmBatchedData *", "pmFloatArray *", "pmIntArray *")

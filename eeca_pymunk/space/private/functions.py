@@ -1,4 +1,4 @@
-"""Private names of pymunk for calling functions of bodies, and for steps without them; see `private`."""
+"""Private names of pymunk for calling functions of bodies, and for steps without them; see `spaces`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Private names of pymunk's constraints, one function each; see `private`, which looks them up."""
+"""Private names of pymunk's constraints, one function each; see `spaces`, which looks them up."""
 
 from __future__ import annotations
 

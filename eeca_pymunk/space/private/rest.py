@@ -1,4 +1,4 @@
-"""Private names of pymunk for the rest step (`sync.py`); see `private`, which looks them up."""
+"""Private names of pymunk for the rest step (`sync.py`); see `spaces`, which looks them up."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 import pymunk
 from pymunk._chipmunk_cffi import lib
 
-from . import private
+from . import spaces as private
 
 
 def rest(space: pymunk.Space, dt: float, pulls: bool) -> None:

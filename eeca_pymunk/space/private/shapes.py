@@ -1,4 +1,4 @@
-"""Private names of pymunk's shapes, read and moved; see `private`. The public properties take two to three times as
+"""Private names of pymunk's shapes, read and moved; see `spaces`. The public properties take two to three times as
 long."""
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Private names of pymunk's arbiters: their C structures, read and written; see `private`."""
+"""Private names of pymunk's arbiters: their C structures, read and written; see `spaces`."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import pymunk
 from pymunk import batch
 from pymunk._chipmunk_cffi import ffi, lib
 
-from .private_versions import reject as reject_raw
-from .private_versions import take_place
+from .versions import reject as reject_raw
+from .versions import take_place
 
 OF_LIBRARY = (
     "pmSpaceArbiterIteratorFuncBatched", "cpBodyIsSleeping", "cpArbiterTotalImpulse", "cpShapeGetCollisionType",
