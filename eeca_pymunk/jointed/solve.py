@@ -34,7 +34,7 @@ from ..model.parameters.joints import COLUMN_CONTACTS, FORESEEN, INTERVAL_SHARE
 from ..model.scene import Scene
 from ..model.step import AGAIN, CONTACTS, DONE, PUSHES_FULL, SPENT
 from ..rows.bounded import room_for_rows
-from ..rows.build import bounces_less, normal_rate
+from ..rows.build import conserves, normal_rate
 from .advance import Interval, Motion, advance
 from .alone import account_turning, begin_alone, is_component, meets_nobody, set_path
 from .columns import make_columns
@@ -178,7 +178,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
             account_turning(A, J, s, MINE[q], motion.END[q, 2], motion.WAY[q, 2])
     # Bodies are lifted at the end of the interval, not on the way: the way would be as steep as the interval is short.
     WHERE, HELD = motion.END.copy(), np.zeros(m)
-    if bounces_less(ROWS, m):
+    if not conserves(ROWS, m):
         if not before_end(A, t + h):
             raised = driven(A, isle, P, Q, ROWS, KEY, n, m)
             budget = lost(P, Q, ROWS, L, motion.WAY, m, h) + A.RESTING[root].lost

@@ -159,12 +159,3 @@ def rubs(ROWS: Rows[Row], m: int) -> bool:
         if ROWS[i].friction > 0.0:
             return True
     return False
-
-
-@nonallocating
-def bounces_less(ROWS: Rows[Row], m: int) -> bool:
-    """Whether the elasticity of any of m contacts is below 1."""
-    for i in range(m):
-        if ROWS[i].elasticity < 1.0:
-            return True
-    return False
