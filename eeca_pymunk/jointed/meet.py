@@ -98,7 +98,9 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
         crosses, through = False, t
         if g + level > close * small:
             through, crosses = first_meeting(A, a, b, t)
-        if ((loaded > 0 or spent) and tries + 1 >= most) or abs(g) <= close * small:
+        # Depths add up from impact to impact.
+        near = spent or g >= -MEET_MANY * small
+        if ((loaded > 0 or spent) and tries + 1 >= most and near) or abs(g) <= close * small:
             break
         secant = before >= 0.0 and t != before
         slope = (g - gap_before) / (t - before) if secant else gap_and_rate(A, a, b, t)[1]
