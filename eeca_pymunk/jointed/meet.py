@@ -99,8 +99,8 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
         if g + level > close * small:
             through, crosses = first_meeting(A, a, b, t)
         # Depths add up from impact to impact.
-        near = spent or g >= -MEET_MANY * small
-        if ((loaded > 0 or spent) and tries + 1 >= most and near) or abs(g) <= close * small:
+        deep = not spent and g < -MEET_MANY * small
+        if ((loaded > 0 or spent) and tries + 1 >= most and not deep) or abs(g) <= close * small:
             break
         secant = before >= 0.0 and t != before
         slope = (g - gap_before) / (t - before) if secant else gap_and_rate(A, a, b, t)[1]
@@ -120,8 +120,8 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
             break
         before, gap_before = t, g
         then = max(min(t - g / slope, latest), least)
-        if then == least and level < 0.0:
-            then = 0.5 * (least + t)
+        if (then == least and level < 0.0) or (then <= apart and loaded > 0 and deep):
+            then = 0.5 * (apart + t)
         if then == t:
             break
         t = then
