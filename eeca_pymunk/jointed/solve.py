@@ -43,7 +43,7 @@ from .fitting import fit
 from .gathered import gather_component, keep_joints, restore_joints
 from .groups import Groups, find_groups
 from .ledger import budget_at, is_spent
-from .lengths import excess
+from .lengths import excess, led_in
 from .lifting import correct
 from .lock import lost, slip_of
 from .motors import drives
@@ -167,8 +167,9 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
             restore_joints(J, s)
         clear_places(A, MINE, n)
         return AGAIN, h / far
-    if not held:
-        pair, shapes = KEY[0] >> 1, A.SHAPE.shape[0]
+    led = led_in(A, P, Q, ROWS, KEY, interval.C.OUT, motion.WAY, m)
+    if not held or led >= 0:
+        pair, shapes = KEY[max(led, 0)] >> 1, A.SHAPE.shape[0]
         note_unmet(A, CONTACTS, pair // shapes, pair % shapes, math.nan, math.nan)
     for s in groups.JOINTED:
         J.STEPPED[s].turned_work = J.STEPPED[s].lifted = 0.0
