@@ -65,6 +65,8 @@ def fit_columns(
             for c in range(3 if square > 0.0 else 0):
                 B.N[w, c] += ERROR[B.BODY[w], c] * (B.ROWS[i].now - NOW[i]) / square
     for i in range(m):
-        if C.OUT[i] == 0 and not gives_way(groups, P, Q, interval.ROWS, i, along(C, P, Q, interval.ROWS, i, C.N, False)):
+        if C.OUT[i] == 0 and not gives_way(
+            groups, P, Q, interval.ROWS, i, along(C, P, Q, interval.ROWS, i, C.N, False)
+        ):
             return False
     return True

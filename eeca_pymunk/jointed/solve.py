@@ -14,7 +14,6 @@ from ..contacts.memory import remember_loads
 from ..contacts.unmet import note_unmet
 from ..contacts.works import moved
 from ..islands.candidates import before_end, pairs_within
-from ..islands.depths import driven
 from ..islands.local import (
     clear_places,
     local_island,
@@ -44,7 +43,7 @@ from .gathered import gather_component, keep_joints, restore_joints
 from .groups import Groups, find_groups
 from .ledger import budget_at, is_spent
 from .lengths import excess, led_in
-from .lifting import correct
+from .lifting import lift_island
 from .lock import lost, slip_of
 from .motors import drives
 from .press import press
@@ -181,13 +180,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     WHERE, HELD = motion.END.copy(), np.zeros(m)
     if not conserves(ROWS, m):
         if not before_end(A, t + h):
-            raised = driven(A, isle, P, Q, ROWS, KEY, n, m)
-            budget = lost(P, Q, ROWS, L, motion.WAY, m, h) + A.RESTING[root].lost
-            spent = correct(A, J, interval, t + h, math.inf if raised else budget)
-            if len(groups.JOINTED) > 0:
-                paid, one = min(spent, max(budget, 0.0)) if raised else spent, J.STEPPED[groups.JOINTED[0]]
-                one.lifted = paid
-                one.supports += spent - paid
+            lift_island(A, J, interval, KEY, root, t + h, lost(P, Q, ROWS, L, motion.WAY, m, h), False)
         HELD = fit(A, J, interval, L, t + h, slow + pull * h)
     clear_places(A, MINE, n)
     first = COUNT.pushes
