@@ -47,7 +47,7 @@ def shorten_both(A: Scene, J: Joints, one: int, other: int, t: float) -> int:
 
 @kernel
 def either_apart(A: Scene, J: Joints, roots: tuple[int, int]) -> bool:
-    """Whether joints do not hold at the end of the interval of either island."""
+    """`left_apart` of either island."""
     return bool(left_apart(A, J, roots[0]) or left_apart(A, J, roots[1]))
 
 

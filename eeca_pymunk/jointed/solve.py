@@ -103,7 +103,7 @@ def begin_interval(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
 def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) -> tuple[int, float]:
     """`begin_interval` of length h. AGAIN, with nothing done, if that is too long, and how long it may be; not if it is
     the `last` attempt."""
-    whole = is_component(A, J, root)
+    whole, A.RESTING[root].strays = is_component(A, J, root), 0.0
     if whole and meets_nobody(A, root):
         far = begin_alone(A, J, root, t, h, last)
         return (AGAIN, h / far) if far > 0.0 else (DONE, h)
@@ -154,8 +154,9 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     for s in groups.JOINTED:
         if J.STEPPED[s].status >= ELASTIC:
             far = 2.0
-    if not last:
-        far = max(far, excess(A, isle, P, Q, ROWS, KEY, motion, m, n, t, h))
+    if not (last and held):
+        strays = excess(A, isle, P, Q, ROWS, KEY, motion, m, n, t, h)
+        A.RESTING[root].strays, far = 0.0 if held else strays, max(far, strays)
     if not held:  # the motion is not that of a solution, and says little of how long it may be
         # Contacts that are not solved in a long interval may be in a short one, if the step has work for many of these.
         payable = RESOLUTION * (J.PROGRESS.effort - before) <= budget_at(A, J, t)
