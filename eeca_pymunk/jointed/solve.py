@@ -160,7 +160,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     if not held:  # the motion is not that of a solution, and says little of how long it may be
         # Contacts that are not solved in a long interval may be in a short one, if the step has work for many of these.
         payable = RESOLUTION * (J.PROGRESS.effort - before) <= budget_at(A, J, t)
-        hard = m <= COLUMN_CONTACTS and payable and h > A.PAR.dt / RESOLUTION
+        hard = m <= COLUMN_CONTACTS and payable and h * UNSOLVED_PART**2 > A.PAR.dt / RESOLUTION
         far = UNSOLVED_PART if hard else min(far, UNSOLVED_PART)
     if far > INTERVAL_RETRY and not last:
         for s in groups.JOINTED:
