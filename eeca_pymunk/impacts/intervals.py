@@ -8,7 +8,8 @@ from ..contacts.unmet import most_work, note_unmet
 from ..islands.accounting import close_interval
 from ..islands.building import build_islands
 from ..islands.intervals import lift_here, solve
-from ..jointed.ends import end_here, left_apart, shorten, stand_still, take_back
+from ..jointed.ends import end_here, left_apart, shorten, stand_still, take_back, under_way
+from ..jointed.lifting import lift_here as lift_joined
 from ..jointed.solve import begin_interval
 from ..model.bodies import AT_REST
 from ..model.joints import Joints
@@ -73,6 +74,7 @@ def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
     if J.TALLY.components > 0:
         # The shortened intervals are solved again below, beyond the budget that is spent.
         J.PROGRESS.budget = J.PROGRESS.effort + STEP_WORK
+    over = 0  # islands with joints whose intervals have ended before
     for k in range(A.BODY.shape[0] - 1):
         # An island may already be at a later instant than t, as impacts of joints come later than predicted, or earlier
         # (`..jointed.meet`): the poses there become those at t.
@@ -84,11 +86,14 @@ def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
         if A.MEMBER[root].open == 0:
             A.BODY[k].since = t  # its path ended before; until the cut it stays there
         if A.MEMBER[root].jointed > 0:
-            if root == k:
+            if root == k and under_way(A, k):
                 shorten(A, J, k, t)
                 if left_apart(A, J, k):
                     stand_still(A, J, k, t)
                 end_here(A, J, k, t)
+            elif root == k:
+                A.BLOCK[over] = k
+                over += 1
             continue
         if root == k:
             if later:
@@ -96,4 +101,6 @@ def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
             if A.MEMBER[k].open > 0:
                 close_interval(A, k, t)
             lift_here(A, k, t)
+    for c in range(over):
+        lift_joined(A, J, A.BLOCK[c], t)
     return DONE

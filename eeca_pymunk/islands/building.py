@@ -229,8 +229,11 @@ def passed_over(A: Scene, a: int, b: int, t: float) -> bool:
     h = A.PAR.dt - t
     speed = norm(A.BODY[i].vx - A.BODY[j].vx, A.BODY[i].vy - A.BODY[j].vy)
     speed += abs(A.BODY[i].spin) * A.BODY[i].extent + abs(A.BODY[j].spin) * A.BODY[j].extent
+    # Joints may pull harder than gravity, as the present paths show.
+    pulled = norm(A.BODY[i].ax - A.BODY[j].ax, A.BODY[i].ay - A.BODY[j].ay)
+    pulled += abs(A.BODY[i].angular) * A.BODY[i].extent + abs(A.BODY[j].angular) * A.BODY[j].extent
     thick = half_width(A, a) + half_width(A, b)
-    if (speed + A.PAR.pulled * h) * h > INTERVAL_DEPTH_WIDTH * thick:
+    if (speed + max(A.PAR.pulled, pulled) * h) * h > INTERVAL_DEPTH_WIDTH * thick:
         return False
     if lossy:
         MINE = np.empty(A.BODY.shape[0], np.int64)

@@ -115,13 +115,20 @@ def along(C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], i: int, D: Floa
 
 
 @nonallocating
+def gives_way(groups: Groups, A: IntArray, B: IntArray, ROWS: Rows[Row], i: int, mobility: float) -> bool:
+    """Whether contact i with such a mobility along n is moved by more than the error of the response."""
+    least = STRUT if groups.GROUP[A[i]] == groups.GROUP[B[i]] else STRUT_BETWEEN
+    return bool(mobility * ROWS[i].k_n > least)
+
+
+@nonallocating
 def weigh(groups: Groups, C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], m: int) -> None:
     """Let K, A and W of the rows be those of the columns; leave out what hardly can be moved."""
     for i in range(m):
         nn, tt = along(C, A, B, ROWS, i, C.N, False), along(C, A, B, ROWS, i, C.T, True)
         nt = 0.5 * (along(C, A, B, ROWS, i, C.N, True) + along(C, A, B, ROWS, i, C.T, False))
         least = STRUT if groups.GROUP[A[i]] == groups.GROUP[B[i]] else STRUT_BETWEEN
-        C.OUT[i] = 0 if nn * ROWS[i].k_n > least else 1
+        C.OUT[i] = 0 if gives_way(groups, A, B, ROWS, i, nn) else 1
         if C.OUT[i] == 0:
             ROWS[i].k_n, ROWS[i].a_nn = 1.0 / nn, nn
         if tt * ROWS[i].k_t > least:

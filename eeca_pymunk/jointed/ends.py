@@ -10,6 +10,7 @@ from ..islands.accounting import account_contact, move_to_end
 from ..islands.membership import members
 from ..model.joint_steps import LINEAR
 from ..model.joints import Joints
+from ..model.parameters.intervals import INTERVAL_RETRY
 from ..model.scene import Scene
 from ..pairs.lists import mark_pair
 from .gathered import restore_joints
@@ -103,9 +104,12 @@ def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
 
 @kernel
 def left_apart(A: Scene, J: Joints, root: int) -> bool:
-    """Whether joints do not hold at the end of the interval of an island."""
+    """Whether joints do not hold at the end of the interval of an island, or contacts, which are not solved, let bodies
+    go too far."""
     if not under_way(A, root):
         return False
+    if A.RESTING[root].strays > INTERVAL_RETRY:
+        return True
     for s in components_of(A, J, root):
         if J.STEPPED[s].status >= LINEAR:
             return True
@@ -114,7 +118,8 @@ def left_apart(A: Scene, J: Joints, root: int) -> bool:
 
 @kernel
 def stand_still(A: Scene, J: Joints, root: int, t: float) -> None:
-    """Take the interval of an island back, whose joints did not hold: until instant t it keeps poses and velocities."""
+    """Take the interval of an island back, at whose end it was `left_apart`: until instant t it keeps poses and
+    velocities."""
     shorten(A, J, root, A.BODY[root].since)
     i = root
     while i >= 0:

@@ -14,7 +14,7 @@ from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..contacts.memory import key_of
 from ..geometry.flight import norm
-from ..islands.depths import closes_too_far, too_deep_at_end
+from ..islands.depths import closes_too_far, depth_limit, too_deep_at_end
 from ..model.contacts import Row
 from ..model.islands import Island
 from ..model.joints import Joints
@@ -25,6 +25,7 @@ from ..model.parameters.intervals import (
 from ..model.scene import Scene
 from ..pairs.lists import far_apart
 from ..pairs.rules import barred
+from ..rows.build import normal_rate
 from .advance import Motion
 
 _CUBIC = 4.0 / 27.0  # largest value of s^2 (1 - s)
@@ -102,3 +103,17 @@ def excess(
         far = max(far, strays(A, i, motion.WAY[q, 0], motion.WAY[q, 1], turned, motion.V[q], isle.ACC[q], t, h, KEY, m))
     far = max(far, closes_too_far(A, isle, P, Q, ROWS, KEY, motion.MEAN, m, h))
     return max(far, too_deep_at_end(A, isle, motion.END, P, Q, ROWS, KEY, m, h, True))
+
+
+@nonallocating
+def led_in(
+    A: Scene, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, OUT: IntArray, WAY: FloatArray, m: int
+) -> int:
+    """A contact that joints lead deeper than an interval allows, -1 if there is none: those that are left out (OUT) are
+    not moved by any impulse."""
+    shapes = A.SHAPE.shape[0]
+    for z in range(m):
+        closed, pair = normal_rate(P, Q, ROWS, WAY, z), KEY[z] >> 1
+        if OUT[z] != 0 and closed < 0.0 and ROWS[z].gap + closed < -depth_limit(A, pair // shapes, pair % shapes):
+            return z
+    return -1

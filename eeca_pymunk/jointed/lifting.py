@@ -6,24 +6,29 @@ import math
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
 from ..contacts.correction import admissible, least_of, turn_by, unturn
+from ..contacts.geometry import gather
+from ..contacts.interval import make_contacts
 from ..contacts.works import against
+from ..islands.candidates import pairs_within
+from ..islands.depths import driven
+from ..islands.local import clear_places, local_island, number_bodies
 from ..model.contacts import JointedProblem
 from ..model.joints import Joints
 from ..model.parameters.intervals import OVERLAP_LEFT
 from ..model.parameters.joints import JOINTED_CORRECTION_SWEEPS
 from ..model.scene import Scene
 from ..rows.bounded import room_for_rows
-from ..rows.build import normal_rate
+from ..rows.build import conserves, normal_rate
 from ..rows.inplace import copy
 from ..rows.lifting import lift
-from .advance import Interval
-from .columns import fill_group, weigh
+from .advance import Interval, Motion
+from .columns import fill_free, fill_group, make_columns, weigh
 from .component import close_joints, ready
 from .gathered import find_places, gather_component
-from .groups import hangs
+from .groups import find_groups, hangs
 from .motors import drives
 
 
@@ -39,7 +44,49 @@ def raise_gaps(problem: JointedProblem, GAPS: FloatArray, D: FloatArray, toleran
 
 
 @kernel
-def correct(A: Scene, J: Joints, interval: Interval, end: float, budget: float) -> float:
+def lift_island(
+    A: Scene, J: Joints, interval: Interval, KEY: IntArray, root: int, end: float, lost: float, anew: bool
+) -> None:
+    """Lift the poses at the end of an island's motion. What contacts have `lost`, now and before, pays; where a moving
+    body without mobility is deep in the island (`depths.driven`) that does the work beyond.
+    `anew`: whether the columns are yet to be made."""
+    isle, groups, P, Q, ROWS, _, _, m, n, _, _ = interval
+    raised = driven(A, isle, P, Q, ROWS, KEY, n, m)
+    budget = lost + A.RESTING[root].lost
+    spent = correct(A, J, interval, end, math.inf if raised else budget, anew)
+    if len(groups.JOINTED) > 0:
+        paid, one = min(spent, max(budget, 0.0)) if raised else spent, J.STEPPED[groups.JOINTED[0]]
+        one.lifted += paid
+        one.supports += spent - paid
+
+
+@kernel
+def lift_here(A: Scene, J: Joints, root: int, t: float) -> None:
+    """`..islands.intervals.lift_here` of an island with joints, whose interval is over at instant t."""
+    MINE = number_bodies(A, root)
+    n = len(MINE)
+    found = pairs_within(A, root, t, 0.0, True, MINE, n)
+    isle = local_island(A, MINE, n, found, t)
+    k, contacts = len(isle.WHO), make_contacts(len(found), len(isle.WHO))
+    P, Q, ROWS = contacts.A, contacts.B, contacts.ROWS
+    m = gather(A, isle, contacts, isle.POSE, np.zeros(k), 0.0, k == n)
+    if not conserves(ROWS, m):
+        groups, NOTHING = find_groups(isle.WHO, isle.IM, J.OF), np.zeros((k, 3))
+        motion = Motion(isle.V.copy(), isle.V, NOTHING, isle.POSE.copy(), np.zeros((k, 2)), NOTHING)
+        interval = Interval(isle, groups, P, Q, ROWS, motion, make_columns(groups, P, Q, m), m, n, t, 0.0)
+        fill_free(groups, interval.C, Q, ROWS, isle.IM, isle.II, m)
+        lift_island(A, J, interval, contacts.KEY, root, t, 0.0, True)
+        for g in range(len(groups.JOINTED)):
+            A.RESTING[root].lost -= J.STEPPED[groups.JOINTED[g]].lifted
+        for q in range(n):
+            body = A.BODY[MINE[q]]
+            body.x, body.y, body.angle = motion.END[q, 0], motion.END[q, 1], motion.END[q, 2]
+            body.vx, body.vy, body.spin = motion.V[q, 0], motion.V[q, 1], motion.V[q, 2]
+    clear_places(A, MINE, n)
+
+
+@kernel
+def correct(A: Scene, J: Joints, interval: Interval, end: float, budget: float, anew: bool) -> float:
     """Lift the poses at the end of an island's motion by at most what `budget` pays; the energy that it costs.
 
     The cost is -m a.D for displacements D, turns included, and what springs hold more. Joints hold: D goes along them,
@@ -58,7 +105,7 @@ def correct(A: Scene, J: Joints, interval: Interval, end: float, budget: float) 
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
         # Where joints do nothing but hold, bodies answer as they did in the interval.
-        if s >= 0 and drives(J, s):
+        if s >= 0 and (anew or drives(J, s)):
             gather_component(A, J, s, END, V, NOTHING, isle.IM, isle.II, end, h)
             places = find_places(A, J, s, INDEX)
             if ready(J, s, 2.0, False):

@@ -47,7 +47,7 @@ def shorten_both(A: Scene, J: Joints, one: int, other: int, t: float) -> int:
 
 @kernel
 def either_apart(A: Scene, J: Joints, roots: tuple[int, int]) -> bool:
-    """Whether joints do not hold at the end of the interval of either island."""
+    """`left_apart` of either island."""
     return bool(left_apart(A, J, roots[0]) or left_apart(A, J, roots[1]))
 
 
@@ -98,7 +98,9 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
         crosses, through = False, t
         if g + level > close * small:
             through, crosses = first_meeting(A, a, b, t)
-        if ((loaded > 0 or spent) and tries + 1 >= most) or abs(g) <= close * small:
+        # Depths add up from impact to impact.
+        deep = not spent and g < -MEET_MANY * small
+        if ((loaded > 0 or spent) and tries + 1 >= most and not deep) or abs(g) <= close * small:
             break
         secant = before >= 0.0 and t != before
         slope = (g - gap_before) / (t - before) if secant else gap_and_rate(A, a, b, t)[1]
@@ -118,8 +120,8 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
             break
         before, gap_before = t, g
         then = max(min(t - g / slope, latest), least)
-        if then == least and level < 0.0:
-            then = 0.5 * (least + t)
+        if (then == least and level < 0.0) or (then <= apart and loaded > 0 and deep):
+            then = 0.5 * (apart + t)
         if then == t:
             break
         t = then

@@ -142,9 +142,10 @@ def press(
             if off < best:
                 best = off
                 copy(LEAST, L)
-        if not anew:
-            fit_columns(interval, B, L, USED, NOW, PREVIOUS)
-        elif free:
+        if not anew and not fit_columns(interval, B, L, USED, NOW, PREVIOUS):
+            advance(A, J, interval, L, B, True, FORESEEN)
+            anew = True
+        if anew and free:
             fill_free(groups, C, Q, ROWS, isle.IM, isle.II, m)
         J.PROGRESS.effort += SOLUTION_WORK * C.AT[m] if anew else 0.0
         weigh(groups, C, P, Q, ROWS, m)

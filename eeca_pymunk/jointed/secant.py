@@ -6,7 +6,8 @@ all impulses between two motions, and e what the velocities have changed by beyo
     Y <- Y + e d^T / (d.d),
 
 for each component with the impulses on it: the least change of the columns with which they answer d as the component
-does. Iterations converge superlinearly with it, without new columns.
+does. Iterations converge superlinearly with it, without new columns; unless a contact would no longer be moved by its
+own impulse, as no component answers.
 """
 
 from __future__ import annotations
@@ -19,14 +20,16 @@ from ..model.contacts import Bounded
 from ..rows.bounded import push_row
 from ..rows.columns import push_columns
 from .advance import Interval
+from .columns import along, gives_way
 
 
 @kernel
 def fit_columns(
     interval: Interval, B: Bounded, L: FloatArray, BEFORE: FloatArray, NOW: FloatArray, V: FloatArray
-) -> None:
+) -> bool:
     """Update the columns of contacts and of bounded rows; V (k, 3), NOW (rows,), BEFORE (m, 2): velocities at the end
-    of the motion before, impulses of bounded rows and of contacts in it; L (m, 2): those of the present motion."""
+    of the motion before, impulses of bounded rows and of contacts in it; L (m, 2): those of the present motion. Whether
+    all contacts that gave way still do: else these are no columns."""
     groups, P, Q, motion, C, m = (
         interval.groups, interval.P, interval.Q, interval.motion, interval.C, interval.m,
     )  # fmt: skip
@@ -61,3 +64,9 @@ def fit_columns(
             square = SQUARE[groups.GROUP[B.BODY[w]] + 1]
             for c in range(3 if square > 0.0 else 0):
                 B.N[w, c] += ERROR[B.BODY[w], c] * (B.ROWS[i].now - NOW[i]) / square
+    for i in range(m):
+        if C.OUT[i] == 0 and not gives_way(
+            groups, P, Q, interval.ROWS, i, along(C, P, Q, interval.ROWS, i, C.N, False)
+        ):
+            return False
+    return True

@@ -14,7 +14,6 @@ from ..contacts.memory import remember_loads
 from ..contacts.unmet import note_unmet
 from ..contacts.works import moved
 from ..islands.candidates import before_end, pairs_within
-from ..islands.depths import driven
 from ..islands.local import (
     clear_places,
     local_island,
@@ -34,7 +33,7 @@ from ..model.parameters.joints import COLUMN_CONTACTS, FORESEEN, INTERVAL_SHARE
 from ..model.scene import Scene
 from ..model.step import AGAIN, CONTACTS, DONE, PUSHES_FULL, SPENT
 from ..rows.bounded import room_for_rows
-from ..rows.build import normal_rate
+from ..rows.build import conserves, normal_rate
 from .advance import Interval, Motion, advance
 from .alone import account_turning, begin_alone, is_component, meets_nobody, set_path
 from .columns import make_columns
@@ -43,8 +42,8 @@ from .fitting import fit
 from .gathered import gather_component, keep_joints, restore_joints
 from .groups import Groups, find_groups
 from .ledger import budget_at, is_spent
-from .lengths import excess
-from .lifting import correct
+from .lengths import excess, led_in
+from .lifting import lift_island
 from .lock import lost, slip_of
 from .motors import drives
 from .press import press
@@ -104,16 +103,15 @@ def begin_interval(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
 def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) -> tuple[int, float]:
     """`begin_interval` of length h. AGAIN, with nothing done, if that is too long, and how long it may be; not if it is
     the `last` attempt."""
-    whole = is_component(A, J, root)
+    whole, A.RESTING[root].strays = is_component(A, J, root), 0.0
     if whole and meets_nobody(A, root):
         far = begin_alone(A, J, root, t, h, last)
         return (AGAIN, h / far) if far > 0.0 else (DONE, h)
     COUNT = A.COUNT
     MINE = number_bodies(A, root)
     n = len(MINE)
-    may_lose = lossy(A, root)
     # As in a whole step where it is cut short: nobody looks for impacts of pairs that would be left out.
-    found = pairs_within(A, root, t, A.PAR.planned - t, may_lose, MINE, n)
+    found = pairs_within(A, root, t, A.PAR.planned - t, lossy(A, root), MINE, n)
     p = len(found)
     if p == 0 and whole:
         clear_places(A, MINE, n)
@@ -156,20 +154,22 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     for s in groups.JOINTED:
         if J.STEPPED[s].status >= ELASTIC:
             far = 2.0
-    if not last:
-        far = max(far, excess(A, isle, P, Q, ROWS, KEY, motion, m, n, t, h))
+    if not (last and held):
+        strays = excess(A, isle, P, Q, ROWS, KEY, motion, m, n, t, h)
+        A.RESTING[root].strays, far = 0.0 if held else strays, max(far, strays)
     if not held:  # the motion is not that of a solution, and says little of how long it may be
         # Contacts that are not solved in a long interval may be in a short one, if the step has work for many of these.
         payable = RESOLUTION * (J.PROGRESS.effort - before) <= budget_at(A, J, t)
-        hard = m <= COLUMN_CONTACTS and payable and h > A.PAR.dt / RESOLUTION
+        hard = m <= COLUMN_CONTACTS and payable and h * UNSOLVED_PART**2 > A.PAR.dt / RESOLUTION
         far = UNSOLVED_PART if hard else min(far, UNSOLVED_PART)
     if far > INTERVAL_RETRY and not last:
         for s in groups.JOINTED:
             restore_joints(J, s)
         clear_places(A, MINE, n)
         return AGAIN, h / far
-    if not held:
-        pair, shapes = KEY[0] >> 1, A.SHAPE.shape[0]
+    led = led_in(A, P, Q, ROWS, KEY, interval.C.OUT, motion.WAY, m)
+    if not held or led >= 0:
+        pair, shapes = KEY[max(led, 0)] >> 1, A.SHAPE.shape[0]
         note_unmet(A, CONTACTS, pair // shapes, pair % shapes, math.nan, math.nan)
     for s in groups.JOINTED:
         J.STEPPED[s].turned_work = J.STEPPED[s].lifted = 0.0
@@ -179,15 +179,9 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
             account_turning(A, J, s, MINE[q], motion.END[q, 2], motion.WAY[q, 2])
     # Bodies are lifted at the end of the interval, not on the way: the way would be as steep as the interval is short.
     WHERE, HELD = motion.END.copy(), np.zeros(m)
-    if may_lose and m > 0:
+    if not conserves(ROWS, m):
         if not before_end(A, t + h):
-            raised = driven(A, isle, P, Q, ROWS, KEY, n, m)
-            budget = lost(P, Q, ROWS, L, motion.WAY, m, h) + A.RESTING[root].lost
-            spent = correct(A, J, interval, t + h, math.inf if raised else budget)
-            if len(groups.JOINTED) > 0:
-                paid, one = min(spent, max(budget, 0.0)) if raised else spent, J.STEPPED[groups.JOINTED[0]]
-                one.lifted = paid
-                one.supports += spent - paid
+            lift_island(A, J, interval, KEY, root, t + h, lost(P, Q, ROWS, L, motion.WAY, m, h), False)
         HELD = fit(A, J, interval, L, t + h, slow + pull * h)
     clear_places(A, MINE, n)
     first = COUNT.pushes

@@ -6,7 +6,7 @@ from 1 mm to 50 m, steps of 1/240 to 1/10 s, with gravity or without; joints and
 * all is finite; the ledger closes to 1e-11 of the scale of energy, and its losses are not negative by more than that;
 * in a container that rests energy never rises without joints that drive;
 * what comes from outside is no more than what acts from there can do (`outside.py`);
-* nobody leaves the container, by more than a part of his size;
+* nobody leaves the container, by more than a part of his size, but whom joints lead out (`led.py`);
 * a step of up to 1/30 s takes no longer than 20 ms of processor time, or 100 native steps; a longer one as much for
   each 1/30 s. Steps that do are repeated, as the machine may have been busy; and events spend their budget only;
 * saved and loaded half-way the run goes on bit by bit;
@@ -28,6 +28,7 @@ import pymunk
 import eeca_pymunk as ep
 
 from .joined import BOUND, HOLDS, OFF, apart, join, overdone
+from .led import led_out
 from .outside import Outside
 
 LENGTHS = (1e-3, 3e-2, 1.0, 10.0, 50.0)
@@ -87,6 +88,7 @@ class Composition:
             wall.elasticity, wall.friction = R.choice((1.0, elastic)), rough
         space.add(self.box, *walls)
         self.bodies: list[pymunk.Body] = []
+        self.led: set[pymunk.Body] = set()
         self.sizes: list[float] = []
         self.matter = elastic, rough
         places = [(x, y) for x in range(-3, 4, 2) for y in range(-3, 4, 2)]
@@ -314,5 +316,9 @@ class Composition:
         for body, size in zip(self.bodies, self.sizes, strict=True):
             x, y = self.box.world_to_local(body.position)
             out = max(abs(x), abs(y)) - self.half - self.rounding
-            if out > OUT * size:
-                raise Broken(f"step {k}: {next(iter(body.shapes))} is {out / size:.2g} of its size outside")
+            if out <= OUT * size:
+                self.led.discard(body)
+            elif body not in self.led:
+                if not led_out(self.space, self.box, body, self.length):
+                    raise Broken(f"step {k}: {next(iter(body.shapes))} is {out / size:.2g} of its size outside")
+                self.led.add(body)
