@@ -11,6 +11,7 @@ from ..islands.membership import members
 from ..model.joint_steps import LINEAR
 from ..model.joints import Joints
 from ..model.parameters.intervals import INTERVAL_RETRY
+from ..model.parameters.joints import LINEAR_APART
 from ..model.scene import Scene
 from ..pairs.lists import mark_pair
 from .gathered import restore_joints
@@ -104,14 +105,14 @@ def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
 
 @kernel
 def left_apart(A: Scene, J: Joints, root: int) -> bool:
-    """Whether joints do not hold at the end of the interval of an island, or contacts, which are not solved, let bodies
-    go too far."""
+    """Whether joints do not hold at the end of the interval of an island, or have given way there by as much as one
+    linear system may leave, or contacts, which are not solved, let bodies go too far."""
     if not under_way(A, root):
         return False
     if A.RESTING[root].strays > INTERVAL_RETRY:
         return True
     for s in components_of(A, J, root):
-        if J.STEPPED[s].status >= LINEAR:
+        if J.STEPPED[s].status >= LINEAR or J.STEPPED[s].gave > LINEAR_APART:
             return True
     return False
 

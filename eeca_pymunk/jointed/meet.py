@@ -140,6 +140,9 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
         met = min(max(A.STATE[i].events, A.STATE[j].events), MEET_DOUBLINGS)
         t = min(least + 2.0 ** (met + 1) * A.PAR.instant, latest)
         shorten_both(A, J, roots[0], roots[1], t)
+        while t - least > A.PAR.instant and either_apart(A, J, roots):
+            t = 0.5 * (least + t)
+            shorten_both(A, J, roots[0], roots[1], t)
     end_here(A, J, roots[0], t)
     if roots[1] != roots[0]:
         end_here(A, J, roots[1], t)

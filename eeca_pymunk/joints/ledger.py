@@ -21,7 +21,7 @@ def clear_ledger(ledger: JointLedger) -> None:
 def clear_interval(ledger: JointLedger) -> None:
     """No energies at all."""
     clear_ledger(ledger)
-    ledger.turned_work = ledger.lifted = 0.0
+    ledger.turned_work = ledger.lifted = ledger.gave = 0.0
     ledger.status = 0
 
 

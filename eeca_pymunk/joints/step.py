@@ -78,6 +78,7 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
     for k in range(W.joints):
         W.J.JOINT[W.link[k].joint].side = W.link[k].side  # where the ladder begins anew
     limit_work(W)
+    apart = farthest(W)
     status = climb(W, h, order, length, touched, own)
     before = step_linearly(W, h, length) if status == LINEAR else 0.0
     if status >= ELASTIC:
@@ -87,6 +88,7 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
             close_ledger(local, W.bodies, W.J.PART)
         if not touched:
             W.J.JOINT[W.link[0].joint].owed = 0.0
+    ledger.gave = max(farthest(W) - apart, 0.0) if status >= ELASTIC else 0.0
     add(ledger, W.J.PART)
     write_joints(W, h, GIVES_WAY if status == ELASTIC else LEFT_APART if status == LINEAR else 0)
     return HALVED if status == ELASTIC and farthest(W) <= NEARLY_HELD else status

@@ -254,6 +254,13 @@ def test_joints_press_nothing_through_walls_by_impacts(seed: int, steps: int) ->
     Varied(seed, True).play(steps)
 
 
+@pytest.mark.parametrize(("seed", "steps"), [(930445, 92), (931668, 118)])
+def test_intervals_that_end_at_an_impact_leave_no_joint_apart(seed: int, steps: int) -> None:
+    """Joints that give way elastically, but far, in an interval that is shortened to an instant, and those of shapes
+    that do not close before joints act, in an interval that is as long as the step has had events."""
+    Varied(seed, True).play(steps)
+
+
 @pytest.mark.parametrize(("seed", "steps"), [(62645, 20), (111663, 20), (110366, 83)])
 def test_what_spins_fast_about_another_point_spends_no_more_than_the_budget(seed: int, steps: int) -> None:
     """Shapes far from their bodies' centres, up to 290 rad a step: searches for impacts count whatever comes next."""

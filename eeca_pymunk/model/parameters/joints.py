@@ -175,7 +175,10 @@ CLOSES = round_off(
 
 LEAST_SOLUTIONS = work(40, "solutions", "Newton iterations that a step of a component may take whatever work is left.")
 LINEAR_APART = accuracy(
-    1e-4, "of the component", "How far one linear system may leave joints: what would be farther moves as one body."
+    1e-4,
+    "of the component",
+    "How far one linear system may leave joints: what would be farther moves as one body. An interval that ends at an "
+    "impact is shorter where elastic joints would give way farther.",
 )
 EXCESSIVE_IMPULSE = round_off(
     1e4, "of the island's mass and speed", "Impulse beyond which a solution is replaced by sweeps from zero."
