@@ -29,7 +29,7 @@ from .columns import fill_free, fill_group, make_columns, weigh
 from .component import close_joints, ready
 from .gathered import find_places, gather_component
 from .groups import find_groups, hangs
-from .motors import drives
+from .motors import keeps_speed
 
 
 @kernel
@@ -104,8 +104,9 @@ def correct(A: Scene, J: Joints, interval: Interval, end: float, budget: float, 
     NOTHING, INDEX = np.zeros_like(V), np.full(len(isle.IM), -1, np.int64)
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
-        # Where joints do nothing but hold, bodies answer as they did in the interval.
-        if s >= 0 and (anew or drives(J, s)):
+        # But for bounded rows, which hold speeds, bodies answer as they did in the interval: where a spring is stiffer
+        # than their inertia, they move without it.
+        if s >= 0 and (anew or keeps_speed(J, s)):
             gather_component(A, J, s, END, V, NOTHING, isle.IM, isle.II, end, h)
             places = find_places(A, J, s, INDEX)
             if ready(J, s, 2.0, False):
