@@ -27,7 +27,7 @@ import pymunk
 
 import eeca_pymunk as ep
 
-from .joined import BOUND, HOLDS, OFF, apart, join, overdone
+from .joined import BOUND, HOLDS, OFF, apart, join, overdone, reach
 from .led import led_out
 from .outside import Outside
 
@@ -48,7 +48,8 @@ class Broken(AssertionError):
 @dataclass
 class Found:
     """What a composition came to: longest step (s), steps that have not converged, largest loss below 0, over the scale
-    of energy; how far joints are apart, now too; steps in a row that nothing has moved in."""
+    of energy; how far joints are apart, over the length of the scene, and now, over their component (`reach`); steps in
+    a row that nothing has moved in."""
 
     longest: float = 0.0
     unconverged: int = 0
@@ -265,14 +266,14 @@ class Composition:
         before, found.off = found.off, 0.0
         for joint in self.space.constraints:
             off, over = apart(joint, self.length), overdone(joint, self.dt)
-            found.off = max(found.off, off)
+            held = apart(joint, max(self.length, reach(joint)))
+            found.off, found.apart = max(found.off, held), max(found.apart, off)
             if over > 1.0 + BOUND:
                 raise Broken(f"step {k}: {joint} pushes {over:.3g} times max_force")
             if off > OFF:
                 raise Broken(f"step {k}: {joint} is {off:.1e} apart")
-            if report.converged and off > HOLDS and before <= HOLDS:
+            if report.converged and held > HOLDS and before <= HOLDS:
                 raise Broken(f"step {k}: {joint} is {off:.1e} apart in a step that has converged")
-        found.apart = max(found.apart, found.off)
 
     def _check(
         self,

@@ -10,8 +10,8 @@ from random import Random
 
 import pymunk
 
-HOLDS = 1e-8  # of the length of the scene, of joints in a step that has converged
-OFF = 1e-3  # of that length, whatever converges
+HOLDS = 1e-8  # of the component (`reach`), of joints in a step that has converged: NEARLY_HELD of the method
+OFF = 1e-3  # of the length of the scene, whatever converges
 BOUND = 1e-9  # over max_force dt
 KINDS = (
     "pivot", "pin", "slide", "groove", "spring", "rotary spring", "rotary limit", "ratchet", "gear", "motor",
@@ -83,6 +83,18 @@ def apart(joint: pymunk.Constraint, length: float) -> float:
     if isinstance(joint, pymunk.GearJoint):
         return abs(b.angle * joint.ratio - a.angle - joint.phase)
     return 0.0
+
+
+def reach(joint: pymunk.Constraint) -> float:
+    """The farthest coordinate of what hangs together with a joint, which its errors are measured by."""
+    seen, front = {joint.a, joint.b}, [joint.a, joint.b]
+    while front:
+        body = front.pop()
+        if body.body_type == pymunk.Body.DYNAMIC:
+            found = {end for other in body.constraints for end in (other.a, other.b)} - seen
+            seen |= found
+            front += found
+    return max(abs(place) for body in seen for place in body.position)
 
 
 def overdone(joint: pymunk.Constraint, dt: float) -> float:

@@ -261,6 +261,15 @@ def test_intervals_that_end_at_an_impact_leave_no_joint_apart(seed: int, steps: 
     Varied(seed, True).play(steps)
 
 
+def test_walls_do_not_wind_springs_up_as_they_lift_bodies() -> None:
+    Varied(920341, True).play(69)
+
+
+def test_joints_that_give_way_are_measured_by_their_component() -> None:
+    """A component whose farthest body is five times as far as the scene's length."""
+    Varied(930597, True).play(49)
+
+
 @pytest.mark.parametrize(("seed", "steps"), [(62645, 20), (111663, 20), (110366, 83)])
 def test_what_spins_fast_about_another_point_spends_no_more_than_the_budget(seed: int, steps: int) -> None:
     """Shapes far from their bodies' centres, up to 290 rad a step: searches for impacts count whatever comes next."""
