@@ -21,7 +21,8 @@ from .records import KINDS
 
 SOURCES = (
     "arrays.py", "layout.py", "transfer.py", "rehearsing.py", "sleepers.py", "world_rows.py", "compiled", "model",
-    "build", "energy", "geometry", "rows", "pairs", "prediction", "contacts", "joints", "islands", "jointed", "impacts",
+    "build", "energy", "geometry", "rows", "pairs", "prediction", "newton", "contacts", "joints", "islands", "jointed",
+    "impacts",
 )  # fmt: skip
 
 TABLES = {

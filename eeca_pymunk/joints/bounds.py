@@ -1,4 +1,4 @@
-"""How far a joint is from its limits, and at what rate it nears them. Rows must have been computed (see `newton`)."""
+"""How far a joint is from its limits, and at what rate it nears them. Rows must be those of the present poses."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from ..compiled.records import Rows
 from ..model.joint_steps import JointStep
 from ..model.joints import GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, Coupling, Joint, Workspace
 from ..model.parameters.joints import JOINT_TOUCH, LIMIT_WAY
-from .entries import along, idle
-from .rows import joint_rows
+from ..newton.entries import along, idle
+from ..newton.rows import joint_rows
 
 
 @nonallocating

@@ -9,12 +9,12 @@ from ..compiled.records import Rows
 from ..model.joint_steps import POSES, SPEEDS, BodyStep, JointLedger
 from ..model.joints import APART, EDITED, GIVES_WAY, LEFT_APART, Workspace
 from ..model.parameters.joints import JOINT_APART
+from ..newton.entries import held
+from ..newton.motion import go_back, save
+from ..newton.rows import joint_rows
 from .bounds import gap, has_bound
 from .correct import correct, fitting_loss, speeds_fit
-from .entries import held
 from .lock import lock_energy
-from .motion import go_back, save
-from .rows import joint_rows
 from .start import closing_share, compute_rows, springs_of
 
 

@@ -19,9 +19,9 @@ from ..model.parameters.joints import (
     REDUNDANT_EPSILON,
     REDUNDANT_PASSES,
 )
+from ..newton.entries import held
+from ..newton.systems import apply, back, effort, factorise, first_iterate, linearise
 from .bounds import approach, gap, has_bound
-from .entries import held
-from .newton import apply, back, effort, factorise, first_iterate, linearise
 
 
 @nonallocating

@@ -12,13 +12,13 @@ from ..compiled import nonallocating
 from ..model.joint_steps import ELASTIC, EXACT, HALVED, LINEAR
 from ..model.joints import GIVES_WAY, ROTARY_SPRING, SPRING, Workspace
 from ..model.parameters.joints import COMPONENT_BUDGET, ELASTIC_PARTS, HASTE, JOINT_GAIN, LEAST_SOLUTIONS, REPAID
+from ..newton.motion import go_back
+from ..newton.solve import drop_impulses
+from ..newton.systems import effort
 from .foresight import foretell, forget, recalls, remember
 from .ledger import clear_ledger
 from .limits import step_with_limits
 from .lock import lock_energy, supports_rest
-from .motion import go_back
-from .newton import effort
-from .solve import drop_impulses
 
 SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
 ORDER_4, WHOLE_STEP, ELASTIC_RUNG, RUNGS = -1, 0, 4, 10

@@ -6,8 +6,8 @@ from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.joint_steps import BodyStep, JointLedger
 from ..model.joints import MOTOR, ROTARY_SPRING, SPRING, Workspace
-from .entries import held
-from .springs import held_energy
+from ..newton.entries import held
+from ..newton.springs import held_energy
 
 
 @inlined

@@ -26,11 +26,11 @@ from ..model.parameters.joints import (
     LIMIT_WAY,
     MEET_INSTANT,
 )
+from ..newton.motion import advance
+from ..newton.solve import drop_impulses, solve, solve_linearly
 from .bounds import approach, begin_part, first_bound, gap, held_till_then, hold_limits, look, release, standing
 from .correct import correct, fitting_loss
 from .ledger import book
-from .motion import advance
-from .solve import drop_impulses, solve, solve_linearly
 
 
 @nonallocating

@@ -15,8 +15,8 @@ from ..compiled.records import Rows, empty
 from ..model.bodies import BODIES, Body
 from ..model.joints import GEAR, GROOVE, MOTOR, Component, ComponentBody, Coupling, Joint
 from ..model.parameters.joints import BOXES_DIRECT, CONDENSE_BAND
+from ..newton.rows import row_count
 from .ordering import order_rows, order_unknowns
-from .rows import row_count
 
 
 @kernel

@@ -19,16 +19,16 @@ from ..model.joints import (
     Joint,
     Workspace,
 )
+from ..newton.entries import is_limit
+from ..newton.rows import joint_rows
+from ..newton.systems import first_iterate
 from .bounds import approach, gap, has_bound
-from .entries import is_limit
 from .ledger import springs_hold
-from .newton import first_iterate
-from .rows import joint_rows
 
 
 @nonallocating
 def read_joints(W: Workspace, h: float, length: float) -> tuple[bool, bool]:
-    """Fill in what the joints bring from before. Rows of bounded impulses are boxed if they are few (`boxes`).
+    """Fill in what the joints bring from before. Rows of bounded impulses are boxed if they are few (`..newton.boxes`).
 
     Returns whether a joint was touched, and whether a bounded joint needs its target.
     """

@@ -13,13 +13,13 @@ from ..compiled import nonallocating
 from ..model.joint_steps import ELASTIC, HALVED, LINEAR, JointLedger
 from ..model.joints import APART, GIVES_WAY, LEFT_APART, RATCHET, Workspace
 from ..model.parameters.joints import NEARLY_HELD
+from ..newton.motion import save
+from ..newton.solve import drop_impulses
 from .bounds import hold_limits, standing
 from .closing import close_joints, farthest
 from .correct import kinetic
 from .ladder import climb, limit_work
 from .ledger import add, clear_ledger, close_ledger
-from .motion import save
-from .solve import drop_impulses
 from .start import bounded_targets, compute_rows, read_joints
 from .taut import taut
 from .unheld import step_linearly, take_gain

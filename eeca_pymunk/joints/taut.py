@@ -11,7 +11,7 @@ import math
 from ..compiled import nonallocating
 from ..model.joints import PIN, PIVOT, SLIDE, Workspace
 from ..model.parameters.joints import TAUT
-from .rows import start_joint
+from ..newton.rows import start_joint
 
 
 @nonallocating

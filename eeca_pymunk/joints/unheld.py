@@ -6,14 +6,14 @@ from ..compiled import nonallocating
 from ..model.joint_steps import ELASTIC, LINEAR
 from ..model.joints import Workspace
 from ..model.parameters.joints import LINEAR_APART
+from ..newton.motion import advance, go_back, move
+from ..newton.solve import drop_impulses
 from .closing import farthest
 from .foresight import forget
 from .ladder import restore, undo_impulses
 from .ledger import clear_ledger, close_ledger
 from .limits import step_with_limits
 from .lock import lock_energy, move_rigidly, supports_rest
-from .motion import advance, go_back, move
-from .solve import drop_impulses
 from .start import springs_of
 
 

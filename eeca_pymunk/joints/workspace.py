@@ -12,8 +12,8 @@ from ..compiled.layouts import COUNT, Layout, Plan
 from ..compiled.records import Rows
 from ..model.bodies import Body
 from ..model.joints import Joint, Joints, Workspace, joints_of
-from .boxes import ROOM as BOX_ROOM
-from .dual import STRIDE
+from ..newton.boxes import ROOM as BOX_ROOM
+from ..newton.dual import STRIDE
 from .plan import make_plan, together
 
 

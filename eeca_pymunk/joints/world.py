@@ -6,7 +6,7 @@ from ..compiled import Table, nonallocating
 from ..compiled.records import Rows
 from ..model.bodies import Body
 from ..model.joints import Joints, joints_of
-from .motion import read_body, seat, size_up
+from ..newton.motion import read_body, seat, size_up
 from .step import take_step
 from .workspace import workspace
 

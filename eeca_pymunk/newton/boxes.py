@@ -5,7 +5,7 @@ change of u per bounded impulse, answered by all joints that hold exactly. The i
 
     |lam| <= max_force h,    u = 0 inside of the bound,    u of the other sign than lam where lam is at the bound,
 
-(a pivot's two as a disc), so that lam never exceeds its bound, in no iteration and in no rung of the ladder of `step`:
+(a pivot's two as a disc), so that lam never exceeds its bound, in no iteration and in no rung of `..joints.ladder`:
 the work of such a row is at most max_force times the way along it. Sweeps find which rows are at their bounds, a direct
 solution on the others does the rest.
 """

@@ -22,7 +22,7 @@ from ..model.parameters.joints import (
 from .boxes import bound_impulses, boxed_rows, push, rows_of
 from .dual import STRIDE, refresh
 from .motion import move, settle
-from .newton import apply, back, effort, factorise, first_iterate, linearise
+from .systems import apply, back, effort, factorise, first_iterate, linearise
 
 
 @nonallocating
@@ -84,7 +84,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
     fresh ones.
 
     Args:
-        loops: whether rows may be redundant.  give: compliance over h², see `newton`.
+        loops: whether rows may be redundant.  give: compliance over h², see `systems`.
     """
     hinge, local, component, progress = W.J.HINGE, W.J.LOCAL, W.J.COMPONENT[W.s], W.J.PROGRESS
     first_iterate(W, STEP, h)

@@ -23,8 +23,8 @@ def factor_dual(W: Workspace, slopes: bool, add: float) -> bool:
     Args:
         slopes: whether the rows G are the slopes of the joints, or J; they and the rows J are frozen, scaled.
 
-    `inertia` of the bodies is the diagonal of A as `newton.assemble` left it; its reciprocal on return. MORE and PIVOTS
-    are scratch, STRIDE and 1 times the rows.
+    `inertia` of the bodies is the diagonal of A as `systems.assemble` left it; its reciprocal on return. MORE and
+    PIVOTS are scratch, STRIDE and 1 times the rows.
     """
     hinge, link, local, matrix, more, numbers = W.J.HINGE, W.link, W.J.LOCAL, W.J.MATRIX, W.J.MORE, W.J.PIVOTS
     size, band = W.J.COMPONENT[W.s].dual_size, W.J.COMPONENT[W.s].dual_band

@@ -1,4 +1,4 @@
-"""Rows of velocity with bounded impulses: motors, and joints whose max_force is finite (see `newton`)."""
+"""Rows of velocity with bounded impulses: motors, and joints whose max_force is finite (see `systems`)."""
 
 from __future__ import annotations
 

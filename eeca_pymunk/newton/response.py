@@ -17,8 +17,8 @@ from ..model.joint_steps import FULL_BEND, NO_BEND, STEP
 from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, GROOVE, Coupling, Workspace
 from ..model.parameters.joints import CONDENSED_PASSES, REDUNDANT_EPSILON, RESPONSE_PASSES, TAUT
 from .motion import move
-from .newton import assemble, back, decompose, first_iterate
 from .rows import joint_rows, start_joint
+from .systems import assemble, back, decompose, first_iterate
 
 
 @nonallocating

@@ -1,4 +1,4 @@
-"""What one joint puts into the linear system of its island: rows, columns, stiffness, all scaled (see `newton`)."""
+"""What one joint puts into the linear system of its island: rows, columns, stiffness, all scaled (see `systems`)."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def held(link: Rows[Coupling], k: int, r: int) -> bool:
 @inlined
 def idle(link: Rows[Coupling], k: int) -> bool:
     """Whether joint k is a limit on which it does not stand: steps go without it, and look at it when they are solved
-    (`bounds.first_bound`)."""
+    (`..joints.bounds.first_bound`)."""
     return not held(link, k, 0) and link[k].bounded == 0
 
 
