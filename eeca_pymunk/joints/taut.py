@@ -16,7 +16,8 @@ from ..newton.rows import start_joint
 
 @nonallocating
 def taut(W: Workspace, h: float) -> bool:
-    """Whether the impulses of some joint between points pull so that (h/2) dF/dx > TAUT of a body's inertia."""
+    """Whether the impulse F of some joint between points pulls so that (h/2) dF/dx > TAUT of a body's inertia: `turn`
+    is -dF/dx for its angle, arm . F, `per` that across a pin or slide, F over its length."""
     hinge, link = W.J.HINGE, W.link
     for k in range(W.joints):
         kind = link[k].kind

@@ -158,9 +158,9 @@ class Joints(NamedTuple):
     JOINT (j,): bodies are rows of BODY (n rows) or n + row of PARTNER (x,), which joints cannot move. The plan:
     COMPONENT (components,), with the bodies of each in JOINED and its joints in COUPLING. Scratch for the largest
     component: HINGE, LOCAL, of its joints and bodies; MATRIX, banded; RIGHT, right sides; PIVOTS; MORE, of linear
-    systems and bounded rows; STIFF (6, 6), derivative of a joint's force by the ways of its bodies; PROGRESS; PART, the
-    ledger of a part of the step. OF (n,): the component of a body, -1 for none. KEPT (j,): the joints at the start of
-    an interval. STEPPED (components,): their ledgers in their intervals.
+    systems and bounded rows; STIFF (6, 6), derivative of a joint's impulse by the ways of its bodies; PROGRESS; PART,
+    the ledger of a part of the step. OF (n,): the component of a body, -1 for none. KEPT (j,): the joints at the start
+    of an interval. STEPPED (components,): their ledgers in their intervals.
     """
 
     JOINT: Rows[Joint]

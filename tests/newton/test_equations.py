@@ -7,9 +7,9 @@ import pymunk
 import pytest
 
 from eeca_pymunk.arrays import FloatArray
+from eeca_pymunk.joints.components import read_bodies
 from eeca_pymunk.joints.ordering import order_unknowns
 from eeca_pymunk.joints.workspace import workspace
-from eeca_pymunk.joints.world import gather
 from eeca_pymunk.model.joint_steps import NO_BEND, OWN_TURN, JointStep
 from eeca_pymunk.newton.banded import back_banded, factor_banded
 from eeca_pymunk.newton.condensed import factor, substitute
@@ -88,7 +88,7 @@ class Iterate:
         self.h, stepper = h, JointedSpace(space)
         stepper._gather()
         J = stepper.components.arrays
-        gather(stepper.bodies, J, 0, h)
+        read_bodies(stepper.bodies, J, 0, h)
         self.work = workspace.python(J, 0)
         self.joint, self.hinge, self.local, self.stiff = J.JOINT, J.HINGE, J.LOCAL, J.STIFF
         rng = np.random.default_rng(5)
