@@ -41,7 +41,7 @@ EDITS = {
     "contacts": "contacts/interval.py",
     "islands": "islands/intervals.py",
     "impacts": "impacts/simultaneous.py",
-    "joints": "joints/solve.py",
+    "joints": "newton/solve.py",
     "jointed": "jointed/press.py",
     "none (a comment)": "impacts/scene.py",
 }

@@ -80,7 +80,8 @@ import eeca_pymunk as ep
 from eeca_pymunk import compiled
 from eeca_pymunk.contacts import single
 from eeca_pymunk.prediction import impact_times
-from eeca_pymunk.joints import bounds, motion
+from eeca_pymunk.joints import bounds
+from eeca_pymunk.newton import motion
 from eeca_pymunk.rows import build
 ARMS = ["arm_na", "arm_nb", "arm_ta", "arm_tb"]
 compiled.prepare()

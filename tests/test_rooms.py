@@ -28,6 +28,7 @@ FLOORS = (
     "rows",
     "pairs",
     "prediction",
+    "newton",
     "contacts joints",
     "islands",
     "jointed",
@@ -119,6 +120,14 @@ def test_rooms_introduce_themselves(path: Path) -> None:
         assert (path / file).exists() or (PACKAGE / file).exists()
 
 
+MOST_FILES = 30
+
+
+@pytest.mark.parametrize("path", sorted({p.parent for p in FILES}), ids=lambda p: p.name)
+def test_rooms_have_few_files(path: Path) -> None:
+    assert len(list(path.glob("*.py"))) <= MOST_FILES
+
+
 MOST_ARGUMENTS = 12
 
 
@@ -138,8 +147,8 @@ NUMBERED = {
     "impacts/begin", "impacts/run", "jointed/ledger", "rehearsing", "transfer",
 }  # fmt: skip
 KERNELS = (
-    "contacts", "energy", "geometry", "impacts", "islands", "jointed", "joints", "pairs", "prediction", "rehearsing",
-    "rows", "transfer",
+    "contacts", "energy", "geometry", "impacts", "islands", "jointed", "joints", "newton", "pairs", "prediction",
+    "rehearsing", "rows", "transfer",
 )  # fmt: skip
 
 

@@ -135,7 +135,7 @@ def split(calls: dict[str, Call], found: dict[Call, Part]) -> list[Group]:
     cheap compared with the kernel.
     """
     order = sorted(found, key=symbol)
-    jointed = {call for call in order if call[0].name.startswith(("joints.", "jointed."))}
+    jointed = {call for call in order if call[0].name.startswith(("newton.", "joints.", "jointed."))}
     sides = [[call for call in order if (call in jointed) == side] for side in (False, True)]
     copies = [_copies(side, found) for side in sides]
     whole = [[call for call in order if call in {*side, *copied}] for side, copied in zip(sides, copies, strict=True)]

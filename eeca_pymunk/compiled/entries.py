@@ -21,7 +21,8 @@ from .records import KINDS
 
 SOURCES = (
     "arrays.py", "layout.py", "transfer.py", "rehearsing.py", "sleepers.py", "world_rows.py", "compiled", "model",
-    "build", "energy", "geometry", "rows", "pairs", "prediction", "contacts", "joints", "islands", "jointed", "impacts",
+    "build", "energy", "geometry", "rows", "pairs", "prediction", "newton", "contacts", "joints", "islands", "jointed",
+    "impacts",
 )  # fmt: skip
 
 TABLES = {
@@ -87,7 +88,7 @@ ENTRIES = {
     "joints.workspace:plan_components": "{Joints} Body[1] i8[1] i8",
     "joints.held:find_held": "Body[1] Body[1] Joint[1] i8[1] Shape[1] Link[1] i8[1]",
     # Only tests call these, which solve single islands and components: some hundred times slower as plain Python.
-    "joints.world:step_all": "{Joints} Body[1] f8",
+    "joints.components:step_all": "{Joints} Body[1] f8",
     "contacts.interval:step_island": "{Scene} {Island} {IslandContacts} i8 f8 i8 f8 f8 f8",
     "contacts.memory:forget": "i8[1] Force[1] Count i8[1] Force[1] f8",
 }

@@ -64,13 +64,14 @@ class Plan(Generic[T]):
         constant: Mapping[str, AnyArray], dimensions: Mapping[str, tuple[int, ...]],
     ) -> None:  # fmt: skip
         self.kind, self.own, self.elsewhere, self.constant = kind, tuple(own), tuple(elsewhere), dict(constant)
+        self.names = self.own + self.elsewhere
         fields = table_fields(kind.__name__)
         self.first_word = {name: WORDS * i for i, (name, *_) in enumerate(fields)}
         self.dtypes = {name: dtype for name, dtype, _ in fields}
         self.dimensions = {name: dimensions.get(name, (COUNT,) * many) for name, _, many in fields}
         self.words: IntArray = np.zeros(WORDS * len(fields), np.int64)
         rows = []
-        for name in (*own, *elsewhere):
+        for name in self.names:
             shape, dtype = self.dimensions[name], self.dtypes[name]
             width = math.prod(length for length in shape if length != COUNT)
             rows.append((self.first_word[name], width * dtype.itemsize, width, *lengths(shape)))
@@ -92,9 +93,9 @@ class Layout(Generic[T]):
         self._memory = Memory()
         self._pointers = Pointers(tuple, words) if start().entries else None
 
-    def lay(self, counts: Sequence[int], *elsewhere: AnyArray) -> Table:
-        """The table of arrays with so many rows, 1 of records, also of those elsewhere; the last table is lost."""
-        self._put(self._into, 0, *counts, *map(address_of, elsewhere))
+    def lay(self, counts: Mapping[str, int], *elsewhere: AnyArray) -> Table:
+        """The table of arrays with so many rows each, 1 of records, also of those elsewhere; the last table is lost."""
+        self._put(self._into, 0, *map(counts.__getitem__, self._plan.names), *map(address_of, elsewhere))
         memory = self._memory
         address = memory.address
         total = self._write(address)

@@ -7,7 +7,9 @@ Open `interval.py` first: rows (`geometry.py`), targets (`targets.py`), test for
 (`memory.py`). `single.py` is the closed law of one disk's impact; `unmet.py` notes budgets and tolerances that were not
 met.
 
-Names of arguments are those of `..rows`, with S for the scene; A is the scene where there are no local bodies. V and VN
-(k, 3) are velocities at the start and the end of an interval of length h, ACC accelerations without contacts, EXTENT
-(k,) largest distances of points of bodies from their centres of mass.
+Names of arguments are those of `..rows`, where A, B are the local bodies of rows; S is the scene there, but A is the
+scene in files of the whole scene (`single.py`, `unmet.py`). V and VN (k, 3) are velocities at the start and the end of
+an interval of length h, ACC (k, 3) accelerations without contacts, EXTENT (k,) largest distances of points of bodies
+from their centres of mass. |a| is the largest acceleration of any point (`pull`), |a| h the velocity that others are
+measured by. v- and v+ (u-, u+) are velocities at the start and the end.
 """

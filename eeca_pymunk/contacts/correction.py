@@ -104,7 +104,7 @@ def least_of(EXTENT: FloatArray, n: int) -> float:
 
 @nonallocating
 def admissible(D: FloatArray, EXTENT: FloatArray, n: int) -> float:
-    """The part of displacements D (k, 3) of n bodies by which no point moves too far: see CORRECTION_STEP."""
+    """The factor <= 1 on displacements D (k, 3) of n bodies with which no point moves too far: see CORRECTION_STEP."""
     far = 0.0
     for i in range(n):
         far = max(far, math.sqrt(D[i, 0] * D[i, 0] + D[i, 1] * D[i, 1]) + abs(D[i, 2]) * EXTENT[i])
@@ -121,7 +121,7 @@ def budget_of(ROWS: Rows[Row], m: int, lost: float, owed: float) -> float:
 
 @nonallocating
 def place(END: FloatArray, D: FloatArray, n: int, NEW: FloatArray) -> None:
-    """Set NEW = END + D, for n bodies."""
+    """Set poses NEW = END + D, all (k, 3), for n bodies."""
     for i in range(n):
         for c in range(3):
             NEW[i, c] = END[i, c] + D[i, c]
@@ -131,10 +131,11 @@ def place(END: FloatArray, D: FloatArray, n: int, NEW: FloatArray) -> None:
 def unturn(
     NEW: FloatArray, D: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray, touched: FlagArray
 ) -> tuple[float, float, float, float, float]:
-    """The common spin of the touched bodies that removes the angular momentum sum m D x v of displacements D to NEW, at
-    velocities V. It changes no velocity along contacts and joints.
+    """The common spin of the touched bodies that removes the angular momentum sum m D x v which displacements D to the
+    poses NEW give at velocities V, all (k, 3). It changes no velocity along contacts and joints.
 
-    Returns the spin, the centre of mass (x, y), the angular momentum about it and the moment of inertia.
+    Returns the spin, the centre of mass (x, y), the angular momentum about it and the moment of inertia; zeros if a
+    touched body cannot turn, or none is touched. touched (k,): 1 for bodies that turn.
     """
     mass = x = y = vx = vy = 0.0
     for i in range(len(touched)):

@@ -31,8 +31,8 @@ from .memory import key_of
 
 @nonallocating
 def way_about(POSE: FloatArray, V: FloatArray, a: int, b: int, extent: float) -> float:
-    """Speed of points of local body b, up to `extent` from its centre of mass, in the frame of body a, which
-    rotates."""
+    """Largest speed of points of local body b, up to `extent` from its centre of mass, in the frame of body a, which
+    rotates. POSE, V: (k, 3)."""
     x = V[b, 0] - V[a, 0] + V[a, 2] * (POSE[b, 1] - POSE[a, 1])
     y = V[b, 1] - V[a, 1] - V[a, 2] * (POSE[b, 0] - POSE[a, 0])
     return math.sqrt(x * x + y * y) + abs(V[b, 2] - V[a, 2]) * extent
@@ -46,7 +46,7 @@ def gather(
     REACH.
 
     Args:
-        S: the scene.  h: length of the interval.
+        S: the scene.  h: length of the interval.  isle, contacts: the island, and its contacts, out.
         MIDDLE: (k, 3) poses predicted for h/2.  REACH: (k,) length.
         free: whether impulses move all k bodies.
 
@@ -56,7 +56,7 @@ def gather(
     SHAPE, LINK = S.SHAPE, S.LINK
     POSE, V, EXTENT, PAIRS = isle.POSE, isle.V, isle.EXTENT, isle.PAIRS
     A, B, ROWS = contacts.A, contacts.B, contacts.ROWS
-    NOW, THEN = np.empty((2, 5)), np.empty((2, 5))
+    NOW, THEN = np.empty((2, 5)), np.empty((2, 5))  # (n_x, n_y, p_x, p_y, g) of up to two points
     m = 0
     shapes = len(SHAPE)
     half = 0.5 * h
@@ -72,6 +72,7 @@ def gather(
         if m + count > len(A):
             return -1
         note_side(S, s, r, NOW[0, 0], NOW[0, 1], True)
+        # How far points of both bodies move against each other in h/2; about: in the frame of a body that rotates.
         way = half * (
             math.sqrt((V[b, 0] - V[a, 0]) ** 2 + (V[b, 1] - V[a, 1]) ** 2)
             + abs(V[a, 2]) * EXTENT[a]

@@ -58,8 +58,8 @@ def recall(
 def speeds(
     V: FloatArray, ACC: FloatArray, EXTENT: FloatArray, IM: FloatArray, n: int, h: float, REACH: FloatArray
 ) -> tuple[float, float, float]:
-    """Root mean square and largest speed of points of the n bodies, and their largest acceleration. Sets REACH
-    (k,), a bound of how far points of bodies move in h.
+    """Root mean square over the n bodies of the speed of their fastest points, the largest such speed, and the largest
+    acceleration |a| of a point. Sets REACH (k,), a bound of how far points of bodies move in h.
 
     Speeds in a free island are relative to its centre of mass.
     """
@@ -152,7 +152,7 @@ def step_island(
         velocities(problem, L, FREE, VN)
         scale = pull * h if pull > 0.0 else 1e-3 * fast
         elastic = conserves(ROWS, m)
-        # A truncated solve dissipates energy in large elastic islands.
+        # A truncated solve dissipates energy in large elastic islands: these are solved to the fine tolerance.
         few = n < LARGE_ISLAND
         rounds = DIRECT if elastic or slow < pull * h else (DIRECT_MOVING if few else 0)
         coarse = 0.0 if elastic or few else INTERVAL_RESIDUAL_MOVING * scale + INTERVAL_RESIDUAL_SPEED * slow

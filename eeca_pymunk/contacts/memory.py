@@ -21,7 +21,7 @@ def key_of(shapes: int, a: int, b: int) -> int:
 
 @nonallocating
 def find(KEYS: IntArray, key: int) -> int:
-    """Row of a key, or -1 - (the free row where it would be)."""
+    """Row of a key in KEYS (c,), or -1 - (the free row where it would be)."""
     mask = len(KEYS) - 1
     # Fibonacci hashing of both halves.
     row = ((key ^ (key >> 21)) * 11400714819323 >> 7) & mask

@@ -43,9 +43,11 @@ def relax(
 
     Args:
         FREE: (k, 3) velocities without impulses.
-        rounds: largest number of direct solves; 0 for a moving island, which gets up to `most` sweeps.
-        fine: change of velocity in a sweep at which the solve ends; coarse: at which a round, or a moving island, ends.
-        STATE: of the island.
+        rounds: largest number of direct solves; 0 for a moving island.
+        fine: change of velocity in a sweep at which the solve ends.
+        coarse: that with which a moving island is content, or one near rest after a direct solve.
+        STATE: of the island, changed.
+        most: largest number of sweeps of a moving island; one that waits gets WAITING_SWEEPS times as many.
 
     Returns:
         Numbers of sweeps and direct solves, and the change of velocity in the last sweep.
@@ -61,6 +63,7 @@ def relax(
         sweeps += 1
     if worst <= fine:
         return sweeps, 0, worst
+    # few: of so few contacts and bodies that homotopies can solve it.
     fails, done, few = 0, 0, problem.m <= COLUMN_CONTACTS and problem.n < LARGE_ISLAND
     last = worst
     while done < rounds:

@@ -1,4 +1,7 @@
-"""Impacts of a single disk, by the closed law; motion along paths; which shapes touch at an instant."""
+"""Impacts of a single disk, by the closed law; motion along paths; which shapes touch at an instant.
+
+A is the scene, t an instant within the step, i and j rows of BODY, a, b, o and s rows of SHAPE.
+"""
 
 from __future__ import annotations
 
@@ -85,8 +88,9 @@ def note(
     row: Impulse, a: int, b: int, t: float, lam: float, beta: float, nx: float, ny: float, px: float, py: float,
     change: float, gap: float,
 ) -> None:  # fmt: skip
-    """Write a row of the log: impulses lam and beta between shapes a and b at instant t. change: of the normal velocity
-    by the impulse alone.  gap: at the start of the step, nan if it is still to be computed."""
+    """Write a row of the log: impulses lam and beta between shapes a and b at instant t, along the normal (nx, ny) and
+    across, at the point (px, py). change: of the normal velocity by the impulse alone.  gap: at the start of the step,
+    nan if it is still to be computed."""
     row.first, row.second, row.when, row.normal, row.tangential = a, b, t, lam, beta
     row.nx, row.ny, row.px, row.py, row.change = nx, ny, px, py, change
     row.gap, row.duration = gap, 0.0
@@ -94,7 +98,8 @@ def note(
 
 @nonallocating
 def law_of_disks(BODY: Rows[Body], i: int, j: int) -> tuple[float, float, float, float]:
-    """`law` of two single disks from their rows of BODY, valid without friction and without decisions of handlers."""
+    """Elasticity, friction, and surface velocity (0, 0) of two single disks from their rows of BODY, as `law` returns
+    them; valid without friction and without decisions of handlers."""
     return BODY[i].elasticity * BODY[j].elasticity, BODY[i].friction * BODY[j].friction, 0.0, 0.0
 
 
@@ -102,7 +107,8 @@ def law_of_disks(BODY: Rows[Body], i: int, j: int) -> tuple[float, float, float,
 def strike_disk(A: Scene, i: int, o: int, t: float) -> None:
     """Impact of the single disk i with shape o, another single disk or a static shape.
 
-    The normal passes through both centres, so that normal and tangential direction are independent:
+    Bodies get their velocities after the impact, the log a row, the ledger the losses. The normal passes through both
+    centres, so that normal and tangential direction are independent:
 
         lam = (1 + e) |u_n| / (1/m_i + 1/m_j),   beta = -u_t / A_tt, at most mu lam,   A_tt = sum 1/m + r^2/I.
     """

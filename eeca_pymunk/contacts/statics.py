@@ -1,4 +1,4 @@
-"""Whether static forces hold an island that is slow: an equilibrium of its contacts that ends all its motion.
+"""Whether static forces hold an island that is slow: impulses of its contacts, in balance, that end all its motion.
 
 The midpoint rule returns a resting contact that opens with u at -u, so that its place is kept and no energy is made;
 small motions of a pile therefore never end, nor do those from truncated solves. A rigid pile would lose them in bounces
@@ -33,9 +33,9 @@ from ..rows.inplace import copy
 
 @nonallocating
 def set_motionless(ROWS: Rows[Row], V: FloatArray, n: int, m: int, close: float) -> bool:
-    """Set targets and velocities of the rows to those without motion, 0. Returns False, with nothing changed, if a
-    surface or one of the fixed bodies, from n on, moves. close: length/time; a contact whose gap would have to close
-    faster keeps its target, which is below 0, and so exerts no static force."""
+    """Set targets and velocities of the rows to those without motion, 0. Returns False if a surface moves, or one of
+    the fixed bodies, from n on: rows before that surface's are then changed. close: length/time; a contact whose gap
+    would have to close faster keeps its target, which is below 0, and so exerts no static force."""
     for i in range(n, len(V)):
         if V[i, 0] != 0.0 or V[i, 1] != 0.0 or V[i, 2] != 0.0:
             return False
@@ -59,7 +59,7 @@ def find_static_forces(
 
     Args:
         problem, L: the m contacts and initial impulses (m, 2); if forces are found, targets and velocities of its rows
-            become 0, and L the impulses that hold the bodies from then on, without those that stop them.
+            become 0, and L the impulses over h that hold the bodies from then on, without those that stop them.
         V: becomes 0, except for free spins, if forces are found.  FREE: (k, 3) velocities at the end without impulses.
         FELT: (k,) the lengths by which spins count, see `..model.islands`.
         VN: (k, 3) out, velocities at the end; if nothing is found, a motion against which no contact acts, of any size.

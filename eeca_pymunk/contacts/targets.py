@@ -1,11 +1,13 @@
 """Targets of contacts in an interval: b of 0 <= lam _|_ u_n+ - b >= 0, the normal velocities at its end.
 
-Let u = u_n now, g the gap, a_n the acceleration of the gap without impulses, lam_w the impulse over h of the load that
-the contact carried in the last solve. The bounce is e max(-u, 0) for e < 1, -u for e = 1.
+Let u = u_n now, g the gap, h the length of the interval, a_n the acceleration of the gap without impulses, lam_w the
+impulse over h of the load that the contact carried in the last solve, A_nn the change of u by a unit impulse. The
+bounce is e max(-u, 0) for e < 1, -u for e = 1.
 
 * e < 1 and the bounce below (1/2) max(-a_n h, A_nn lam_w): it would return within the interval. The contact persists:
   its bounce is 0 (the rest of the bounces enters the ledger as restitution at once).
-* e = 1, or u < -2 |a| h: an impact. b is the bounce, if the gap would close without it.
+* e = 1 with a gap, or u < -2 |a| h: an impact. b is the bounce, if the gap would close without it: the contact is
+  inactive while u_n+ is above its activation velocity `wake`, with which the gap is just closed at the end.
 * Else the surfaces meet softly at the end of the interval: b = min(bounce, -u - 2 max(g, 0)/h).
 """
 
@@ -31,7 +33,7 @@ def hardly_bounces(e: float, u: float, press: float) -> bool:
 def target(
     A: IntArray, B: IntArray, ROWS: Rows[Row], m: int, ACC: FloatArray, EXPECTED: FloatArray, pull: float, h: float
 ) -> None:
-    """Set targets and activation velocities of m rows.
+    """Set the targets and activation velocities (`target`, `wake`) of m rows, from their gaps and velocities u_n.
 
     Args:
         ACC: (k, 3) accelerations without impulses.  pull: |a|, the largest of them.  h: length of the interval.

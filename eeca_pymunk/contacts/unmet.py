@@ -1,4 +1,7 @@
-"""Budgets and tolerances that a step has not met, and for which shapes; the work of its solves."""
+"""Budgets and tolerances that a step has not met, and for which shapes; the work of its solves, which budgets limit.
+
+Work is counted in *looks*, about the time of one look at the gap of two shapes.
+"""
 
 from __future__ import annotations
 
@@ -21,8 +24,8 @@ def note_unmet(A: Scene, kind: int, a: int, b: int, value: float, limit: float) 
 
 @nonallocating
 def spend(A: Scene, pairs: int, contacts: int, sweeps: int, direct: int) -> None:
-    """Add the work of a contact solve to that of the step: its geometry (`pairs`), sweeps, and direct solves, with
-    dense matrices for few contacts."""
+    """Add the work of a contact solve to that of the step: numbers of pairs of its geometry, of contacts, of sweeps
+    over them, and of direct solves, with dense matrices for few contacts."""
     few = min(contacts, DENSE_CONTACTS)
     one = PAIR_LOOKS * pairs + contacts * (SWEEP_LOOKS * sweeps + DIRECT_LOOKS * few * direct)
     A.COUNT.work += EVENT_LOOKS + int(one)

@@ -1,5 +1,5 @@
-"""Works over an interval, and motions. The works of an island close by identity, as impulses times means of velocities
-before and after:
+"""Works over an interval, kinetic energy, and displaced poses. The works of an island close by identity, as impulses
+times means of velocities before and after:
 
     change of energy = forces + carried + lifted - restitution - friction,
 
@@ -47,7 +47,8 @@ def carried(
 
 @nonallocating
 def against(ACC: FloatArray, IM: FloatArray, II: FloatArray, n: int, D: FloatArray) -> float:
-    """Work of the forces that cause accelerations ACC (k, 3) over displacements D (k, 3), for the first n bodies."""
+    """Work of the forces that cause accelerations ACC (k, 3) over displacements D (k, 3), for the first n bodies: that
+    *against* these forces with the other sign."""
     work = 0.0
     for i in range(n):
         work += (ACC[i, 0] * D[i, 0] + ACC[i, 1] * D[i, 1]) / IM[i]
@@ -69,7 +70,7 @@ def kinetic_energy(V: FloatArray, IM: FloatArray, II: FloatArray, n: int) -> flo
 
 @kernel
 def moved(X: FloatArray, V: FloatArray, s: float) -> FloatArray:
-    """X + s V, all (k, 3)."""
+    """X + s V, (k, 3) as X and V: poses or velocities after a time s at the rates V."""
     Y = np.empty_like(X)
     for i in range(len(X)):
         for c in range(3):

@@ -68,14 +68,16 @@ class SceneMemory:
         while lossy and room < min(_OF_A_BODY * n, _MANY):
             room *= 2
         pool, heads = pool_sizes(moving)
-        table = self._layout.lay(
-            (
-                1, 1, 1, n, n, n, n, moving, moving, moving, pool, pool, heads, corners, side_rows(self.thin, k),
-                n, n, 8 * n + 64, 8 * n + 64, n, k - moving, 4 * k if self.thin else 0, _MISSED,
-                max(4 * n + 64, self.log), 4 * room, 4 * room, room, room, n, k, k, len(VERTEX), len(HELD),
-            ),
-            BODY, SHAPE, LINK, VERTEX, HELD,
-        )  # fmt: skip
+        counts = {
+            "PAR": 1, "COUNT": 1, "GRID": 1,
+            "BODY": n, "STATE": n, "MEMBER": n, "RESTING": n, "PLACE": n, "PULL": n, "BEGAN": n, "BLOCK": n,
+            "HEAP_TIME": 8 * n + 64, "HEAP_BODY": 8 * n + 64, "LOG": max(4 * n + 64, self.log), "HELD": len(HELD),
+            "SHAPE": k, "LINK": k, "MARK": moving, "CELL": moving, "LIST": moving, "BOX": k - moving,
+            "POOL": pool, "FLAG": pool, "HEAD": heads, "VERTEX": len(VERTEX), "CORE": corners,
+            "SIDE": side_rows(self.thin, k), "CORNER": 4 * k if self.thin else 0,
+            "KEYS": 4 * room, "FORCES": 4 * room, "PUSHED_BY": room, "PUSHED": room, "MISSED": _MISSED,
+        }  # fmt: skip
+        table = self._layout.lay(counts, BODY, SHAPE, LINK, VERTEX, HELD)
         begin_scene(table, limit, disks, together, budget, lossy)
         return filled(table, SHAPE, moving)
 

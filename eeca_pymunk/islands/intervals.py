@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FlagArray, FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..contacts.correction import budget_of, lifting
 from ..contacts.geometry import gather
@@ -67,12 +67,53 @@ def solve(A: Scene, root: int, t: float) -> int:
     return DONE
 
 
+@nonallocating
+def payable_by_placed(A: Scene, isle: Island, n: int) -> float:
+    """What losses may pay of the penetration correction: nothing where a body without mobility that the program has
+    moved into others does the work of lifting them, else as much as there is (infinity)."""
+    payable = math.inf
+    for q in range(n, len(isle.WHO)):
+        if A.MEMBER[isle.WHO[q]].placed == MOVED and A.BODY[isle.WHO[q]].inv_mass == 0.0:
+            payable = 0.0
+    return payable
+
+
+@nonallocating
+def begin_paths(
+    A: Scene, MINE: IntArray, n: int, V: FloatArray, VN: FloatArray, h: float, TOUCHED: FlagArray
+) -> tuple[int, int, int]:  # fmt: skip
+    """Set the paths of the n bodies MINE over the interval h, from velocities V to VN (k, 3), and join those that are
+    TOUCHED (k,) to the chain of the island; others leave it, and fly on by themselves.
+
+    Returns the first and the last body of the chain, -1 if there is none, and their number.
+    """
+    BODY, STATE, MEMBER = A.BODY, A.STATE, A.MEMBER
+    head, tail, size = -1, -1, 0
+    for q in range(n):
+        i = MINE[q]
+        STATE[i].version += 1
+        if TOUCHED[q] == 0:
+            STATE[i].island = -1
+            BODY[i].ax, BODY[i].ay, BODY[i].angular = A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2]
+            continue
+        BODY[i].ax, BODY[i].ay = (VN[q, 0] - V[q, 0]) / h, (VN[q, 1] - V[q, 1]) / h
+        BODY[i].angular = (VN[q, 2] - V[q, 2]) / h
+        if head < 0:
+            head = i
+        else:
+            MEMBER[tail].following = i
+        tail = i
+        size += 1
+        STATE[i].island, MEMBER[i].following = head, -1
+    return head, tail, size
+
+
 @kernel
 def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> tuple[int, float]:
     """One attempt of `solve`, with an interval no longer than `longest`. Returns a status, DONE, PUSHES_FULL or AGAIN,
     and a length: with AGAIN, if the interval is too long, that for the next attempt; no path is changed then. AGAIN is
     never the result of the `last` attempt."""
-    BODY, STATE, MEMBER, COUNT = A.BODY, A.STATE, A.MEMBER, A.COUNT
+    MEMBER, COUNT = A.MEMBER, A.COUNT
     MINE = number_bodies(A, root)
     n = len(MINE)
     may_lose = lossy(A, root)
@@ -97,11 +138,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
     sweeps = sweeps_of(n, t)
     m = 0
     with_supports = bodies_with_supports(A, isle, n)
-    payable = math.inf
-    for q in range(n, k):
-        # A body without mobility that the program has moved into others does the work of lifting them.
-        if MEMBER[WHO[q]].placed == MOVED and BODY[WHO[q]].inv_mass == 0.0:
-            payable = 0.0
+    payable = payable_by_placed(A, isle, n)
     quiet = rest_threshold(A, root, MINE, n, with_supports, may_lose, t) if payable > 0.0 else 0.0
     owed = max(-A.RESTING[root].lost, 0.0)
     shortest = A.PAR.dt / RESOLUTION
@@ -135,24 +172,8 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
     TOUCHED = np.zeros(k, np.uint8)
     open_contacts(A, isle, contacts, VN, m, COUNT.pushes, t, h, TOUCHED)
     lost, hits = A.RESTING[root].lost, MEMBER[root].hits
-    head, tail, size = -1, -1, 0
     set_lifts(A, MINE, n, JUMP)
-    for q in range(n):
-        i = MINE[q]
-        STATE[i].version += 1
-        if TOUCHED[q] == 0:
-            STATE[i].island = -1
-            BODY[i].ax, BODY[i].ay, BODY[i].angular = A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2]
-            continue
-        BODY[i].ax, BODY[i].ay = (VN[q, 0] - V[q, 0]) / h, (VN[q, 1] - V[q, 1]) / h
-        BODY[i].angular = (VN[q, 2] - V[q, 2]) / h
-        if head < 0:
-            head = i
-        else:
-            MEMBER[tail].following = i
-        tail = i
-        size += 1
-        STATE[i].island, MEMBER[i].following = head, -1
+    head, tail, size = begin_paths(A, MINE, n, V, VN, h, TOUCHED)
     if head >= 0:
         MEMBER[head].last, MEMBER[head].bodies, MEMBER[head].hits = tail, size, hits
         MEMBER[head].with_supports = with_supports

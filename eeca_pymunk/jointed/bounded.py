@@ -2,7 +2,7 @@
 
 Columns of contacts and of these rows are answered by all joints that hold exactly, the bounded impulses being given: so
 contacts and bounded rows are one problem (`..rows`). What its bounded impulses are is found anew by the components'
-next step (`..joints.boxes`), which keeps their bounds to the bit.
+next step (`..newton.boxes`), which keeps their bounds to the bit.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
-from ..joints.entries import held, interval_of, is_limit
 from ..model.contacts import Bounded
 from ..model.joints import GROOVE, PRESCRIBED, Joints
 from ..model.parameters.joints import BOUNDED_SWEEPS, MOTOR_OFF
 from ..model.scene import Scene
+from ..newton.entries import held, interval_of, is_limit
 from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, bounded_rate, room_for_rows, sweep_bounded
 from .component import answer
 from .groups import Groups

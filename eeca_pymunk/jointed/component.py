@@ -8,8 +8,6 @@ from ..arrays import FloatArray
 from ..compiled import inlined, nonallocating
 from ..joints.bounds import gap, has_bound
 from ..joints.correct import correct
-from ..joints.entries import held
-from ..joints.response import prepare, respond
 from ..joints.start import springs_of
 from ..joints.step import take_step
 from ..joints.workspace import workspace
@@ -17,6 +15,8 @@ from ..model.joint_steps import POSES, SPEEDS, STEP
 from ..model.joints import GEAR, Joints, Workspace
 from ..model.parameters.joints import CORRECTION_JOINTS
 from ..model.scene import Scene
+from ..newton.entries import held
+from ..newton.response import prepare, respond
 from .gathered import gather_component
 
 

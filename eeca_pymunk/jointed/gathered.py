@@ -6,9 +6,9 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import nonallocating
 from ..geometry.flight import pose, rate
 from ..joints.ledger import clear_interval
-from ..joints.motion import read_body, seat, size_up
 from ..model.joints import RATCHET, Joints
 from ..model.scene import Scene
+from ..newton.motion import read_body, seat, size_up
 
 
 @nonallocating

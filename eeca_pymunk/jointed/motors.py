@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from ..compiled import nonallocating
-from ..joints.entries import is_limit
 from ..model.joints import BOXED, MOTOR, PRESCRIBED, ROTARY_SPRING, SPRING, Joints
+from ..newton.entries import is_limit
 
 
 @nonallocating
@@ -28,7 +28,7 @@ def keeps_speed(J: Joints, s: int) -> bool:
 @nonallocating
 def let_slip(J: Joints, s: int, slips: bool, limits: bool) -> None:
     """Let bounded impulses count as given in answers, or no longer: those of joints with a max_force, where they are
-    few enough for `..joints.boxes`, and, if `limits`, those of limits that hold."""
+    few enough for `..newton.boxes`, and, if `limits`, those of limits that hold."""
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         link = J.COUPLING[k]
         if link.bounded != 0 and J.JOINT[link.joint].max_force < 1e300 and J.COMPONENT[s].boxes > 0:

@@ -1,4 +1,7 @@
-"""How far a joint is from its limits, and at what rate it nears them. Rows must have been computed (see `newton`)."""
+"""How far a joint is from its limits, and the rate of that gap. Rows must be those of the present poses.
+
+side: -1 the lower, 1 the upper bound; as `link.side` that on which the joint stands, 0 for none.
+"""
 
 from __future__ import annotations
 
@@ -10,8 +13,8 @@ from ..compiled.records import Rows
 from ..model.joint_steps import JointStep
 from ..model.joints import GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, Coupling, Joint, Workspace
 from ..model.parameters.joints import JOINT_TOUCH, LIMIT_WAY
-from .entries import along, idle
-from .rows import joint_rows
+from ..newton.entries import along, idle
+from ..newton.rows import joint_rows
 
 
 @nonallocating
@@ -29,7 +32,8 @@ def has_bound(joint: Rows[Joint], link: Rows[Coupling], k: int, side: int) -> bo
 
 @nonallocating
 def gap(joint: Rows[Joint], hinge: Rows[JointStep], link: Rows[Coupling], k: int, side: int) -> float:
-    """How far joint k is from its bound at this side at the end of the present iterate, negative beyond it."""
+    """How far joint k is from its bound at this side at the end of the present iterate: length or rad, below 0 beyond
+    it."""
     j = link[k].joint
     bound = joint[j].upper if side > 0 else joint[j].lower
     if link[k].kind == RATCHET:
@@ -56,9 +60,17 @@ def hold_limits(W: Workspace) -> None:
 
 
 @nonallocating
-def approach(joint: JointStep, rows: int, side: int, v_a: FloatArray, v_b: FloatArray) -> float:
-    """Rate of the gap by the last of a joint's discrete rows, with the velocities v_a and v_b of its bodies."""
+def gap_rate(joint: JointStep, rows: int, side: int, v_a: FloatArray, v_b: FloatArray) -> float:
+    """Rate of the gap at this side, below 0 where it closes, by the last of a joint's `rows` rows J, with the
+    velocities v_a and v_b (3,) of its bodies."""
     return -side * along(joint, rows - 1, v_a, v_b)
+
+
+@inlined
+def gap_rates(W: Workspace, k: int, side: int) -> tuple[float, float]:
+    """`gap_rate` of joint k with the velocities at the start and at the end of the present iterate."""
+    joint, rows, a, b = W.J.HINGE[k], W.link[k].rows, W.J.LOCAL[W.link[k].body[0]], W.J.LOCAL[W.link[k].body[1]]
+    return gap_rate(joint, rows, side, a.v0, b.v0), gap_rate(joint, rows, side, a.v1, b.v1)
 
 
 @nonallocating
@@ -87,7 +99,7 @@ def is_far(W: Workspace, k: int) -> bool:
 
 @nonallocating
 def release(W: Workspace) -> bool:
-    """Let go of the held limit that pulls most, if one does."""
+    """Let go of the held limit that pulls most; False if none pulls."""
     link = W.link
     worst, which = 0.0, -1
     for k in range(W.joints):
@@ -114,8 +126,7 @@ def held_till_then(W: Workspace, k: int, side: int, instant: float) -> bool:
     """Whether limit k, which is passed at about this instant, stood on its bound at the start of the part, was let go,
     and has not left its bound before: its force changes sign later."""
     link, hinge = W.link, W.J.HINGE
-    a, b = W.J.LOCAL[link[k].body[0]], W.J.LOCAL[link[k].body[1]]
-    rate = approach(hinge[k], link[k].rows, side, a.v0, b.v0)
+    rate, _ = gap_rates(W, k, side)
     return bool(link[k].let_go == side and rate * instant <= LIMIT_WAY * hinge[k].size)
 
 
@@ -132,7 +143,8 @@ def instant_of(start: float, before: float, after: float, h: float) -> float:
 
 @nonallocating
 def first_bound(W: Workspace, h: float) -> tuple[int, int, float]:
-    """The free limit that a step h passes first, by the rates of its gap, or -1; its side; about the instant."""
+    """The free limit that the solved step h passes first, by the rates of its gap, -1 for none; its side; about the
+    instant, from the start of the step."""
     hinge, link = W.J.HINGE, W.link
     which, at_side, instant = -1, 0, h
     for k in range(W.joints):
@@ -145,9 +157,7 @@ def first_bound(W: Workspace, h: float) -> tuple[int, int, float]:
             end = gap(W.J.JOINT, hinge, link, k, side)
             if end >= -JOINT_TOUCH * hinge[k].size:
                 continue
-            a, b = W.J.LOCAL[link[k].body[0]], W.J.LOCAL[link[k].body[1]]
-            before = approach(hinge[k], link[k].rows, side, a.v0, b.v0)
-            after = approach(hinge[k], link[k].rows, side, a.v1, b.v1)
+            before, after = gap_rates(W, k, side)
             when = min(instant_of(max(end - 0.5 * h * (before + after), 0.0), before, after, h), h)
             if which < 0 or when < instant:
                 which, at_side, instant = k, side, when

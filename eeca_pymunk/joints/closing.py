@@ -9,23 +9,24 @@ from ..compiled.records import Rows
 from ..model.joint_steps import POSES, SPEEDS, BodyStep, JointLedger
 from ..model.joints import APART, EDITED, GIVES_WAY, LEFT_APART, Workspace
 from ..model.parameters.joints import JOINT_APART
+from ..newton.entries import held
+from ..newton.motion import go_back, save
+from ..newton.rows import joint_rows
 from .bounds import gap, has_bound
 from .correct import correct, fitting_loss, speeds_fit
-from .entries import held
 from .lock import lock_energy
-from .motion import go_back, save
-from .rows import joint_rows
 from .start import closing_share, compute_rows, springs_of
 
 
 @nonallocating
 def find_apart(W: Workspace, h: float) -> tuple[bool, bool, bool]:
-    """After the user's changes: targets of joints that are apart, one step's share nearer, and limits that are passed.
+    """Set the targets of joints that are apart to the part of their error that is left after this step, and the side of
+    limits that are passed, or left.
 
     Rows must be those of the present poses. Joints that will still be apart are APART, and hold the rest of their error
     over the step, so that it does no work; or LEFT_APART if a step has left them so. Those that give way elastically
-    stay as they are. Returns whether the user has touched any since the last step, whether any is to be closed, and
-    whether only steps have left them apart.
+    stay as they are. Returns whether the user has touched any since the last step (`edited`), whether any is to be
+    closed (`apart`), and whether only steps have left them apart (`own`).
     """
     joint, hinge, link = W.J.JOINT, W.J.HINGE, W.link
     edited, apart, own = False, False, True
@@ -64,7 +65,8 @@ def find_apart(W: Workspace, h: float) -> tuple[bool, bool, bool]:
 
 @nonallocating
 def farthest(W: Workspace) -> float:
-    """The largest error of a held row, over the size of the component. Rows must be those of the present poses."""
+    """The largest |g| of a row that acts exactly, over the size of the component. Rows must be those of the present
+    poses."""
     link = W.link
     worst = 0.0
     for k in range(W.joints):
@@ -87,7 +89,8 @@ def closing_work(local: Rows[BodyStep], bodies: int) -> float:
 
 @nonallocating
 def keep_closed(W: Workspace) -> None:
-    """Note how far closing has shifted bodies, and let joints hold what it reached."""
+    """Note how far closing has shifted bodies, and let the targets of joints be what it reached, as that is what the
+    step can hold without work."""
     hinge, link, local = W.J.HINGE, W.link, W.J.LOCAL
     for i in range(W.bodies):
         for c in range(3):

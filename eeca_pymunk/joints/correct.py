@@ -19,18 +19,19 @@ from ..model.parameters.joints import (
     REDUNDANT_EPSILON,
     REDUNDANT_PASSES,
 )
-from .bounds import approach, gap, has_bound
-from .entries import held
-from .newton import apply, back, effort, factorise, first_iterate, linearise
+from ..newton.entries import held
+from ..newton.systems import apply, back, effort, factorise, first_iterate, linearise
+from .bounds import gap, gap_rate, has_bound
 
 
 @nonallocating
 def correct(W: Workspace, what: int) -> None:
     """Make POSES or SPEEDS fit the joints, by the least change in the measure of the masses.
 
-    POSES: until g is on its targets, at most CLOSINGS times. SPEEDS: those before stay at `v_kept`. Free limits that
-    are closed and closing are held. Two passes with the same factors take back what epsilon left, three if rows are
-    redundant; then, as long as a limit pulls, all begins again without it. There are at most joints + 1 tries.
+    POSES: until g is on its targets, at most CLOSINGS times. SPEEDS: those before stay at `v_kept`. Free limits whose
+    gap is closed and closing are held from the first pass on. Two passes with the same factors take back what epsilon
+    left, three if rows are redundant; then, as long as a limit pulls, all begins again without it. There are at most
+    joints + 1 tries. What is solved for is `pose` or `v0`; the impulses are in `pushed`.
     """
     component, passes, tries = W.J.COMPONENT[W.s], 0, 0
     enough = 2 if component.loops == 0 else 3
@@ -119,7 +120,8 @@ def restore_speeds(W: Workspace) -> None:
 
 @nonallocating
 def let_go(W: Workspace) -> bool:
-    """Let go of the limit that pulls most; False if none does."""
+    """Let go of the limit whose impulse in the correction pulls most; False if none does. (`bounds.release` does that
+    by the impulses of a step.)"""
     hinge, link = W.J.HINGE, W.link
     pulling, pull = -1, 0.0
     for k in range(W.joints):
@@ -160,7 +162,7 @@ def hold_closing(W: Workspace) -> bool:
                     and gap(W.J.JOINT, hinge, link, k, side) <= JOINT_TOUCH * hinge[k].size
                 )
                 a, b = W.J.LOCAL[link[k].body[0]], W.J.LOCAL[link[k].body[1]]
-                if closed and approach(hinge[k], link[k].rows, side, a.v_kept, b.v_kept) < 0.0:
+                if closed and gap_rate(hinge[k], link[k].rows, side, a.v_kept, b.v_kept) < 0.0:
                     link[k].side = side
                     found = True
     return found

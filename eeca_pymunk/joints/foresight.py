@@ -1,8 +1,9 @@
-"""What joints will do in the next part of a step of order 4, from what they did in the parts before.
+"""Accelerations and impulses of joints in the next part of a step of order 4, from those in the parts before.
 
 The five parts of Suzuki's composition, of lengths s_k h about the instants t_k, repeat from step to step. The midpoint
-rule lets rates r = G v of the rows ring where parts end, r_{k+1} = s_k^2 f(t_k) - r_k: positions fit, velocities do to
-second order. So accelerations by joints are smooth in t_k but for (r_{k+1} - r_k)/s_k and what goes with s_k^2, and
+rule lets the rates r_k = G v of the rows ring from the start of part k to that of the next, r_{k+1} = s_k^2 f(t_k) -
+r_k with a smooth f: positions fit, velocities do to second order. So accelerations by joints are smooth in t_k but for
+(r_{k+1} - r_k)/s_k and what goes with s_k^2, and
 
     1, t, t^2, s^2, (-1)^k / s, (c_k - 2 r_k)/s_k with c_k = s_k^2/2, r_{k+1} = c_k - r_k
 
@@ -31,7 +32,7 @@ WEIGHTS: FloatArray = np.array([
 
 @nonallocating
 def forget(W: Workspace) -> None:
-    """Begin anew."""
+    """Let no part be known: foretelling begins anew."""
     for k in range(W.joints):
         W.J.JOINT[W.link[k].joint].known_parts = 0
 
@@ -52,7 +53,7 @@ def recalls(W: Workspace, h: float) -> bool:
 
 @inlined
 def weigh(part: int, last: int, place: int) -> float:
-    """The weight of what stands at a place, where the newest stands at `last`."""
+    """The weight for this part of what stands at a place of the ring of DEPTH parts, whose newest is at `last`."""
     return float(WEIGHTS[part, last - place if place <= last else last - place + DEPTH])
 
 
@@ -60,14 +61,14 @@ def weigh(part: int, last: int, place: int) -> float:
 def extrapolate(
     past: FloatArray, c: int, w0: float, w1: float, w2: float, w3: float, w4: float, w5: float
 ) -> float:  # fmt: skip
-    """What follows the six values past[c], by the weights of their places."""
+    """What follows the six values past[c] of the ring, by the weights of their places."""
     old = w0 * past[c, 0] + w1 * past[c, 1] + w2 * past[c, 2]
     return float(old + (w3 * past[c, 3] + w4 * past[c, 4] + w5 * past[c, 5]))
 
 
 @nonallocating
 def foretell(W: Workspace, part: int, piece: float, loops: bool) -> None:
-    """`lead` and, unless rows are redundant, `lam` of this part of length `piece`."""
+    """Set `lead` and, unless rows are redundant (`loops`), `lam` of this part (0 to 4) of length `piece`."""
     joint, link = W.J.JOINT, W.link
     last = (joint[link[0].joint].known_parts - 1) % DEPTH
     w0, w1, w2 = weigh(part, last, 0), weigh(part, last, 1), weigh(part, last, 2)

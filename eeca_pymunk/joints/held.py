@@ -43,8 +43,9 @@ def reach(joint: Joint) -> float:
 
 @nonallocating
 def place_points(bodies: Rows[Body], joint: Rows[Joint], X: FloatArray, HEAD: IntArray, NEXT: IntArray) -> None:
-    """Places (2 j, 2) of the points of joints, of j on its bodies a and b at 2 j and 2 j + 1; lists of those of each
-    body, of joints that may be straight."""
+    """Fill in the places X (2 j, 2) of the points of all joints: point 2 i of joint i on its body a, 2 i + 1 on its
+    body b, so that p ^ 1 is the other point of a joint. Points of joints that may be straight are listed by body: HEAD
+    (n,) the first one, NEXT (2 j,) the following one, -1 for none, which both contain."""
     for j in range(len(joint)):
         for end in range(2):
             p, i = 2 * j + end, joint[j].body[end]
@@ -59,7 +60,7 @@ def place_points(bodies: Rows[Body], joint: Rows[Joint], X: FloatArray, HEAD: In
 
 @nonallocating
 def straight(X: FloatArray, first: int, p: int, length: float) -> bool:
-    """Whether a chain from the point `first` to p is as short as it can be."""
+    """Whether a chain of this length from the point `first` to p is straight."""
     dx, dy = X[p, 0] - X[first, 0], X[p, 1] - X[first, 1]
     size = length + max(abs(X[p, 0]), abs(X[p, 1]), abs(X[first, 0]), abs(X[first, 1]))
     return bool(abs(length - math.sqrt(dx * dx + dy * dy)) <= STRAIGHT_CHAIN * size)
@@ -69,8 +70,11 @@ def straight(X: FloatArray, first: int, p: int, length: float) -> bool:
 def fix_chain(
     joint: Rows[Joint], X: FloatArray, FROM: IntArray, p: int, first: int, spins: IntArray, held: IntArray
 ) -> int:
-    """Hold the bodies of the straight chain from `first` that ends in p, on a fixed body; how many there are. None if a
-    body of it has all its points on the chain in one place and might turn about that."""
+    """Hold the bodies of the straight chain from `first` that ends in p, on a fixed body; how many there are: none if a
+    body of it has all its points on the chain in one place and might turn about that, unless it only spins (`spins`).
+
+    FROM (2 j,): the point from which the chain has come to a point.
+    """
     for pass_ in range(2):
         count, q = 0, p
         while FROM[q] != first:

@@ -1,9 +1,10 @@
 """The ladder of a step: Newton's method in other parts, or with joints that give way, where it does not converge.
 
 Order 2 (midpoint with discrete gradients), or 4 by Suzuki's composition (s, s, 1 - 4s, s, s) h, s = 1/(4 - 4^(1/3)),
-where nothing in the component dissipates, drives or meets a limit. The ladder: the step whole, in 2, 4, 7 parts; whole
-and in 7 with joints that give way elastically, by 1e-9, 1e-8, 1e-7, 1e-6, 1e-4. The work of all rungs together is
-bounded. What gives way does so in later steps with the same compliance, until it is closed.
+where nothing in the component dissipates, drives or meets a limit. The rungs: -1 order 4; 0 to 3 the step whole, in 2,
+4, 7 parts; 4 whole, with joints that give way elastically by 1e-9 of h^2/49; 5 to 9 in 7 parts, by 1e-9, 1e-8, 1e-7,
+1e-6, 1e-4. The work of all rungs together is bounded. What gives way does so in later steps with at least the same
+compliance, until it is closed.
 """
 
 from __future__ import annotations
@@ -12,13 +13,13 @@ from ..compiled import nonallocating
 from ..model.joint_steps import ELASTIC, EXACT, HALVED, LINEAR
 from ..model.joints import GIVES_WAY, ROTARY_SPRING, SPRING, Workspace
 from ..model.parameters.joints import COMPONENT_BUDGET, ELASTIC_PARTS, HASTE, JOINT_GAIN, LEAST_SOLUTIONS, REPAID
+from ..newton.motion import go_back
+from ..newton.solve import drop_impulses
+from ..newton.systems import effort
 from .foresight import foretell, forget, recalls, remember
 from .ledger import clear_ledger
 from .limits import step_with_limits
 from .lock import lock_energy, supports_rest
-from .motion import go_back
-from .newton import effort
-from .solve import drop_impulses
 
 SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
 ORDER_4, WHOLE_STEP, ELASTIC_RUNG, RUNGS = -1, 0, 4, 10
@@ -46,7 +47,7 @@ def gives_way(W: Workspace) -> bool:
 
 @nonallocating
 def limit_work(W: Workspace) -> None:
-    """The share of the work of a step of the scene that this one may take."""
+    """Set the share of the work of a step of the scene that this component may take: PROGRESS.limit and hurry."""
     component, progress = W.J.COMPONENT[W.s], W.J.PROGRESS
     # What no longer has a share of the work can still be solved where it is not hard.
     least = LEAST_SOLUTIONS * effort(component.system, True, component.boxes, W.joints, component)
@@ -67,8 +68,12 @@ def compliance_on(rung: int, h: float, yields: bool, before: float) -> float:
 
 @nonallocating
 def take_parts(W: Workspace, h: float, length: float, rung: int, parts: int, give: float, cold: bool) -> bool:
-    """Take the step in the parts of a rung; False if one of them fails. `cold`: rows are redundant and begin without
-    impulse."""
+    """Take the step h in the parts of a rung; False if one of them fails. Energies are added to PART.
+
+    Args:
+        length: size of the component.  give: compliance of joints over the square of a part.
+        cold: rows are redundant and begin without impulse.
+    """
     before = h
     for p in range(parts):
         if parts > 1:
@@ -114,7 +119,7 @@ def repaid(W: Workspace, h: float, own: bool) -> bool:
 
 @nonallocating
 def undo_impulses(W: Workspace) -> None:
-    """No impulses of the step, nor accelerations or work by them."""
+    """Set the impulses of the step to 0, and accelerations and work by them."""
     drop_impulses(W)
     for i in range(W.bodies):
         for c in range(3):

@@ -1,4 +1,7 @@
-"""What a part of a step did with energy: every impulse times the way of its rows, so that the ledger closes."""
+"""What a part of a step did with energy: every impulse times the mean velocity of its row, so that the ledger closes.
+
+`..model.joint_steps.JointLedger` defines the entries.
+"""
 
 from __future__ import annotations
 
@@ -6,20 +9,20 @@ from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.joint_steps import BodyStep, JointLedger
 from ..model.joints import MOTOR, ROTARY_SPRING, SPRING, Workspace
-from .entries import held
-from .springs import held_energy
+from ..newton.entries import held
+from ..newton.springs import potential
 
 
 @inlined
 def clear_ledger(ledger: JointLedger) -> None:
-    """No energies of a step."""
+    """Set the energies of a step to 0."""
     ledger.stored = ledger.damped = ledger.limited = ledger.clamped = ledger.projected = 0.0
     ledger.motors = ledger.supports = ledger.closed = 0.0
 
 
 @inlined
 def clear_interval(ledger: JointLedger) -> None:
-    """No energies at all."""
+    """Set all energies of an interval, and its status, to 0."""
     clear_ledger(ledger)
     ledger.turned_work = ledger.lifted = ledger.gave = 0.0
     ledger.status = 0
@@ -40,9 +43,10 @@ def add(ledger: JointLedger, part: JointLedger) -> None:
 
 @nonallocating
 def book(W: Workspace, h: float, ledger: JointLedger) -> None:
-    """Add the works of a solved part of the step to `ledger`, and its impulses to `total`.
+    """Add the works of a solved part h of the step to `ledger`, and its impulses to `total`.
 
-    A joint's work on its bodies is F . x / h. Of that, F . x / h of a body that it cannot move is taken from a support.
+    The work of a joint's impulse F = J^T lam on its bodies is F . x / h. Of that the share of a body that joints cannot
+    move is the work of a support. `total` is the whole, `moved` that on bodies that joints move.
     """
     hinge, link = W.J.HINGE, W.link
     per = 1.0 / h
@@ -83,7 +87,7 @@ def book(W: Workspace, h: float, ledger: JointLedger) -> None:
 
 @nonallocating
 def springs_hold(W: Workspace) -> float:
-    """The energy that springs hold at the start."""
+    """The energy that springs hold at the start of the part, after `..newton.rows.start_joint`."""
     joint = W.J.JOINT
     total = 0.0
     for k in range(W.joints):
@@ -91,15 +95,18 @@ def springs_hold(W: Workspace) -> float:
         if kind in (SPRING, ROTARY_SPRING):
             sign = 1.0 if kind == SPRING else -1.0
             at = sign * (W.J.HINGE[k].began - joint[j].rest)
-            total += held_energy(joint[j].push, -joint[j].stiffness, joint[j].max_force, at)
+            total += potential(joint[j].push, -joint[j].stiffness, joint[j].max_force, at)
     return total
 
 
 @nonallocating
 def close_ledger(local: Rows[BodyStep], bodies: int, ledger: JointLedger) -> None:
-    """Let the ledger of a step from the saved state to the present close, whose joints did not hold: works of supports
-    are `closed` too, and those of limits. Rows that contradict each other push without bound there, and their works
-    cancel but for round-off: only the sum is known, a loss if it is negative."""
+    """Close the ledger of a step whose joints did not hold, from the saved state to the present one: the change of the
+    energies, less what springs, motors and losses explain, is `closed`, or `limited` if it is a loss.
+
+    Works of supports and limits are in that sum: rows that contradict each other push without bound, and their works
+    cancel but for round-off, so that only the sum is known.
+    """
     gained = 0.0
     for i in range(bodies):
         for c in range(3):

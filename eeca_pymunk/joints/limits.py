@@ -26,17 +26,17 @@ from ..model.parameters.joints import (
     LIMIT_WAY,
     MEET_INSTANT,
 )
-from .bounds import approach, begin_part, first_bound, gap, held_till_then, hold_limits, look, release, standing
+from ..newton.motion import advance
+from ..newton.solve import drop_impulses, solve, solve_linearly
+from .bounds import begin_part, first_bound, gap, gap_rates, held_till_then, hold_limits, look, release, standing
 from .correct import correct, fitting_loss
 from .ledger import book
-from .motion import advance
-from .solve import drop_impulses, solve, solve_linearly
 
 
 @nonallocating
 def begin_as_before(W: Workspace, before: float, h: float) -> None:
-    """Let the solve of a part h begin with the mean accelerations and forces of that of a part `before`, from the same
-    start."""
+    """Let the solve of a part h begin with the mean accelerations and forces of the last solve, of a part `before` from
+    the same start: `lead` and `lam`."""
     local, hinge, longer = W.J.LOCAL, W.J.HINGE, h / before
     for i in range(W.bodies):
         for c in range(3):
@@ -47,23 +47,43 @@ def begin_as_before(W: Workspace, before: float, h: float) -> None:
 
 
 @nonallocating
+def stop_at(W: Workspace, k: int, side: int, at_once: bool, ledger: JointLedger) -> None:
+    """Let joint k stand on its limit at this side, where it is: velocities into the bound vanish, and what that costs
+    enters `ledger`. The next part begins without impulses. at_once: the part before is empty but for round-off."""
+    link = W.link
+    begin_part(link, W.joints)
+    link[k].side = side
+    correct(W, SPEEDS)
+    if at_once:
+        link[k].side = side  # the velocity that lets go is round-off: forces press it to its bound at once
+    ledger.limited += fitting_loss(W.J.LOCAL, W.bodies, ledger)
+    drop_impulses(W)
+    hold_limits(W)
+
+
+@nonallocating
 def step_with_limits(
     W: Workspace, linear: bool, h: float, length: float, loops: bool, give: float, whole: bool, ledger: JointLedger
 ) -> bool:
-    """Take the step h in parts between instants at which limits are met; False if Newton fails.
+    """Take the step h in parts between instants at which limits are met; False if a solve fails.
 
-    A `whole` step does not meet any: False if it would. Nor does a `linear` one, which passes them.
+    Args:
+        linear: whether by linear systems, which pass limits.  length: size of the component.
+        loops: whether rows may be redundant.  give: compliance over h², see `..newton.systems`.
+        whole: whether the step must not meet any limit: False if it would.  ledger: energies are added to it.
     """
     hinge, link, local, progress, component = W.J.HINGE, W.link, W.J.LOCAL, W.J.PROGRESS, W.J.COMPONENT[W.s]
+    # What is left of the step; the length of the next solve; instants before and after that at which a limit is met.
     left, when, low, high = h, h, 0.0, h
     solved = 0.0  # length of the last solve from the present start
+    # The limit whose instant is searched, -1 for none, and its side.
     events, solves, secants, meeting, side = 0, 0, 0, -1, 0
     foreseen = component.met >= 0 and component.met_within == h and not (linear or whole)
     if foreseen:
         foreseen = link[component.met].side == 0
     if foreseen:
         meeting, side, when, events = component.met, component.met_side, component.met_at, 1
-    last, before = 0.0, 0.0
+    last, before = 0.0, 0.0  # the last instant of the search, and the gap there
     begin_part(link, W.joints)
     while True:
         redundant = loops or standing(link, W.joints)
@@ -93,8 +113,7 @@ def step_with_limits(
             distance = gap(W.J.JOINT, hinge, link, meeting, side)
             secants += 1
             if foreseen:  # perhaps it is not met now
-                a, b = local[link[meeting].body[0]], local[link[meeting].body[1]]
-                rate = approach(hinge[meeting], link[meeting].rows, side, a.v1, b.v1)
+                _, rate = gap_rates(W, meeting, side)
                 if not (rate < 0.0 and 0.0 < when - distance / rate < left):
                     meeting, when, secants, events, foreseen = -1, left, 0, 0, False
                     continue
@@ -104,8 +123,7 @@ def step_with_limits(
                     low = when
                 else:
                     high = when
-                a, b = local[link[meeting].body[0]], local[link[meeting].body[1]]
-                rate = approach(hinge[meeting], link[meeting].rows, side, a.v1, b.v1)
+                _, rate = gap_rates(W, meeting, side)
                 # Beyond the bound the tangent is taken: a secant to before a gap that opens first hardly moves.
                 if secants > 1 and when != last and distance > 0.0:
                     rate = (distance - before) / (when - last)
@@ -125,10 +143,8 @@ def step_with_limits(
                     meeting, side, low, high, secants, events = k, other, 0.0, when, 0, events + 1
                     when = instant
                 continue
-            a, b = local[link[meeting].body[0]], local[link[meeting].body[1]]
-            rate = approach(hinge[meeting], link[meeting].rows, side, a.v0, b.v0)
-            faster = min(rate, approach(hinge[meeting], link[meeting].rows, side, a.v1, b.v1))
-            near = rate < 0.0 and -when * faster <= LIMIT_WAY * hinge[meeting].size
+            rate, after = gap_rates(W, meeting, side)
+            near = rate < 0.0 and -when * min(rate, after) <= LIMIT_WAY * hinge[meeting].size
             if when > MEET_INSTANT * abs(h) and not near:  # else round-off of places would be velocities
                 book(W, when, ledger)
                 advance(local, W.bodies, when)
@@ -136,14 +152,7 @@ def step_with_limits(
                     component.met, component.met_side, component.met_at, component.met_within = meeting, side, when, h
                 left -= when
         solved, foreseen = 0.0, False
-        begin_part(link, W.joints)
-        link[meeting].side = side
-        correct(W, SPEEDS)
-        if when <= MEET_INSTANT * abs(h):
-            link[meeting].side = side  # the velocity that lets go is round-off: forces press it to its bound at once
-        ledger.limited += fitting_loss(local, W.bodies, ledger)
-        drop_impulses(W)
-        hold_limits(W)
+        stop_at(W, meeting, side, when <= MEET_INSTANT * abs(h), ledger)
         if left <= 1e-13 * h:
             return True
         meeting, when = -1, left

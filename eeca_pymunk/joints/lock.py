@@ -18,7 +18,8 @@ from ..model.parameters.joints import LOCK_ITERATIONS
 
 @nonallocating
 def centre_of(local: Rows[BodyStep], bodies: int) -> tuple[bool, float, float, float, float, float, float]:
-    """Whether the component hangs on something; centre of mass, velocity and acceleration (2 each) of what moves."""
+    """Whether the component hangs on something; then of what moves the centre of mass (x, y), its velocity (vx, vy) and
+    its acceleration (ax, ay)."""
     mass = x = y = vx = vy = ax = ay = 0.0
     hangs = False
     for i in range(bodies):
@@ -53,9 +54,9 @@ def lock_energy(local: Rows[BodyStep], bodies: int, gain: float) -> float:
     spin = turning / inertia if inertia > 0.0 else 0.0
     if hangs:
         vx = vy = spin = 0.0
-    apart = against(local, bodies, x, y, vx, vy, spin, -1.0)
+    apart = relative_energy(local, bodies, x, y, vx, vy, spin, -1.0)
     s = math.sqrt(max(0.0, 1.0 - gain / apart)) if apart > 0.0 else 0.0
-    against(local, bodies, x, y, vx, vy, spin, s)
+    relative_energy(local, bodies, x, y, vx, vy, spin, s)
     return (1.0 - s * s) * apart
 
 
@@ -70,7 +71,7 @@ def supports_rest(local: Rows[BodyStep], bodies: int) -> bool:
 
 
 @nonallocating
-def against(
+def relative_energy(
     local: Rows[BodyStep], bodies: int, x: float, y: float, vx: float, vy: float, spin: float, s: float
 ) -> float:
     """Kinetic energy of the motion against that of a rigid body with velocity (vx, vy) at (x, y); s >= 0: let there be
@@ -93,11 +94,12 @@ def against(
 
 @nonallocating
 def move_rigidly(local: Rows[BodyStep], bodies: int, h: float) -> None:
-    """The end of a step h, from its start, to which no joint has an objection, and at which there is no more energy
-    than at the start: all move as one rigid body under their accelerations, or stand still where they hang on
-    something.
+    """Move all bodies over a step h as one rigid body under their accelerations, or stop them where they hang on
+    something: joints keep their shape, and the end has no more energy than the start, but for the work of the
+    accelerations.
 
-    r1 - r0 = chi z x r_m: with torques about r_m the work of the accelerations is exact.
+    r1 - r0 = chi z x r_m for the arms r about the common centre: with torques about r_m the work of the accelerations
+    is exact. Bodies that joints do not turn keep their own spin.
     """
     hangs, x, y, vx, vy, ax, ay = centre_of(local, bodies)
     chi, spin, after = 0.0, 0.0, 0.0

@@ -12,7 +12,11 @@ from ..model.joints import CONDENSED, PIVOT, WHOLE, Component, ComponentBody, Co
 
 @kernel
 def order_nodes(start: IntArray, near: IntArray, nodes: int, order: IntArray) -> None:
-    """Reverse Cuthill-McKee order of a graph in compressed rows, from a local far out, ties by number."""
+    """Write the reverse Cuthill-McKee order of a graph to `order` (nodes,), from a node far out, ties by number.
+
+    Args:
+        start, near: the neighbours of node i are near[start[i] : start[i + 1]].
+    """
     level = np.empty(nodes, np.int64)
     placed = np.zeros(nodes, np.int64)
     count = 0
@@ -20,7 +24,7 @@ def order_nodes(start: IntArray, near: IntArray, nodes: int, order: IntArray) ->
         if placed[seed] == 1:
             continue
         first = seed
-        for sweep in range(4):  # the last sweep places
+        for sweep in range(4):  # by breadth; each begins at the last node of the one before, the last one places
             for i in range(nodes):
                 level[i] = -1
             head, tail = count, count + 1
@@ -58,7 +62,8 @@ def order_nodes(start: IntArray, near: IntArray, nodes: int, order: IntArray) ->
 def order_unknowns(
     component: Rows[Component], member: Rows[ComponentBody], link: Rows[Coupling], s: int, condensed: bool
 ) -> None:
-    """Give the bodies and joints of component s their unknowns; fill in its size and band.
+    """Give the bodies and joints of component s their unknowns (`column`, `first_row`); fill in the number of unknowns
+    and the half-width of the band, and those outside the matrix (`impulses`).
 
     In a condensed system the bodies come first, and joints are the edges between them.
     """
@@ -78,6 +83,7 @@ def order_unknowns(
             a, b = link[j0 + k].body[0], link[j0 + k].body[1]
             for p in range(2 if condensed else 0, 3):
                 u, v = (a, b) if p == 2 else (bodies + k, a if p == 0 else b)
+                # A pivot bends by the turn of each body alone: its bodies are coupled by its rows only.
                 uncoupled = p == 2 and not condensed and link[j0 + k].kind == PIVOT
                 if width[u] == 0 or width[v] == 0 or uncoupled:
                     continue

@@ -2,7 +2,7 @@
 
 A plan stays valid while the set of bodies and joints, their kinds, anchors and bodies, and what moves, stay the same.
 Bodies that joints cannot move bind nothing: they are partners of several components. Nodes of a component's graph
-are its moved bodies (two or three unknowns) and its joints with impulses; their order is reverse Cuthill-McKee.
+are its movable bodies (two or three unknowns) and its joints with impulses; their order is reverse Cuthill-McKee.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from ..compiled.records import Rows, empty
 from ..model.bodies import BODIES, Body
 from ..model.joints import GEAR, GROOVE, MOTOR, Component, ComponentBody, Coupling, Joint
 from ..model.parameters.joints import BOXES_DIRECT, CONDENSE_BAND
+from ..newton.rows import row_count
 from .ordering import order_rows, order_unknowns
-from .rows import row_count
 
 
 @kernel
 def root(parent: IntArray, i: int) -> int:
-    """The representative of i in a forest, whose paths it halves."""
+    """The representative of i in the forest `parent` (n,) of sets; its paths are halved."""
     while parent[i] != i:
         parent[i] = parent[parent[i]]
         i = parent[i]
@@ -29,16 +29,19 @@ def root(parent: IntArray, i: int) -> int:
 
 
 @kernel
-def find_islands(bodies: Rows[Body], joint: Rows[Joint], parent: IntArray, island: IntArray, joints: int) -> int:
-    """Number the islands by their first joint; island[j] = -1 for a joint that can move neither of its bodies.
+def find_components(
+    bodies: Rows[Body], joint: Rows[Joint], parent: IntArray, component_of: IntArray, joints: int
+) -> int:
+    """Number the components in the order of their first joints; how many there are.
 
-    `parent` (bodies,) and `island` (joints,) are filled in.
+    Out: `parent` (bodies,), a forest as of `root`, and component_of (joints,), -1 for a joint that moves none of its
+    bodies.
     """
     for i in range(len(parent)):
         parent[i] = i
     for j in range(joints):
         a, b = joint[j].body[0], joint[j].body[1]
-        if moved(bodies, a) and moved(bodies, b) and acts(bodies, joint[j]):
+        if movable(bodies, a) and movable(bodies, b) and acts(bodies, joint[j]):
             p, q = root(parent, a), root(parent, b)
             if p != q:
                 parent[max(p, q)] = min(p, q)
@@ -46,18 +49,18 @@ def find_islands(bodies: Rows[Body], joint: Rows[Joint], parent: IntArray, islan
     count = 0
     for j in range(joints):
         a, b = joint[j].body[0], joint[j].body[1]
-        island[j] = -1
+        component_of[j] = -1
         if acts(bodies, joint[j]):
-            top = root(parent, a if moved(bodies, a) else b)
+            top = root(parent, a if movable(bodies, a) else b)
             if number[top] < 0:
                 number[top] = count
                 count += 1
-            island[j] = number[top]
+            component_of[j] = number[top]
     return count
 
 
 @kernel
-def moved(bodies: Rows[Body], i: int) -> bool:
+def movable(bodies: Rows[Body], i: int) -> bool:
     """Whether joints can move body i."""
     return bool(bodies[i].inv_mass > 0.0 or bodies[i].inv_inertia > 0.0)
 
@@ -68,13 +71,14 @@ def acts(bodies: Rows[Body], joint: Joint) -> bool:
     a, b = joint.body[0], joint.body[1]
     if joint.kind >= GEAR:
         return bool(bodies[a].inv_inertia > 0.0 or bodies[b].inv_inertia > 0.0)
-    return moved(bodies, a) or moved(bodies, b)
+    return movable(bodies, a) or movable(bodies, b)
 
 
 @kernel
 def turning(bodies: Rows[Body], joint: Rows[Joint], joints: int, turns: IntArray, cayley: IntArray) -> None:
-    """Which bodies joints turn, and which of them take Cayley's turn: those held off their centre, and who is bound
-    to one of these by its angle."""
+    """Set turns (bodies,) to 1 for bodies that joints turn, and cayley (bodies,) to 1 for those of them that turn by
+    2 atan(chi/2) (`..model.joint_steps.BodyStep`): those held off their centre, and those bound to one of these by
+    their angle. Both are 0 before."""
     for j in range(joints):
         a, b, kind = joint[j].body[0], joint[j].body[1], joint[j].kind
         off_a = kind == GROOVE or (kind < GEAR and (joint[j].anchor_a[0] != 0.0 or joint[j].anchor_a[1] != 0.0))
@@ -103,20 +107,20 @@ def make_plan(
     """Fill in `component` (joints,), `member` (2 joints,), `link` (joints,), and OF (n,), which is -1, the component of
     each body that joints may move; how many components there are."""
     joints = len(joint)
-    parent, island = np.empty(len(bodies), np.int64), np.empty(joints, np.int64)
-    count = find_islands(bodies, joint, parent, island, joints)
+    parent, component_of = np.empty(len(bodies), np.int64), np.empty(joints, np.int64)
+    count = find_components(bodies, joint, parent, component_of, joints)
     turns, cayley = np.zeros(len(bodies), np.int64), np.zeros(len(bodies), np.int64)
     turning(bodies, joint, joints, turns, cayley)
     room = np.zeros(count + 1, np.int64)
     for j in range(joints):
-        if island[j] >= 0:
-            room[island[j] + 1] += 1
+        if component_of[j] >= 0:
+            room[component_of[j] + 1] += 1
     for s in range(count):
         room[s + 1] += room[s]
         component[s].first_joint, component[s].end_joint = room[s], room[s]
     for j in range(joints):
-        if island[j] >= 0:
-            s = island[j]
+        if component_of[j] >= 0:
+            s = component_of[j]
             link[component[s].end_joint].joint = j
             component[s].end_joint += 1
     place = np.full(len(bodies), -1, np.int64)
@@ -132,8 +136,8 @@ def make_plan(
                     place[body] = used
                     member[used].body, member[used].cayley = body, cayley[body]
                     freedoms = 3 if turns[body] == 1 else 2
-                    member[used].freedoms = freedoms if moved(bodies, body) else 0
-                    if moved(bodies, body):
+                    member[used].freedoms = freedoms if movable(bodies, body) else 0
+                    if movable(bodies, body):
                         OF[body] = s
                     used += 1
                 link[k].body[end] = place[body] - component[s].first_body
@@ -156,7 +160,8 @@ def make_plan(
 
 @kernel
 def discs(joint: Rows[Joint], link: Rows[Coupling], component: Rows[Component], s: int) -> bool:
-    """Whether a joint with two bounded impulses is in component s: condensed systems do not have those."""
+    """Whether a joint with two bounded impulses is in component s: their disc couples both, for which condensed systems
+    have no place."""
     for k in range(component[s].first_joint, component[s].end_joint):
         if joint[link[k].joint].bounded != 0 and link[k].rows == 2:
             return True
@@ -178,9 +183,10 @@ def cycles(
     bodies: Rows[Body], joint: Rows[Joint], link: Rows[Coupling], member: Rows[ComponentBody],
     component: Rows[Component], s: int,
 ) -> int:  # fmt: skip
-    """Joints that close a cycle of the graph of joints between points, or of that of joints of angles; bodies that
-    nothing moves, or nothing turns, are one node. Without cycles rows are independent, limits included: those of points
-    by what they do to places, those of angles by what they do to angles alone. Boxed rows are in no matrix."""
+    """Number of joints of component s that close a cycle of the graph of joints between points, or of that of joints of
+    angles; bodies that nothing moves, or nothing turns, are one node. Without cycles rows are independent, limits
+    included: those of points by what they do to places, those of angles by what they do to angles alone. Boxed rows are
+    in no matrix."""
     b0, n = component[s].first_body, component[s].end_body - component[s].first_body
     parent, ends = np.arange(2 * (n + 1)), np.empty(2, np.int64)
     count = 0

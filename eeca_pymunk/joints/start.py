@@ -19,18 +19,20 @@ from ..model.joints import (
     Joint,
     Workspace,
 )
-from .bounds import approach, gap, has_bound
-from .entries import is_limit
+from ..newton.entries import is_limit
+from ..newton.rows import joint_rows
+from ..newton.systems import first_iterate
+from .bounds import gap, gap_rate, has_bound
 from .ledger import springs_hold
-from .newton import first_iterate
-from .rows import joint_rows
 
 
 @nonallocating
 def read_joints(W: Workspace, h: float, length: float) -> tuple[bool, bool]:
-    """Fill in what the joints bring from before. Rows of bounded impulses are boxed if they are few (`boxes`).
+    """Fill in what the joints bring from the last step to one of h: impulses, over the length of the step, `lead`, the
+    limits on which they stand. Rows of bounded impulses are boxed if they are few (`..newton.boxes`).
 
-    Returns whether a joint was touched, and whether a bounded joint needs its target.
+    Returns whether a joint was `touched`, and whether there is a bounded joint, which `bounded_targets` gives a speed;
+    a motor has its own.
     """
     joint, hinge, link = W.J.JOINT, W.J.HINGE, W.link
     touched, bounded, rows = False, False, 0
@@ -62,7 +64,7 @@ def read_joints(W: Workspace, h: float, length: float) -> tuple[bool, bool]:
 
 @nonallocating
 def compute_rows(W: Workspace) -> None:
-    """Compute rows and values of all joints at the present poses, of bounded ones too."""
+    """Compute rows and values g of all joints at the present poses; of bounded ones too, as if they held exactly."""
     link = W.link
     first_iterate(W, POSES, 2.0)
     for k in range(W.joints):
@@ -81,14 +83,16 @@ def springs_of(W: Workspace) -> float:
 
 @nonallocating
 def closing_share(joint: Rows[Joint], j: int, error: float, h: float) -> float:
-    """The share of an error that native takes back in a step h: 1 - error_bias^h, not faster than max_bias."""
+    """The share of the error of joint j that pymunk takes back in a step h: 1 - error_bias^h, not faster than max_bias.
+    error: an amount, length or rad."""
     part = 1.0 - joint[j].error_bias ** h
     return float(min(part, joint[j].max_bias * h / error)) if error > 0.0 else part
 
 
 @nonallocating
 def bounded_targets(W: Workspace, h: float) -> None:
-    """Speeds at which bounded joints close, and which bounded limits act: those beyond their bound or about to pass it.
+    """Set the speeds at which bounded joints close (`target`), and which bounded limits act (`side`): those beyond
+    their bound or about to pass it.
 
     Rows must be those of the present poses.
     """
@@ -103,7 +107,7 @@ def bounded_targets(W: Workspace, h: float) -> None:
                 continue
             room = gap(joint, hinge, link, k, side)
             a, b = W.J.LOCAL[link[k].body[0]], W.J.LOCAL[link[k].body[1]]
-            if room <= 0.0 or room + h * approach(hinge[k], rows, side, a.v0, b.v0) < 0.0:
+            if room <= 0.0 or room + h * gap_rate(hinge[k], rows, side, a.v0, b.v0) < 0.0:
                 link[k].side = side
                 speed = room / h if room > 0.0 else closing_share(joint, j, -room, h) * room / h
                 hinge[k].target[rows - 1] = side * speed

@@ -1,8 +1,9 @@
 """One step of a component without contacts.
 
-Joints that the user has moved apart are closed; the ladder (`ladder`) takes the step, or one linear system where it
-fails (`unheld`); joints keep what the next step begins with. Energy that elastic joints take and give back enters the
-ledger as `closed`, and they give back no more than they took; what linear rows gain is taken from what moves (`lock`).
+Joints that are apart, by the user or by earlier steps, are closed; the ladder (`ladder`) takes the step, or one linear
+system where it fails (`unheld`); joints keep what the next step begins with. Energy that elastic joints take and give
+back enters the ledger as `closed`, and they give back no more than they took; what linear rows gain is taken from what
+moves (`lock`).
 """
 
 from __future__ import annotations
@@ -13,13 +14,13 @@ from ..compiled import nonallocating
 from ..model.joint_steps import ELASTIC, HALVED, LINEAR, JointLedger
 from ..model.joints import APART, GIVES_WAY, LEFT_APART, RATCHET, Workspace
 from ..model.parameters.joints import NEARLY_HELD
+from ..newton.motion import save
+from ..newton.solve import drop_impulses
 from .bounds import hold_limits, standing
 from .closing import close_joints, farthest
 from .correct import kinetic
 from .ladder import climb, limit_work
 from .ledger import add, clear_ledger, close_ledger
-from .motion import save
-from .solve import drop_impulses
 from .start import bounded_targets, compute_rows, read_joints
 from .taut import taut
 from .unheld import step_linearly, take_gain
@@ -27,7 +28,10 @@ from .unheld import step_linearly, take_gain
 
 @nonallocating
 def write_joints(W: Workspace, h: float, loose: int) -> None:
-    """Leave impulses, limits and notches in the joints' own rows."""
+    """Leave what the next step begins with in the joints' own rows: impulses, limits, notches, accelerations.
+
+    loose: how the step has left joints that it did not hold, GIVES_WAY or LEFT_APART; 0 if it held them.
+    """
     joint, hinge, link, local = W.J.JOINT, W.J.HINGE, W.link, W.J.LOCAL
     for k in range(W.joints):
         j = link[k].joint
@@ -53,7 +57,11 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
     """Step one component by h; its status: EXACT, HALVED, ELASTIC or LINEAR.
 
     LOCAL holds poses, velocities, accelerations and mobilities at the start and, on return, poses and velocities (v0)
-    at the end. `ledger` is that of the step; `length` is the size of the component.
+    at the end.
+
+    Args:
+        order: 4 or 2, as of `ladder`.  length: size of the component (`..newton.motion.size_up`).
+        ledger: out, that of the step.
     """
     local, component = W.J.LOCAL, W.J.COMPONENT[W.s]
     clear_ledger(ledger)

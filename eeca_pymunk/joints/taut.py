@@ -11,12 +11,13 @@ import math
 from ..compiled import nonallocating
 from ..model.joints import PIN, PIVOT, SLIDE, Workspace
 from ..model.parameters.joints import TAUT
-from .rows import start_joint
+from ..newton.rows import start_joint
 
 
 @nonallocating
 def taut(W: Workspace, h: float) -> bool:
-    """Whether the impulses of some joint between points pull so that (h/2) dF/dx > TAUT of a body's inertia."""
+    """Whether the impulse F of some joint between points pulls so that (h/2) dF/dx > TAUT of a body's inertia: `turn`
+    is -dF/dx for its angle, arm . F, `per` that across a pin or slide, F over its length."""
     hinge, link = W.J.HINGE, W.link
     for k in range(W.joints):
         kind = link[k].kind

@@ -6,21 +6,22 @@ from ..compiled import nonallocating
 from ..model.joint_steps import ELASTIC, LINEAR
 from ..model.joints import Workspace
 from ..model.parameters.joints import LINEAR_APART
+from ..newton.motion import advance, go_back, move
+from ..newton.solve import drop_impulses
 from .closing import farthest
 from .foresight import forget
 from .ladder import restore, undo_impulses
 from .ledger import clear_ledger, close_ledger
 from .limits import step_with_limits
 from .lock import lock_energy, move_rigidly, supports_rest
-from .motion import advance, go_back, move
-from .solve import drop_impulses
 from .start import springs_of
 
 
 @nonallocating
 def step_linearly(W: Workspace, h: float, length: float) -> float:
-    """Take the step h by one linear system, or in free flight if that has no solution; how far joints were apart at its
-    start, over the size of the component. PART has what springs have stored."""
+    """Take the step h by linear systems, one for each limit that is let go, or in free flight if they have no solution.
+    Returns how far joints were apart at its start, over the size of the component. PART has what springs have
+    stored."""
     local, part = W.J.LOCAL, W.J.PART
     stored, apart = springs_of(W), farthest(W)
     drop_impulses(W)
@@ -41,8 +42,7 @@ def step_linearly(W: Workspace, h: float, length: float) -> float:
 
 @nonallocating
 def stop_joints(W: Workspace, h: float) -> None:
-    """The step of a component that nothing else can do: see `move_rigidly`; what that loses enters the ledger in
-    PART."""
+    """Take the step h again as `move_rigidly` does, where nothing else can: what that loses is `projected` in PART."""
     local, part = W.J.LOCAL, W.J.PART
     go_back(local, W.bodies)
     stored = springs_of(W)

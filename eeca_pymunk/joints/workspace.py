@@ -12,8 +12,8 @@ from ..compiled.layouts import COUNT, Layout, Plan
 from ..compiled.records import Rows
 from ..model.bodies import Body
 from ..model.joints import Joint, Joints, Workspace, joints_of
-from .boxes import ROOM as BOX_ROOM
-from .dual import STRIDE
+from ..newton.boxes import ROOM as BOX_ROOM
+from ..newton.dual import STRIDE
 from .plan import make_plan, together
 
 
@@ -92,8 +92,11 @@ class JointMemory:
         """
         j = len(JOINT)
         while True:
-            counts = 1, 1, 1, 6, j, 2 * j, j, j, j, len(BODY), *self._most, j, len(PARTNER)
-            table = self._layout.lay(counts, JOINT, PARTNER)
+            counts = {
+                "TALLY": 1, "PROGRESS": 1, "PART": 1, "STIFF": 6, "OF": len(BODY), "JOINT": j, "PARTNER": len(PARTNER),
+                "COMPONENT": j, "JOINED": 2 * j, "COUPLING": j, "KEPT": j, "STEPPED": j,
+            }  # fmt: skip
+            table = self._layout.lay(counts | dict(zip(_OF_ONE, self._most, strict=True)), JOINT, PARTNER)
             if plan_components(table, BODY, self._room, order):
                 return table
             self._most = tuple(map(max, self._room.tolist(), self._most))

@@ -90,7 +90,7 @@ class Component(Record):
     dual_band: int
     rigid: int  # what a dual system is taken for: 2 everything, 1 what happens at an instant, 0 nothing
     taut: int  # 1 if its loops held by their pull in the last step (`..joints.taut`)
-    boxes: int  # most rows of bounded impulses that may act, if few enough for `..joints.boxes`; else 0
+    boxes: int  # most rows of bounded impulses that may act, if few enough for `..newton.boxes`; else 0
     factored: int  # 1 if the matrix holds factors of an earlier part of the present step
     met: int  # joint (`Coupling`) whose limit a step from the present start has met first, -1 for none or not known
     met_side: int  # the side of that limit
@@ -98,7 +98,7 @@ class Component(Record):
     met_within: float
 
 
-# Linear systems: of bodies and rows; of bodies alone (`..joints.condensed`); of rows alone (`..joints.dual`).
+# Linear systems: of bodies and rows; of bodies alone (`..newton.condensed`); of rows alone (`..newton.dual`).
 WHOLE, CONDENSED, DUAL = 0, 1, 2
 
 
@@ -127,7 +127,7 @@ class Coupling(Record):
     following: Annotated[IntArray, 2]  # next joint on body a, on body b: 2 k + (0 as its body a, 1 as b), -1 for none
 
 
-# Impulses within bounds; these given, for an answer to other impulses; these found by `..joints.boxes`.
+# Impulses within bounds; these given, for an answer to other impulses; these found by `..newton.boxes`.
 BOUNDED, PRESCRIBED, BOXED = 1, 2, 3
 
 
@@ -158,9 +158,9 @@ class Joints(NamedTuple):
     JOINT (j,): bodies are rows of BODY (n rows) or n + row of PARTNER (x,), which joints cannot move. The plan:
     COMPONENT (components,), with the bodies of each in JOINED and its joints in COUPLING. Scratch for the largest
     component: HINGE, LOCAL, of its joints and bodies; MATRIX, banded; RIGHT, right sides; PIVOTS; MORE, of linear
-    systems and bounded rows; STIFF (6, 6), derivative of a joint's force by the ways of its bodies; PROGRESS; PART, the
-    ledger of a part of the step. OF (n,): the component of a body, -1 for none. KEPT (j,): the joints at the start of
-    an interval. STEPPED (components,): their ledgers in their intervals.
+    systems and bounded rows; STIFF (6, 6), derivative of a joint's impulse by the ways of its bodies; PROGRESS; PART,
+    the ledger of a part of the step. OF (n,): the component of a body, -1 for none. KEPT (j,): the joints at the start
+    of an interval. STEPPED (components,): their ledgers in their intervals.
     """
 
     JOINT: Rows[Joint]

@@ -156,10 +156,13 @@ class Packed:
         owner: IntArray = np.array([row[record.body] for record in known], np.int64)
         moving, v = N - bodies.VALUES["kind"].tolist().count(STATIC), len(self._points)
         self._layout = layout = Layout(_arrays()) if past is None else past._layout
+        counts = {
+            "TOLD": TOLD, "BODY": moving + 1, "SHAPE": k, "LINK": k, "VERTEX": v, "ORDER": k + N + 2, "BODIES": N,
+            "SHAPES": k, "OWNER": k, "POINT": v, "STATES": N, "WALK": N, "EXTRA": N,
+        }  # fmt: skip
         self._table = layout.lay(
-            (TOLD, moving + 1, k, k, v, k + N + 2, N, k, k, v, N, N, N), bodies.VALUES, self._shapes, owner,
-            self._points, crossing.STATES, crossing.WALK, crossing.EXTRA,
-        )  # fmt: skip
+            counts, bodies.VALUES, self._shapes, owner, self._points, crossing.STATES, crossing.WALK, crossing.EXTRA
+        )
         self.status = read_space(self._table, bodies.arranged)
         self.told: list[int] = layout.integers("TOLD").tolist()
         self.BODY: Rows[Body] = layout.array("BODY")

@@ -10,8 +10,8 @@ import pymunk
 from eeca_pymunk.arrays import FloatArray, IntArray
 from eeca_pymunk.compiled import table_of
 from eeca_pymunk.compiled.records import Rows, numbers, row, rows
+from eeca_pymunk.joints.components import step_all
 from eeca_pymunk.joints.workspace import JointMemory
-from eeca_pymunk.joints.world import step_all
 from eeca_pymunk.model.bodies import ACCELERATION, POSE, VELOCITY, Body
 from eeca_pymunk.model.joint_steps import JointLedger
 from eeca_pymunk.model.joints import Joint, Joints, joints_of

@@ -14,6 +14,8 @@ from scenes.linkages import body, chain, empty
 from .driving import error, ledger_closes, run
 from .jointed import JointedSpace
 
+UNITS = [1e-3, 1.0, 1e3]  # m
+
 
 @pytest.mark.parametrize("ratchet", [0.5, -0.5])
 def test_ratchet_goes_one_way(ratchet: float) -> None:
@@ -52,17 +54,18 @@ def test_bead_slides_down_its_groove_and_stops_at_the_end() -> None:
     ledger_closes(stepper, start, 60.0)
 
 
-def test_rope_is_never_longer_than_its_length() -> None:
+@pytest.mark.parametrize("unit", UNITS)
+def test_rope_is_never_longer_than_its_length(unit: float) -> None:
     # Dropped from (.8, 0): taut at depth .6 with vertical speed v; the radial part v .6 is lost, exactly.
-    space = empty()
-    weight = body(space, 2.0, 0.5, (0.8, 0.0))
-    space.add(pymunk.SlideJoint(space.static_body, weight, (0, 0), (0, 0), 0.0, 1.0))
+    space = empty(9.81 * unit)
+    weight = body(space, 2.0, 0.5 * unit**2, (0.8 * unit, 0.0))
+    space.add(pymunk.SlideJoint(space.static_body, weight, (0, 0), (0, 0), 0.0, unit))
     stepper = JointedSpace(space)
     for _ in range(120):
         stepper.step(1 / 60)
-        assert weight.position.length < 1.0 + 1e-11
-    assert stepper.ledger.limited == pytest.approx(2.0 * 9.81 * 0.6 * 0.36, rel=1e-3)
-    ledger_closes(stepper, 0.0, 20.0)
+        assert weight.position.length < (1.0 + 1e-11) * unit
+    assert stepper.ledger.limited == pytest.approx(2.0 * 9.81 * 0.6 * 0.36 * unit**2, rel=1e-3)
+    ledger_closes(stepper, 0.0, 20.0 * unit**2)
 
 
 def test_a_taut_rope_does_not_hold_what_is_thrown_inwards() -> None:
@@ -76,17 +79,19 @@ def test_a_taut_rope_does_not_hold_what_is_thrown_inwards() -> None:
     assert stepper.ledger.projected == 0.0
 
 
+@pytest.mark.parametrize("unit", UNITS)
 @pytest.mark.parametrize("up", [0.001, 0.01, 0.2, 0.45])
-def test_what_leaves_its_limit_and_comes_back_within_a_step_stops_there(up: float) -> None:
+def test_what_leaves_its_limit_and_comes_back_within_a_step_stops_there(up: float, unit: float) -> None:
     # Thrown up from the end of its rope, which is taut again after 2 v/g: m v^2/2 is lost, and the weight hangs.
-    space = empty()
-    weight = body(space, 2.0, 0.5, (0.0, -1.0))
-    space.add(pymunk.SlideJoint(space.static_body, weight, (0, 0), (0, 0), 0.0, 1.0))
-    weight.velocity = (0.0, up)
+    space = empty(9.81 * unit)
+    weight = body(space, 2.0, 0.5 * unit**2, (0.0, -unit))
+    space.add(pymunk.SlideJoint(space.static_body, weight, (0, 0), (0, 0), 0.0, unit))
+    weight.velocity = (0.0, up * unit)
     stepper = run(space, 0.1, 1)
-    assert weight.position.y == pytest.approx(-1.0, abs=1e-14)
-    assert weight.velocity.length < 1e-12
-    assert stepper.ledger.limited == pytest.approx(up**2, abs=2.0 * 9.81 * 1e-12)  # as well as the bound is met
+    assert weight.position.y == pytest.approx(-unit, rel=1e-14)
+    assert weight.velocity.length < 1e-12 * unit
+    # As well as the bound is met.
+    assert stepper.ledger.limited == pytest.approx(up**2 * unit**2, abs=2.0 * 9.81 * 1e-12 * unit**2)
 
 
 def test_what_hangs_at_its_limit_is_held_without_a_search() -> None:
@@ -100,18 +105,19 @@ def test_what_hangs_at_its_limit_is_held_without_a_search() -> None:
     assert efforts[1] <= 2.0 * efforts[0]  # a velocity of round-off is no reason to let go and to meet it again
 
 
-def test_door_stops_at_its_limit_and_rests_there() -> None:
-    space = empty()
-    door = body(space, 2.0, 0.5, (0.8, 0.0))
-    ground = space.static_body
-    space.add(pymunk.PivotJoint(ground, door, (0, 0), (-0.8, 0)), pymunk.RotaryLimitJoint(ground, door, -0.9, 0.5))
+@pytest.mark.parametrize("unit", UNITS)
+def test_door_stops_at_its_limit_and_rests_there(unit: float) -> None:
+    space = empty(9.81 * unit)
+    door = body(space, 2.0, 0.5 * unit**2, (0.8 * unit, 0.0))
+    ground, hinge = space.static_body, (-0.8 * unit, 0.0)
+    space.add(pymunk.PivotJoint(ground, door, (0, 0), hinge), pymunk.RotaryLimitJoint(ground, door, -0.9, 0.5))
     stepper = JointedSpace(space)
     for _ in range(120):
         stepper.step(1 / 60)
         assert door.angle > -0.9 - 1e-12
     assert door.angle == pytest.approx(-0.9, abs=1e-12)
-    assert stepper.ledger.limited == pytest.approx(2.0 * 9.81 * 0.8 * math.sin(0.9), rel=1e-12)
-    ledger_closes(stepper, 0.0, 20.0)
+    assert stepper.ledger.limited == pytest.approx(2.0 * 9.81 * 0.8 * math.sin(0.9) * unit**2, rel=1e-12)
+    ledger_closes(stepper, 0.0, 20.0 * unit**2)
 
 
 def test_hanging_weight_reads_its_weight() -> None:
@@ -139,18 +145,20 @@ def test_a_straight_taut_chain_between_walls_does_not_stop_the_step() -> None:
     assert abs(stepper.energy() - start - stepper.gain()) < 1e-10 * 40.0
 
 
-@pytest.mark.parametrize("speed", [1e-2, 1e-4, 1e-6])
-def test_a_limit_whose_gap_opens_first_is_found(speed: float) -> None:
+@pytest.mark.parametrize("unit", UNITS)
+@pytest.mark.parametrize("speed", [1e-2, 1e-4, 1e-5, 1e-6])
+def test_a_limit_whose_gap_opens_first_is_found(speed: float, unit: float) -> None:
     """A bob on its lower limit above the hinge is thrown up a little: y = v t - g t²/2 is back at t = 2 v/g << dt."""
     space = pymunk.Space()
-    space.gravity = 0.0, -10.0
-    bob = pymunk.Body(1.0, 1.0)
-    bob.position, bob.velocity = (0.0, 1.0), (0.0, speed)
-    space.add(bob, pymunk.SlideJoint(space.static_body, bob, (0.0, 0.0), (0.0, 0.0), 1.0, 3.0))
+    space.gravity = 0.0, -10.0 * unit
+    bob = pymunk.Body(1.0, unit**2)
+    bob.position, bob.velocity = (0.0, unit), (0.0, speed * unit)
+    space.add(bob, pymunk.SlideJoint(space.static_body, bob, (0.0, 0.0), (0.0, 0.0), unit, 3.0 * unit))
     report = ep.EECA(space).step(0.1)
     assert report.converged
-    assert bob.position.y == pytest.approx(1.0, abs=1e-12)
-    assert report.ledger.restitution == pytest.approx(0.5 * speed**2, rel=1e-6)
+    assert bob.position.y == pytest.approx(unit, rel=1e-12)
+    round_off = 1e-13 * 10.0 * unit**2  # of m g L
+    assert report.ledger.restitution == pytest.approx(0.5 * (speed * unit) ** 2, rel=1e-6, abs=round_off)
 
 
 def test_what_hangs_at_its_limit_is_held_in_the_shortest_step() -> None:

@@ -13,7 +13,7 @@ from eeca_pymunk.model.parameters.__main__ import markdown
 
 PACKAGE = Path(eeca_pymunk.__file__).parent
 KERNEL_ROOMS = (
-    "geometry", "pairs", "rows", "prediction", "contacts", "islands", "impacts", "joints", "jointed",
+    "geometry", "pairs", "rows", "prediction", "contacts", "islands", "impacts", "newton", "joints", "jointed",
 )  # fmt: skip
 
 

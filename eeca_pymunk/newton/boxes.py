@@ -1,13 +1,18 @@
-"""Rows of bounded impulses in Newton's method: motors, and joints whose max_force is finite.
+"""Rows of bounded impulses that are BOXED, decided together: motors, and joints whose max_force is finite.
 
-Each iteration linearises all else. Let u be the velocity along a bounded row after that, less its target, and W the
-change of u per bounded impulse, answered by all joints that hold exactly. The impulses solve, together,
+Each iteration linearises all else. Let u be the velocity along a boxed row after that, less its target, and w (n, n)
+the change of u per boxed impulse, answered by all joints that hold exactly. The n impulses solve, together,
 
     |lam| <= max_force h,    u = 0 inside of the bound,    u of the other sign than lam where lam is at the bound,
 
-(a pivot's two as a disc), so that lam never exceeds its bound, in no iteration and in no rung of the ladder of `step`:
+(a pivot's two as a disc), so that lam never exceeds its bound, in no iteration and in no rung of `..joints.ladder`:
 the work of such a row is at most max_force times the way along it. Sweeps find which rows are at their bounds, a direct
 solution on the others does the rest.
+
+In MORE, behind the scratch of a dual system, stand n columns, the scaled changes of all unknowns by unit impulses, and
+a right side; then, from number w, w (n, n) and factors (room 2 n^2); from number u seven arrays (n,): u, the impulses,
+their least and largest values, SINGLE or the place in a disc (`..rows.bounded`), steps, and 1 for what is inside its
+bounds.
 """
 
 from __future__ import annotations
@@ -46,10 +51,10 @@ def boxed_rows(link: Rows[Coupling], joints: int) -> int:
 
 
 @nonallocating
-def push(
+def unit_impulse(
     link: Rows[Coupling], hinge: Rows[JointStep], local: Rows[BodyStep], k: int, r: int, size: int, right: FloatArray
 ) -> None:
-    """Let `right` be a unit impulse along row r of joint k, scaled."""
+    """Let `right` (size,) be a unit impulse along row r of joint k, scaled."""
     for i in range(size):
         right[i] = 0.0
     for end in range(2):
@@ -59,7 +64,7 @@ def push(
 
 
 @nonallocating
-def rate(
+def rate_along(
     link: Rows[Coupling], hinge: Rows[JointStep], local: Rows[BodyStep], k: int, r: int, change: FloatArray, at: int
 ) -> float:
     """The velocity along row r of joint k of the scaled change[at :]."""
@@ -73,7 +78,7 @@ def rate(
 
 @nonallocating
 def measure_boxes(W: Workspace, w: int, u: int, n: int, h: float, fresh: bool) -> None:
-    """W, if columns are `fresh`; u after the solution in `right`; impulses and their bounds. All behind the columns."""
+    """Write w, if columns are `fresh`; u after the solution in RIGHT; impulses and their bounds."""
     hinge, link, component, more = W.J.HINGE, W.link, W.J.COMPONENT[W.s], W.J.MORE
     size = component.unknowns + component.impulses
     cols = STRIDE * component.dual_size
@@ -84,8 +89,8 @@ def measure_boxes(W: Workspace, w: int, u: int, n: int, h: float, fresh: bool) -
         for r in range(rows):
             if fresh:
                 for c in range(n):
-                    more[w + row * n + c] = rate(link, hinge, W.J.LOCAL, k, r, more, cols + c * size)
-            more[u + row] = hinge[k].value[r] * 2.0 / h + rate(link, hinge, W.J.LOCAL, k, r, W.J.RIGHT, 0)
+                    more[w + row * n + c] = rate_along(link, hinge, W.J.LOCAL, k, r, more, cols + c * size)
+            more[u + row] = hinge[k].value[r] * 2.0 / h + rate_along(link, hinge, W.J.LOCAL, k, r, W.J.RIGHT, 0)
             more[u + n + row] = hinge[k].lam[r]
             more[u + 2 * n + row], more[u + 3 * n + row] = low, bound
             more[u + 4 * n + row] = SINGLE if rows == 1 else FIRST_OF_DISC if r == 0 else SECOND_OF_DISC
@@ -94,7 +99,7 @@ def measure_boxes(W: Workspace, w: int, u: int, n: int, h: float, fresh: bool) -
 
 @nonallocating
 def change_box(more: FloatArray, w: int, u: int, n: int, i: int, to: float) -> float:
-    """Let impulse i be `to`, velocities follow; how much it has changed."""
+    """Let impulse i be `to`, and u follow; the amount by which it has changed."""
     change = to - more[u + n + i]
     if change != 0.0:
         more[u + n + i] = to
@@ -138,7 +143,7 @@ def free_of_bounds(more: FloatArray, u: int, n: int, i: int) -> bool:
 
 @nonallocating
 def direct_boxes(more: FloatArray, w: int, u: int, n: int) -> None:
-    """Bring u to 0 on all rows inside of their bounds, these left out of account; then clamp."""
+    """Bring u to 0 on all rows inside of their bounds, as if they had none; then clamp each impulse to its bounds."""
     lu, step, width = w + n * n, u + 5 * n, 2 * n - 1
     for i in range(n):
         inside = free_of_bounds(more, u, n, i)
@@ -162,7 +167,7 @@ def direct_boxes(more: FloatArray, w: int, u: int, n: int) -> None:
 
 @nonallocating
 def solve_boxes(more: FloatArray, w: int, u: int, n: int) -> None:
-    """Impulses within their bounds, by sweeps and direct solutions."""
+    """Solve for the impulses within their bounds, by sweeps and direct solutions in turn."""
     for turn in range(BOX_ROUNDS):
         worst = 1.0
         for _ in range(BOX_SWEEPS):
@@ -175,7 +180,7 @@ def solve_boxes(more: FloatArray, w: int, u: int, n: int) -> None:
 
 @nonallocating
 def apply_boxes(W: Workspace, u: int, n: int) -> None:
-    """Add to the solution in `right` what the change of the bounded impulses does."""
+    """Add to the solution in RIGHT what the changes of the boxed impulses do, and these changes, scaled."""
     hinge, link, component, more = W.J.HINGE, W.link, W.J.COMPONENT[W.s], W.J.MORE
     size = component.unknowns + component.impulses
     cols = STRIDE * component.dual_size
@@ -196,7 +201,8 @@ def apply_boxes(W: Workspace, u: int, n: int) -> None:
 
 @nonallocating
 def bound_impulses(W: Workspace, n: int, h: float, fresh: bool) -> None:
-    """Complete the solution in `right`, which is that without a change of the n boxed impulses."""
+    """Complete the solution in RIGHT, which is that without a change of the n boxed impulses. fresh: whether the
+    columns are new, by `solve.find_columns`."""
     component = W.J.COMPONENT[W.s]
     w = STRIDE * component.dual_size + (n + 1) * (component.unknowns + component.impulses)
     u = w + 3 * n * n
@@ -210,7 +216,7 @@ def leave_box(
     link: Rows[Coupling], hinge: Rows[JointStep], k: int, system: int, build: bool, band: int, matrix: FloatArray,
     right: FloatArray,
 ) -> None:  # fmt: skip
-    """Let the rows of joint k be known in the linear system, whose solution is to be without a change of them."""
+    """Put in the rows of joint k, which are boxed: no change of their impulses; of a row that does not act, to 0."""
     for r in range(link[k].rows):
         put_free(link, hinge, k, r, system, build, band, matrix, right)
         if r < rows_of(link, k):

@@ -1,4 +1,7 @@
-"""All components of a set of bodies without contacts, stepped by one call; the tests of this room call it."""
+"""All components of a set of bodies without contacts, stepped by one call, for the tests of `newton/` and `joints/`.
+
+Steps of scenes take one component at a time (`..jointed.alone`).
+"""
 
 from __future__ import annotations
 
@@ -6,14 +9,14 @@ from ..compiled import Table, nonallocating
 from ..compiled.records import Rows
 from ..model.bodies import Body
 from ..model.joints import Joints, joints_of
-from .motion import read_body, seat, size_up
+from ..newton.motion import read_body, seat, size_up
 from .step import take_step
 from .workspace import workspace
 
 
 @nonallocating
-def gather(bodies: Rows[Body], J: Joints, s: int, h: float) -> float:
-    """Copy the bodies of component s into its scratch; its size, the length that errors are measured by."""
+def read_bodies(bodies: Rows[Body], J: Joints, s: int, h: float) -> float:
+    """Copy the bodies of component s to its scratch; its size, as of `size_up` for a step h."""
     C = J.COMPONENT[s]
     for i in range(C.end_body - C.first_body):
         body, local = bodies[J.JOINED[C.first_body + i].body], J.LOCAL[i]
@@ -32,7 +35,7 @@ def step_all(JOINTS: Table, bodies: Rows[Body], h: float) -> int:
     J = joints_of(JOINTS)
     worst = 0
     for s in range(J.TALLY.components):
-        length = gather(bodies, J, s, h)
+        length = read_bodies(bodies, J, s, h)
         W = workspace(J, s)
         W.J.COMPONENT[s].met = -1
         worst = max(worst, take_step(W, h, J.TALLY.order, length, J.STEPPED[s]))

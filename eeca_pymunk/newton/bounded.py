@@ -1,4 +1,8 @@
-"""Rows of velocity with bounded impulses: motors, and joints whose max_force is finite (see `newton`)."""
+"""Rows of bounded impulse, BOUNDED, that are in the matrix: motors, and joints whose max_force is finite.
+
+Each joint is decided by itself in each iteration, by Alart and Curnier (see `systems`): it sticks or is at its bound.
+Of rows that are BOXED only the residual is taken here: `boxes` decides them together, as long as they are few.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +17,11 @@ from .entries import interval_of, put_condensed, put_free, put_rows
 
 @nonallocating
 def put_bounded(W: Workspace, k: int, slopes: bool, h: float, system: int, build: bool, band: int) -> float:
-    """Rows of velocity of joint k with bounded impulses; the residual as a length."""
+    """Put in the rows of joint k, which has bounded impulses; their residual, as `value`: a length or an angle.
+
+    With p = lam - rho u, u = 2 value/h, rho = scale^2 (the smaller one of two): u = 0 where p is within the bounds,
+    else lam is the nearest impulse within them. `turn` is the derivative of that of a disc, bound p/|p|, by p.
+    """
     hinge, link, local, matrix, right = W.J.HINGE, W.link, W.J.LOCAL, W.J.MATRIX, W.J.RIGHT
     row, rows, bound = link[k].first_row, link[k].rows, hinge[k].bound * abs(h)
     kind, side, width = link[k].kind, link[k].side, 3 * band + 1

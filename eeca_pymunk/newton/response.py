@@ -1,9 +1,10 @@
 """How a component of joints answers impulses on its bodies: the change of velocities per impulse.
 
-About a solved step, d v1 = S p for impulses p spread over the step, S the inverse of Newton's matrix with springs and
-bounded joints. Rows turn as bodies move, and the force of joints with them: without that what is taut would give way
-across. Of joints that press hard it is left out: S would not be positive. At one instant (an impact),
-S = M^-1 - M^-1 G^T (G M^-1 G^T)^-1 G M^-1: joints that hold exactly let no velocity through, and all others no impulse.
+About a solved step, d v1 = S p for impulses p spread over the step, S the bodies' block of the inverse of Newton's
+matrix, with springs and bounded joints. Rows turn as bodies move, and the force of joints with them: without that what
+is taut would give way across. Of joints that press hard it is left out: S would not be positive. At one instant (an
+impact), S = M^-1 - M^-1 G^T (G M^-1 G^T)^-1 G M^-1: joints that hold exactly let no velocity through, and all others no
+impulse.
 """
 
 from __future__ import annotations
@@ -17,14 +18,15 @@ from ..model.joint_steps import FULL_BEND, NO_BEND, STEP
 from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, GROOVE, Coupling, Workspace
 from ..model.parameters.joints import CONDENSED_PASSES, REDUNDANT_EPSILON, RESPONSE_PASSES, TAUT
 from .motion import move
-from .newton import assemble, back, decompose, first_iterate
 from .rows import joint_rows, start_joint
+from .systems import assemble, back, decompose, first_iterate
 
 
 @nonallocating
-def taken_by(W: Workspace, k: int, c: int, full: bool, h: float) -> float:
-    """The part of a body's inertia that the force of joint k may take by its stiffness at most: the sum of row c of
-    STIFF, scaled by the roots of mobilities; of what only turns (not `full`), the diagonal alone."""
+def inertia_taken(W: Workspace, k: int, c: int, full: bool, h: float) -> float:
+    """The largest part of a body's inertia that STIFF of joint k may take: (h/2) times the sum of amounts in its row c
+    (0 to 5: body c // 3, direction c % 3), scaled by the roots of mobilities; of OWN_TURN (not `full`), the diagonal
+    alone."""
     link, local = W.link[k], W.J.LOCAL
     root = local[link.body[c // 3]].root[c % 3]
     total = 0.0
@@ -35,9 +37,9 @@ def taken_by(W: Workspace, k: int, c: int, full: bool, h: float) -> float:
 
 
 @nonallocating
-def bend(W: Workspace, k: int, h: float) -> None:
-    """Let joint k have the impulse of the whole step, so that its rows take their force along as they turn; none if it
-    presses, and all that presses on one of its bodies would take more than TAUT of that body's `inertia`.
+def bend_rows(W: Workspace, k: int, h: float) -> None:
+    """Let joint k have the impulse of the whole step in `lam`, so that its rows take their force along as they turn;
+    none if it presses, and all that presses on one of its bodies would take more than TAUT of that body's `inertia`.
 
     What a full STIFF takes is bounded by the sums of its rows (Gershgorin), so that what is left of the inertia of all
     bodies is positive. A groove pushes along where it turns: its STIFF has both signs, whatever its diagonal.
@@ -51,24 +53,24 @@ def bend(W: Workspace, k: int, h: float) -> None:
         if full or c % 3 == 2:
             at = W.link[k].body[c // 3]
             pulls = pulls and W.J.STIFF[c, c] * local[at].mobility[c % 3] <= 0.0
-            slight = slight and local[at].inertia[c % 3] - taken_by(W, k, c, full, h) >= 1.0 - TAUT
+            slight = slight and local[at].inertia[c % 3] - inertia_taken(W, k, c, full, h) >= 1.0 - TAUT
     if kind == NO_BEND or not (pulls or slight):
         hinge[k].lam[0] = hinge[k].lam[1] = 0.0
         return
     for c in range(0 if pulls else 6):
         if full or c % 3 == 2:
-            local[W.link[k].body[c // 3]].inertia[c % 3] -= taken_by(W, k, c, full, h)
+            local[W.link[k].body[c // 3]].inertia[c % 3] -= inertia_taken(W, k, c, full, h)
 
 
 @nonallocating
 def prepare(W: Workspace, what: int, h: float) -> int:
-    """Factors of the matrix that `respond` needs, in `matrix` and `pivots`; their system, -1 if there are none.
+    """Compute the factors that `respond` needs, in MATRIX and PIVOTS; returns their system, -1 if there are none.
 
     `what` is STEP, after `take_step` (whose start becomes that of `local` again), or SPEEDS, at the present poses.
     """
     link = W.link
     boxed = unbox(link, W.joints)
-    system = factors(W, what, h)
+    system = factor_response(W, what, h)
     for k in range(W.joints if boxed else 0):
         if link[k].bounded == BOUNDED:
             link[k].bounded = BOXED
@@ -77,7 +79,8 @@ def prepare(W: Workspace, what: int, h: float) -> int:
 
 @nonallocating
 def unbox(link: Rows[Coupling], joints: int) -> bool:
-    """Let rows that are boxed be in the matrix: those inside of their bounds hold. Whether there are any."""
+    """Let rows that are BOXED be BOUNDED, and so in the matrix: those inside of their bounds hold. Whether there are
+    any."""
     some = False
     for k in range(joints):
         if link[k].bounded == BOXED:
@@ -87,8 +90,8 @@ def unbox(link: Rows[Coupling], joints: int) -> bool:
 
 
 @nonallocating
-def factors(W: Workspace, what: int, h: float) -> int:
-    """See `prepare`."""
+def factor_response(W: Workspace, what: int, h: float) -> int:
+    """`prepare`, of a component without boxed rows."""
     link, local, component = W.link, W.J.LOCAL, W.J.COMPONENT[W.s]
     if what == STEP:
         for i in range(W.bodies):
@@ -104,7 +107,7 @@ def factors(W: Workspace, what: int, h: float) -> int:
                 local[i].inertia[c] = 1.0
         for k in range(W.joints):
             if link[k].rows > 0 and link[k].bounded == 0:
-                bend(W, k, h)
+                bend_rows(W, k, h)
     else:
         first_iterate(W, what, h)
     system = DUAL if component.rigid > (1 if what == STEP else 0) else component.system
@@ -126,10 +129,11 @@ def factors(W: Workspace, what: int, h: float) -> int:
 
 @nonallocating
 def respond(W: Workspace, system: int, push: FloatArray, gives: bool) -> None:
-    """push (bodies, 3): impulses in (mass length/time, mass length²/time), changes of velocity out. `more`: scratch.
+    """Replace impulses on the bodies by the changes of velocity that they cause, with the factors of `prepare`.
 
     Args:
         system: that of the factors, from `prepare`.  gives: whether joints give way elastically.
+        push: (bodies, 3) impulses (mass length/time, mass length²/time) in, velocities (length/time, 1/time) out.
     """
     local, component, right = W.J.LOCAL, W.J.COMPONENT[W.s], W.J.RIGHT
     size = component.unknowns + component.impulses

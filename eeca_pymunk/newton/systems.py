@@ -1,16 +1,22 @@
 """The linear systems of Newton's method for the implicit step of a component.
 
-Unknowns: velocities v1 of the bodies and impulses lam of the rows, the way being x = h (v0 + v1)/2:
+Unknowns: velocities v1 of the bodies and impulses lam of the rows, the way being x = h (v0 + v1)/2 (symbols:
+`..newton`):
 
-    M (v1 - v0) = h M a + F(x) + J(x)^T lam,      g(x) = target.
+    M (v1 - v0) = h M a + F(x) + J(x)^T lam,      g(x) = target,
 
-Systems are scaled by sqrt(M) and by the diagonal of G M^-1 G^T. `give` > 0 makes rows elastic:
-g - target + (give h / 2 scale^2) lam = 0. Bounded rows follow Alart and Curnier: with p = lam - u/A, A = 1/scale^2,
-either |p| <= bound and u = 0, or lam = bound p/|p|.
+with a the accelerations without joints, F the impulses of springs. Newton's equations for the changes of v1 and lam are
+scaled by sqrt(M) and by the diagonal of G M^-1 G^T, and those of rows by 2/h, as g changes by (h/2) G per change of v1.
+`give` > 0 makes rows elastic: g - target + (give h / 2 scale^2) lam = 0. Bounded rows follow Alart and Curnier: with
+p = lam - u/A, A = 1/scale^2, either |p| <= bound and u = 0, or lam = bound p/|p|.
 
-The same systems with `still` bodies (h v_m = 0) correct poses, M dq = G^T mu, g(q + dq) = target, and velocities,
-M dv = G^T lam, G (v + dv) = 0. The whole system has bodies and rows; a *condensed* one the bodies alone (`condensed`),
-a *dual* one the rows alone (`dual`).
+The same systems with `still` bodies (x = 0) correct poses, M dq = G^T mu, g(q + dq) = target (POSES), and velocities,
+M dv = G^T lam, G (v + dv) = 0 (SPEEDS). They are called with h = 2, for which 2/h is 1. LINEAR_STEP has J x = 0 in
+place of g. The whole system has bodies and rows; a *condensed* one the bodies alone (`condensed`), a *dual* one the
+rows alone (`dual`).
+
+`linearise` builds a system (`assemble`, `balance`), `factorise` takes its factors (`decompose`), `back` solves with
+them, `apply` adds the solution.
 """
 
 from __future__ import annotations
@@ -34,8 +40,9 @@ from .rows import joint_rows, start_joint
 
 @inlined
 def first_iterate(W: Workspace, what: int, h: float) -> None:
-    """What stays the same over the iterations, and the first iterate: motion with the accelerations that joints gave
-    before (`lead`), or no motion where joints act."""
+    """Fill in what stays the same over the iterations, and the first iterate: motion with the accelerations that joints
+    gave before (`lead`); for POSES and SPEEDS, and in a LINEAR_STEP for bodies that joints move, no motion, v1 =
+    -v0."""
     local = W.J.LOCAL
     for k in range(W.joints):
         start_joint(W, k, h)
@@ -48,14 +55,49 @@ def first_iterate(W: Workspace, what: int, h: float) -> None:
 
 
 @inlined
-def assemble(W: Workspace, what: int, h: float, give: float, first: bool, system: int, build: bool) -> float:
-    """Residuals of the rows for `what` (see `..model.joints`), scaled, in RIGHT, and the joints' rows in HINGE.
+def put_exact(
+    W: Workspace, what: int, k: int, h: float, give: float, system: int, build: bool, band: int, width: int
+) -> float:  # fmt: skip
+    """Put in the rows of joint k that hold exactly or give way; the largest of their errors for `what`. Rows that do
+    not act, and bounded ones where bodies are still, are put in as free."""
+    hinge, link, local, matrix, right = W.J.HINGE, W.link, W.J.LOCAL, W.J.MATRIX, W.J.RIGHT
+    a, b = link[k].body[0], link[k].body[1]
+    per, slopes, bounded, farthest = 2.0 / h, what == STEP, link[k].bounded != 0, 0.0
+    for r in range(link[k].rows):
+        if bounded or not held(link, k, r):
+            put_free(link, hinge, k, r, system, build, band, matrix, right)
+            continue
+        scale = hinge[k].scale[r]
+        if what == SPEEDS:
+            error = along(hinge[k], r, local[a].v0, local[b].v0)
+        elif what == LINEAR_STEP:
+            error = along(hinge[k], r, local[a].way, local[b].way)
+        else:
+            error = hinge[k].value[r] - hinge[k].target[r]
+            if give > 0.0:
+                error += give * 0.5 * h * hinge[k].lam[r] / scale**2
+        right[link[k].first_row + r] = -error * scale * per
+        farthest = max(farthest, abs(error))
+        hinge[k].weight[r] = 1.0 / give if give > 0.0 else STIFFEST
+        if build and system == CONDENSED:
+            freeze_row(hinge, link, local, k, r, slopes)
+            put_condensed(link, hinge, local, k, r, band, matrix)
+        elif build and system == WHOLE:
+            put_rows(link, hinge, local, k, r, slopes, 1.0, band, matrix)
+            matrix[(link[k].first_row + r) * width + band] += give
+    return farthest
 
-    Where it is to `build`, the matrix of the `system` too, or of a dual one what it is made of.
-    Returns how far rows are from their targets, over the size of the component; for SPEEDS, the worst G v.
+
+@inlined
+def assemble(W: Workspace, what: int, h: float, give: float, first: bool, system: int, build: bool) -> float:
+    """Write the residuals of the rows for `what`, scaled, to RIGHT, and the joints' rows to HINGE.
+
+    Where it is to `build`, the matrix of the `system` too, or of a dual one what it is made of. first: scales of rows
+    are taken from the present ones. Bodies' `impulse` becomes that of all joints.
+    Returns how far rows are from their targets, over the size of the component; for SPEEDS, the worst G v over it.
     """
     hinge, link, local, matrix, right = W.J.HINGE, W.link, W.J.LOCAL, W.J.MATRIX, W.J.RIGHT
-    worst, per = 0.0, 2.0 / h
+    worst = 0.0
     still = what in (POSES, SPEEDS)
     slopes = what == STEP
     band = W.J.COMPONENT[W.s].band
@@ -86,7 +128,6 @@ def assemble(W: Workspace, what: int, h: float, give: float, first: bool, system
                 local[b].impulse[c] += hinge[k].force[c + 3]
             if build and bend != NO_BEND:
                 put_stiffness(link, local, k, W.J.STIFF, bend, h, system, band, matrix)
-        bounded = link[k].bounded != 0
         if link[k].bounded == BOUNDED and not still and held(link, k, 0):
             off = put_bounded(W, k, slopes, h, system, build, band)
             worst = max(worst, off / hinge[k].size)
@@ -96,36 +137,15 @@ def assemble(W: Workspace, what: int, h: float, give: float, first: bool, system
             worst = max(worst, off / hinge[k].size)
             leave_box(link, hinge, k, system, build, band, matrix, right)
             continue
-        farthest = 0.0
-        for r in range(link[k].rows):
-            if bounded or not held(link, k, r):
-                put_free(link, hinge, k, r, system, build, band, matrix, right)
-                continue
-            scale = hinge[k].scale[r]
-            if what == SPEEDS:
-                error = along(hinge[k], r, local[a].v0, local[b].v0)
-            elif what == LINEAR_STEP:
-                error = along(hinge[k], r, local[a].way, local[b].way)
-            else:
-                error = hinge[k].value[r] - hinge[k].target[r]
-                if give > 0.0:
-                    error += give * 0.5 * h * hinge[k].lam[r] / scale**2
-            right[link[k].first_row + r] = -error * scale * per
-            farthest = max(farthest, abs(error))
-            hinge[k].weight[r] = 1.0 / give if give > 0.0 else STIFFEST
-            if build and system == CONDENSED:
-                freeze_row(hinge, link, local, k, r, slopes)
-                put_condensed(link, hinge, local, k, r, band, matrix)
-            elif build and system == WHOLE:
-                put_rows(link, hinge, local, k, r, slopes, 1.0, band, matrix)
-                matrix[(link[k].first_row + r) * width + band] += give
+        farthest = put_exact(W, what, k, h, give, system, build, band, width)
         worst = max(worst, farthest / hinge[k].size)
     return worst
 
 
 @inlined
 def balance(W: Workspace, h: float, length: float) -> float:
-    """Residuals of the balance of momentum, scaled, into `right`; the worst as a way, over length or as an angle."""
+    """Write the residuals of the balance of momentum, scaled, to RIGHT; the worst one as a way, over `length` or as an
+    angle."""
     local = W.J.LOCAL
     worst, over = 0.0, 1.0 / length
     for i in range(W.bodies):
@@ -141,7 +161,8 @@ def balance(W: Workspace, h: float, length: float) -> float:
 def linearise(
     W: Workspace, what: int, h: float, length: float, give: float, first: bool, system: int, build: bool
 ) -> float:
-    """`assemble` anew, of steps with the balance of momentum; the largest error."""
+    """Build the right side anew, and the matrix where it is to `build`; the largest error, over the size of the
+    component. length: that size, for the balance of momentum, which POSES and SPEEDS do not have."""
     for i in range(W.J.COMPONENT[W.s].unknowns + W.J.COMPONENT[W.s].impulses):
         W.J.RIGHT[i] = 0.0
     worst = assemble(W, what, h, give, first, system, build)
@@ -150,7 +171,8 @@ def linearise(
 
 @inlined
 def decompose(W: Workspace, what: int, system: int, epsilon: float, give: float) -> bool:
-    """Factors in the place of what `assemble` has built, with `epsilon` on the rows' block; False if there are none."""
+    """Take the factors of what `assemble` has built, in its place, with `epsilon` on the diagonal of the rows; False if
+    there are none."""
     matrix = W.J.MATRIX
     size, band = W.J.COMPONENT[W.s].unknowns, W.J.COMPONENT[W.s].band
     if system == CONDENSED:
@@ -166,8 +188,8 @@ def decompose(W: Workspace, what: int, system: int, epsilon: float, give: float)
 
 @inlined
 def factorise(W: Workspace, what: int, h: float, length: float, give: float, system: int, epsilon: float) -> int:
-    """Factors of what `linearise` has built; where a dual system has none, of the component's other system, which is
-    built for that. The system that has factors, -1 for none."""
+    """Take the factors of what `linearise` has built; where a dual system has none, of the component's other system,
+    which is built for that. Returns the system that has factors, -1 for none."""
     if decompose(W, what, system, epsilon, give):
         return system
     if system == DUAL:
@@ -180,7 +202,8 @@ def factorise(W: Workspace, what: int, h: float, length: float, give: float, sys
 
 @inlined
 def back(W: Workspace, system: int, passes: int, right: FloatArray) -> None:
-    """Solve with the factors of `decompose` in place of `right`: changes of velocities, and of impulses."""
+    """Solve with the factors of `decompose` in place of `right`: changes of velocities and of impulses, scaled.
+    passes: of `condensed`, whose scratch is the second half of `right`."""
     size, band = W.J.COMPONENT[W.s].unknowns, W.J.COMPONENT[W.s].band
     if system == CONDENSED:
         back_condensed(W, passes, size, band, W.J.MATRIX, right, len(right) - size)
@@ -192,7 +215,7 @@ def back(W: Workspace, system: int, passes: int, right: FloatArray) -> None:
 
 @inlined
 def apply(W: Workspace, what: int) -> None:
-    """Add the solution of a scaled system to what was solved for, and to impulses."""
+    """Add the scaled solution in RIGHT to what was solved for, and to impulses: of poses and speeds `pushed`."""
     local = W.J.LOCAL
     for i in range(W.bodies):
         for c in range(local[i].freedoms):
@@ -208,7 +231,8 @@ def apply(W: Workspace, what: int) -> None:
 
 @nonallocating
 def effort(system: int, fresh: bool, boxes: int, joints: int, component: Component) -> float:
-    """About how many operations an iteration takes: rows, factors, solutions."""
+    """About how many operations an iteration takes: rows, factors (if `fresh`), solutions, with as many again for the
+    columns of `boxes` boxed rows."""
     size, band = (component.dual_size, component.dual_band) if system == DUAL else (component.unknowns, component.band)
     turns = 1 + boxes if fresh else 1
     # Wide bands take several numbers at once.

@@ -1,6 +1,8 @@
-"""Rows of a joint: its function g at the end of the step, its discrete gradient J, and how both bend.
+"""Rows of a joint: its function g at the end of the step, its discrete gradient J, its slope G, and how J bends.
 
-With x = h v_m the way of a body, r its arm, d = anchor b - anchor a, subscript m the mean of both ends:
+With x = h v_m the way of a body, r its arm, d = anchor b - anchor a, subscript m the mean of start and end, z the unit
+vector out of the plane; R the length of a pin or the bound of a slide; n the normal of a groove on body a, c its
+offset; chi = h w_m, and *turned* the angle by which a body turns (`..model.joint_steps.BodyStep`):
 
     pin, slide     g = (|d|^2 - R^2) / 2R            J_b = (d_m, r_mb x d_m) / R
     pivot          g = d                             J_b = (1, z x r_mb)
@@ -11,8 +13,10 @@ With x = h v_m the way of a body, r its arm, d = anchor b - anchor a, subscript 
     spring         F = h p d_m / l_m on b,  p = push - k (l_m - rest) - c (l1 - l0)/h,  l_m = (l0 + l1)/2
     rotary spring  T = h p s on b,          p = push + k (phi_m - rest) + c (phi1 - phi0)/h,  phi = angle_a - angle_b
 
-Each satisfies g1 - g0 = J x, and a spring's work is exactly what it stores and damps. Bounded joints and motors have
-rows of velocity: (J v1 - speed) h/2, of angles with J = (-1, 1) or (-1/ratio, 1).
+Where only J_b is given J_a is its negative, with the arm of a. p is the mean force of a spring over the step, l its
+length, c its `drag`. Each row satisfies g1 - g0 = J x, and a spring's work is exactly what it stores and damps. Bounded
+joints and motors have rows of velocity at the end, (J v1 - speed) h/2: a length or an angle as g is, and with the same
+derivative by v1, (h/2) J. For angles J = (-1, 1) or (-1/ratio, 1).
 """
 
 from __future__ import annotations
@@ -27,8 +31,12 @@ from .points import groove_rows, point_rows
 
 @inlined
 def joint_rows(W: Workspace, k: int, h: float, bends: bool) -> int:
-    """Joint k at the present iterate: `value` to `slopes`, and STIFF if the derivative of its force is needed
-    (`bends`), as far as the result says: NO_BEND, OWN_TURN, FULL_BEND."""
+    """Compute the rows of joint k at the present iterate, `way` of its bodies and its `lam`.
+
+    Fills in `value`, `force`, `rows`, `slopes`, of limits `measure`, of springs `lam`, `ended` and `measure`, their
+    mean force without damping; and STIFF if it is needed (`bends`). h: length of the part. Returns which entries of
+    STIFF are not 0, and written: NO_BEND, OWN_TURN, FULL_BEND.
+    """
     joint, hinge, link, local, stiff = W.J.JOINT, W.J.HINGE, W.link, W.J.LOCAL, W.J.STIFF
     kind, a, b, side = link[k].kind, link[k].body[0], link[k].body[1], link[k].side
     bounded, j = link[k].bounded != 0, link[k].joint
@@ -51,7 +59,8 @@ def joint_rows(W: Workspace, k: int, h: float, bends: bool) -> int:
 
 @inlined
 def start_joint(W: Workspace, k: int, h: float) -> None:
-    """What stays the same over the iterations: arms, distance and normal at the start, a spring's damping."""
+    """Fill in what stays the same over the iterations of a part of length h: arms, distance and normal at its start; of
+    joints of angles the angles, in arm_a[0] and arm_b[0]; a spring's length or angle, and its `drag`."""
     joint, hinge, link, local = W.J.JOINT, W.J.HINGE, W.link, W.J.LOCAL
     kind, a, b, j = link[k].kind, link[k].body[0], link[k].body[1], link[k].joint
     if kind >= GEAR:
@@ -86,8 +95,10 @@ def start_joint(W: Workspace, k: int, h: float) -> None:
 
 @nonallocating
 def drag(damping: float, mobility: float, h: float) -> float:
-    """The damping for which the midpoint rule slows a free pair by exp(-damping mobility h), as native does.
+    """The damping for which the midpoint rule slows a free pair by exp(-damping mobility h), as pymunk's springs do.
 
+    damping: force time/length (torque time/rad), as the result; mobility: change of the rate of a spring's length or
+    angle by a unit impulse along it, with the sum of both bodies' inverse masses and moments.
     The midpoint rule makes (1 - x)/(1 + x) of the speed, x = drag mobility h / 2: hence x = tanh(damping mobility h/2).
     """
     rate = 0.5 * abs(h) * mobility

@@ -16,7 +16,11 @@ def point_rows(
     kind: int, side: int, bounded: bool, h: float, joint: Joint, hinge: JointStep, a: BodyStep, b: BodyStep,
     bends: bool, stiff: FloatArray,
 ) -> int:  # fmt: skip
-    """`joint_rows` of pins, slides, pivots and springs; `measure` of a spring is its mean force without damping."""
+    """`joint_rows` of pins, slides, pivots and springs; `measure` of a slide is its length at the end, of a spring its
+    mean force without damping.
+
+    Names end in 0 at the start, 1 at the end, nothing at the mean of both.
+    """
     ca, sa, slope_a, lever_a = a.turn_cos, a.turn_sin, a.slope, a.lever
     cb, sb, slope_b, lever_b = b.turn_cos, b.turn_sin, b.slope, b.lever
     rax0, ray0, rbx0, rby0 = hinge.arm_a[0], hinge.arm_a[1], hinge.arm_b[0], hinge.arm_b[1]
@@ -27,7 +31,7 @@ def point_rows(
     dx1 = dx0 + b.way[0] - a.way[0] + (rbx1 - rbx0) - (rax1 - rax0)
     dy1 = dy0 + b.way[1] - a.way[1] + (rby1 - rby0) - (ray1 - ray0)
     dx, dy = 0.5 * (dx0 + dx1), 0.5 * (dy0 + dy1)
-    # How d1 moves with chi_a and chi_b.
+    # Derivatives of d1 by chi_a (ua) and chi_b (ub), each (x, y).
     uax, uay, ubx, uby = slope_a * ray1, -slope_a * rax1, -slope_b * rby1, slope_b * rbx1
     if kind == PIVOT:
         fx, fy = hinge.lam[0], hinge.lam[1]
@@ -43,7 +47,7 @@ def point_rows(
         bend = OWN_TURN
     else:
         bend = FULL_BEND
-        hxx = hxy = hyx = hyy = 0.0  # dF/dd1
+        hxx = hxy = hyx = hyy = 0.0  # derivative of the impulse (fx, fy) on b by d1
         if kind == SPRING:
             began, ended = hinge.began, np.sqrt(dx1 * dx1 + dy1 * dy1)
             mean, stiffness, drag = 0.5 * (began + ended), joint.stiffness, hinge.drag
@@ -77,7 +81,7 @@ def point_rows(
             hinge.rows[0, 3], hinge.rows[0, 4], hinge.rows[0, 5] = mx, my, lever_b * (rbx * my - rby * mx)
             hinge.slopes[0, 0], hinge.slopes[0, 1], hinge.slopes[0, 2] = -nx, -ny, nx * uax + ny * uay
             hinge.slopes[0, 3], hinge.slopes[0, 4], hinge.slopes[0, 5] = nx, ny, nx * ubx + ny * uby
-        for c in range(6 if bends else 0):
+        for c in range(6 if bends else 0):  # (ux, uy): derivative of (fx, fy) by way c of both bodies
             if c == 0 or c == 3:
                 ux, uy = hxx, hyx
             elif c == 1 or c == 4:
@@ -105,7 +109,11 @@ def point_rows(
 def groove_rows(
     side: int, joint: Joint, hinge: JointStep, a: BodyStep, b: BodyStep, stiff: FloatArray,
 ) -> int:  # fmt: skip
-    """`joint_rows` of a groove: row 0 keeps the point on its line, row 1 inside the end at `side`."""
+    """`joint_rows` of a groove: row 0 keeps the point of b on the line of the groove, row 1, which acts where the joint
+    stands on an end, inside that end (`side`); `measure` is the place of the point along the groove.
+
+    y is the vector from the centre of mass of a to the point of b.
+    """
     ca, sa, slope_a, lever_a = a.turn_cos, a.turn_sin, a.slope, a.lever
     cb, sb, slope_b, lever_b = b.turn_cos, b.turn_sin, b.slope, b.lever
     rbx0, rby0 = hinge.arm_b[0], hinge.arm_b[1]

@@ -6,13 +6,17 @@ from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..model.joint_steps import FULL_BEND, NO_BEND, BodyStep, JointStep
 from ..model.joints import GEAR, RATCHET, ROTARY_SPRING, Joint
-from .motion import turn
+from .motion import find_turned
 from .springs import mean_force
 
 
 @nonallocating
 def shared_turn(a: BodyStep, b: BodyStep) -> float:
-    """(turned_b - turned_a) / (chi_b - chi_a): the one factor with which torques are opposite and energy is kept."""
+    """(turned_b - turned_a) / (chi_b - chi_a): the one factor with which torques are opposite and energy is kept.
+
+    Of bodies that turn by 2 atan(chi/2). Where the quotient would be 0/0: the difference of both arctangents is
+    2 atan(y), with y below, and atan(y)/y has a series.
+    """
     chi_a, chi_b = a.way[2], b.way[2]
     if abs(chi_b - chi_a) > 0.1:
         return float((b.turned - a.turned) / (chi_b - chi_a))
@@ -26,9 +30,15 @@ def angle_rows(
     kind: int, side: int, bounded: bool, h: float, joint: Joint, hinge: JointStep, a: BodyStep, b: BodyStep,
     stiff: FloatArray,
 ) -> int:  # fmt: skip
-    """`joint_rows` of gears, rotary limits, ratchets, motors and rotary springs."""
-    turn(a)
-    turn(b)
+    """`joint_rows` of gears, rotary limits, ratchets, motors and rotary springs. `arm_a[0]` and `arm_b[0]` are the
+    angles of both bodies at the start; `measure` is angle_b - angle_a at the end, of a spring its mean torque without
+    damping.
+
+    `share` is 1/ratio of a gear; `factor` the common s of both bodies, if there is one, else each has its own
+    turned/chi.
+    """
+    find_turned(a)
+    find_turned(b)
     for r in range(2):
         hinge.value[r] = 0.0
         for c in range(6):

@@ -1,4 +1,4 @@
-"""Kernels of joints against numpy: banded and condensed systems, rows and their derivatives, islands and orders."""
+"""The equations of joints against numpy: rows and their derivatives, and the three linear systems."""
 
 from __future__ import annotations
 
@@ -7,19 +7,18 @@ import pymunk
 import pytest
 
 from eeca_pymunk.arrays import FloatArray
-from eeca_pymunk.joints.banded import back_banded, factor_banded
-from eeca_pymunk.joints.condensed import factor, substitute
-from eeca_pymunk.joints.motion import move
+from eeca_pymunk.joints.components import read_bodies
 from eeca_pymunk.joints.ordering import order_unknowns
-from eeca_pymunk.joints.rows import joint_rows, start_joint
 from eeca_pymunk.joints.workspace import workspace
-from eeca_pymunk.joints.world import gather
 from eeca_pymunk.model.joint_steps import NO_BEND, OWN_TURN, JointStep
-from eeca_pymunk.model.joints import CONDENSED
+from eeca_pymunk.newton.banded import back_banded, factor_banded
+from eeca_pymunk.newton.condensed import factor, substitute
+from eeca_pymunk.newton.motion import move
+from eeca_pymunk.newton.rows import joint_rows, start_joint
 from scenes import linkages
 from scenes.linkages import body, empty
 
-from .jointed import JointedSpace
+from ..joints.jointed import JointedSpace
 
 
 def band_of(matrix: FloatArray, band: int, width: int) -> FloatArray:
@@ -89,7 +88,7 @@ class Iterate:
         self.h, stepper = h, JointedSpace(space)
         stepper._gather()
         J = stepper.components.arrays
-        gather(stepper.bodies, J, 0, h)
+        read_bodies(stepper.bodies, J, 0, h)
         self.work = workspace.python(J, 0)
         self.joint, self.hinge, self.local, self.stiff = J.JOINT, J.HINGE, J.LOCAL, J.STIFF
         rng = np.random.default_rng(5)
@@ -186,44 +185,6 @@ def test_forces_between_points_keep_angular_momentum() -> None:
         moment = sum(middle[i, 0] * force[3 * i + 1] - middle[i, 1] * force[3 * i] + force[3 * i + 2] for i in (0, 1))
         assert abs(moment) < 1e-14
         np.testing.assert_allclose(force[:2], -force[3:5], atol=1e-15)
-
-
-def test_components_are_those_of_the_graph() -> None:
-    rng = np.random.default_rng(1)
-    space = empty()
-    bodies = [body(space, 1.0, 1.0, (float(i), 0.0)) for i in range(60)]
-    for _ in range(45):
-        i, j = rng.choice(60, 2, replace=False)
-        other = space.static_body if rng.random() < 0.2 else bodies[j]
-        space.add(pymunk.DampedSpring(bodies[i], other, (0, 0), (0, 0), 1.0, 1.0, 0.0))
-    stepper = JointedSpace(space)
-    label = {b: i for i, b in enumerate(bodies)}
-    for _ in range(60):
-        for c in space.constraints:
-            if c.b is not space.static_body:
-                label[c.a] = label[c.b] = min(label[c.a], label[c.b])
-    bound = {c.a for c in space.constraints} | {c.b for c in space.constraints} - {space.static_body}
-    J = stepper.components.arrays
-    assert J.TALLY.components == len({label[b] for b in bound if b is not space.static_body})
-    seen: list[int] = []
-    for C in J.COMPONENT[: J.TALLY.components]:
-        own = [stepper._items[J.JOINED[i].body] for i in range(C.first_body, C.end_body)]
-        assert len({label[b] for b in own if b is not space.static_body}) == 1
-        seen += J.COUPLING["joint"][C.first_joint : C.end_joint].tolist()
-    assert sorted(seen) == list(range(45))
-
-
-def test_bands_are_as_narrow_as_their_graphs() -> None:
-    spans = {}
-    for name, make in (("chain", lambda: linkages.chain(30)), ("cloth", lambda: linkages.cloth(12))):
-        world = JointedSpace(make()).components
-        spans[name] = world.arrays.COMPONENT[0]
-    chain, cloth = spans["chain"], spans["cloth"]
-    assert (chain.unknowns, chain.band, chain.rigid) == (150, 4, 2)
-    assert (chain.dual_size, chain.dual_band) == (60, 3)
-    assert cloth.system == CONDENSED
-    assert cloth.unknowns == 288
-    assert cloth.band <= 2 * 13
 
 
 @pytest.mark.parametrize("order", [2, 4])

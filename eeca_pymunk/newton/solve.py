@@ -1,6 +1,7 @@
-"""The implicit step of a component by Newton's iteration, and the linear step that always succeeds.
+"""The implicit step of a component by Newton's iteration, and the step by one linear system.
 
-`epsilon` on the impulses' block takes redundant rows: it acts on increments alone, so what is solved stays the same.
+`epsilon` on the diagonal of the impulses makes redundant rows solvable: it acts on increments alone, so that what is
+solved stays the same.
 """
 
 from __future__ import annotations
@@ -19,10 +20,10 @@ from ..model.parameters.joints import (
     NEWTON_PROGRESS,
     REDUNDANT_EPSILON,
 )
-from .boxes import bound_impulses, boxed_rows, push, rows_of
+from .boxes import bound_impulses, boxed_rows, rows_of, unit_impulse
 from .dual import STRIDE, refresh
 from .motion import move, settle
-from .newton import apply, back, effort, factorise, first_iterate, linearise
+from .systems import apply, back, effort, factorise, first_iterate, linearise
 
 
 @nonallocating
@@ -42,8 +43,9 @@ def bounded_rows(link: Rows[Coupling], joints: int) -> bool:
 
 
 @nonallocating
-def answer_boxes(W: Workspace, system: int, passes: int, boxes: int) -> None:
-    """Columns of `boxes`, with the factors of `decompose`: what a unit impulse along each boxed row does."""
+def find_columns(W: Workspace, system: int, passes: int, boxes: int) -> None:
+    """Write the columns of `boxes` with the factors of `decompose`: what a unit impulse along each of the `boxes` boxed
+    rows does to all unknowns. RIGHT is kept."""
     component, right, more = W.J.COMPONENT[W.s], W.J.RIGHT, W.J.MORE
     size = component.unknowns + component.impulses
     first = STRIDE * component.dual_size
@@ -52,7 +54,7 @@ def answer_boxes(W: Workspace, system: int, passes: int, boxes: int) -> None:
     at = first
     for k in range(W.joints):
         for r in range(rows_of(W.link, k)):
-            push(W.link, W.J.HINGE, W.J.LOCAL, k, r, size, right)
+            unit_impulse(W.link, W.J.HINGE, W.J.LOCAL, k, r, size, right)
             back(W, system, passes, right)
             for i in range(size):
                 more[at + i] = right[i]
@@ -63,10 +65,11 @@ def answer_boxes(W: Workspace, system: int, passes: int, boxes: int) -> None:
 
 @nonallocating
 def iterate(W: Workspace, what: int, system: int, passes: int, boxes: int, h: float, fresh: bool) -> None:
-    """Solve the system for the right side, and change velocities and impulses by that: `boxes` of these within their
-    bounds, by columns that are found anew if factors are `fresh`."""
+    """Solve the system for the right side with its factors, and change velocities and impulses by that. The impulses of
+    `boxes` rows stay within their bounds, by columns that are computed anew if factors are `fresh`. passes: of
+    `condensed`."""
     if boxes > 0 and fresh:
-        answer_boxes(W, system, passes, boxes)
+        find_columns(W, system, passes, boxes)
     back(W, system, passes, W.J.RIGHT)
     if boxes > 0:
         bound_impulses(W, boxes, h, fresh)
@@ -76,15 +79,16 @@ def iterate(W: Workspace, what: int, system: int, passes: int, boxes: int, h: fl
 
 @nonallocating
 def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bool:
-    """Solve the implicit step h of a component of size `length` from the present `lam`; False if it is given up.
+    """Solve the implicit step h of a component of size `length` from the present `lam` and `lead`, for v1 and `lam`.
 
     At convergence g is within 3e-16 of that size (or at round-off) of its targets, or within PROGRESS.near if that is
-    more, and the balance of momentum holds to round-off. Given up after 25 iterations, or 6 in which the error did not
-    fall. Factors serve for as long as errors fall by NEWTON_PROGRESS with them, the dual system where they do with
-    fresh ones.
+    more, and the balance of momentum holds to round-off. Returns False if it is given up: after 25 iterations, or more
+    than 6 in which the error did not fall, or beyond PROGRESS.limit. Factors serve for as long as errors fall by
+    NEWTON_PROGRESS with them (`lasting`), the dual system where they do with fresh ones; bounded rows change the matrix
+    with each decision, so that there factors serve once.
 
     Args:
-        loops: whether rows may be redundant.  give: compliance over h², see `newton`.
+        loops: whether rows may be redundant.  give: compliance over h², see `systems`.
     """
     hinge, local, component, progress = W.J.HINGE, W.J.LOCAL, W.J.COMPONENT[W.s], W.J.PROGRESS
     first_iterate(W, STEP, h)
@@ -92,6 +96,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
     system = DUAL if component.rigid > 1 else component.system
     lasting = system == DUAL or not bounded_rows(W.link, W.joints)
     # A wide matrix is dear to factor: the parts of a step have one, while errors fall with it.
+    # ready: there are factors to go on with; fresh: those of the last iteration were new; since: first of full Newton.
     ready, fresh, since = lasting and component.factored > 0, False, 0
     component.factored = 0
     boxes = boxed_rows(W.link, W.joints)
@@ -143,7 +148,8 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
 
 @nonallocating
 def solve_linearly(W: Workspace, h: float, length: float) -> bool:
-    """One linear system: rows of the start hold for the mean velocity of the step h; False if it has no solution."""
+    """Solve the step h by one linear system, for v1, `lam` and `force`: the rows of the start hold for the mean
+    velocity, J x = 0, and springs are linearised about the start. False if the system has no solution."""
     hinge, link, local, component = W.J.HINGE, W.link, W.J.LOCAL, W.J.COMPONENT[W.s]
     first_iterate(W, LINEAR_STEP, h)
     component.factored = 0

@@ -1,10 +1,11 @@
 """Systems of wide components in the bodies' unknowns alone, the joints' rows as stiff springs that are then corrected.
 
-[A  -J^T; G  give] [x; mu] = [b; c] becomes (A + R J^T G) dx = b + R J^T (c - G x), dmu = R (c - G x - G dx), and again
-with what is left of c: the balance of the bodies holds after the first pass, each further one takes the rows' error by
-1/(1 + R s), s the least eigenvalue of G A^-1 J^T. Redundant rows do no harm. The band is that of the bodies' graph, and
-needs no pivots. Rows are those of the factors (`frozen_rows`, `frozen_slopes`), also where these serve for a later
-iterate.
+[A  -J^T; G  give] [x; mu] = [b; c], with A the bodies' part, x and mu the changes of velocities and impulses, all
+scaled, becomes (A + R J^T G) dx = b + R J^T (c - G x), dmu = R (c - G x - G dx), and again with what is left of c
+(`missing`). R is the stiffness of the rows, their `weight`. The balance of the bodies holds after the first pass, each
+further one multiplies the rows' error by 1/(1 + R s), s the least eigenvalue of G A^-1 J^T. Redundant rows do no harm.
+The band is that of the bodies' graph, and needs no pivots. Factors also serve for later iterates: therefore the scaled
+rows with which they were made are kept, *frozen* (`frozen_rows`, `frozen_slopes`).
 """
 
 from __future__ import annotations
@@ -68,7 +69,7 @@ def factor(matrix: FloatArray, size: int, band: int) -> bool:
 
 @inlined
 def substitute(matrix: FloatArray, size: int, band: int, right: FloatArray, at: int) -> None:
-    """Solve with the factors, in place of right[at : at + size]."""
+    """Solve with the factors of `factor`, in place of right[at : at + size]."""
     width = 2 * band + 1
     for i in range(size):
         n = min(band, i)
@@ -97,7 +98,8 @@ def substitute(matrix: FloatArray, size: int, band: int, right: FloatArray, at: 
 def freeze_end(
     hinge: Rows[JointStep], k: int, end: int, r: int, slopes: bool, x: float, y: float, z: float
 ) -> None:  # fmt: skip
-    """Freeze row r of joint k at one end, J and G (`slopes`, else J): scaled by its scale and the body's roots."""
+    """Freeze the entries of row r of joint k for its body at one end, J and G (`slopes`, else J for both): scaled by
+    the row's scale and the body's roots x, y, z."""
     scale = hinge[k].scale[r]
     u, v, w, at = scale * x, scale * y, scale * z, 3 * end
     joint = hinge[k]
@@ -125,7 +127,7 @@ def spread(
     hinge: Rows[JointStep], link: Rows[Coupling], local: Rows[BodyStep], k: int, r: int, amount: float,
     right: FloatArray, at: int,
 ) -> None:  # fmt: skip
-    """Add `amount` of the scaled column J^T of row r of joint k to right[at :]."""
+    """Add `amount` of the frozen column J^T of row r of joint k to right[at :]."""
     for end in range(2):
         i = link[k].body[end]
         for c in range(local[i].freedoms):
@@ -133,10 +135,10 @@ def spread(
 
 
 @inlined
-def reach_of(
+def row_times(
     hinge: Rows[JointStep], link: Rows[Coupling], local: Rows[BodyStep], k: int, r: int, right: FloatArray, at: int
 ) -> float:
-    """The scaled row G of row r of joint k times right[at :]."""
+    """The frozen row G of number r of joint k times right[at :]."""
     total = 0.0
     for end in range(2):
         i = link[k].body[end]
@@ -149,8 +151,8 @@ def reach_of(
 def back_condensed(
     W: Workspace, passes: int, size: int, band: int, matrix: FloatArray, right: FloatArray, room: int
 ) -> None:
-    """Solve the condensed system with the factors of its matrix in place of `right`: bodies first, then rows;
-    right[room : room + size] is scratch."""
+    """Solve the condensed system with the factors of its matrix in place of `right`: `size` unknowns of bodies, then
+    those of rows; right[room : room + size] is scratch. A row of weight < 0 has a known change of its impulse."""
     hinge, link, local = W.J.HINGE, W.link, W.J.LOCAL
     for i in range(size):
         right[room + i] = right[i]
@@ -173,7 +175,7 @@ def back_condensed(
         for k in range(W.joints):
             for r in range(link[k].rows):
                 if hinge[k].weight[r] > 0.0:
-                    hinge[k].missing[r] -= reach_of(hinge, link, local, k, r, right, room)
+                    hinge[k].missing[r] -= row_times(hinge, link, local, k, r, right, room)
                     right[link[k].first_row + r] += hinge[k].weight[r] * hinge[k].missing[r]
         for i in range(size):
             right[i] += right[room + i]

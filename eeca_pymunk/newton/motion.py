@@ -13,14 +13,14 @@ from ..model.joints import ComponentBody, Joints
 
 @inlined
 def seat(local: BodyStep, joined: ComponentBody) -> None:
-    """The unknowns of a body by the plan, into its scratch."""
+    """Copy what the plan says of a body to its scratch: its unknowns, how it turns, its list of joints."""
     local.column, local.freedoms = joined.column, joined.freedoms
     local.first, local.cayley = joined.first, joined.cayley
 
 
 @inlined
 def read_body(local: BodyStep, body: Body) -> None:
-    """Pose, velocity and mobility of a body, into its scratch."""
+    """Copy pose, velocity and mobility of a body to its scratch; accelerations are left to the caller."""
     local.pose[0], local.pose[1], local.pose[2] = body.x, body.y, body.angle
     local.v0[0], local.v0[1], local.v0[2] = body.vx, body.vy, body.spin
     local.mobility[0], local.mobility[1], local.mobility[2] = body.inv_mass, body.inv_mass, body.inv_inertia
@@ -28,8 +28,11 @@ def read_body(local: BodyStep, body: Body) -> None:
 
 @nonallocating
 def size_up(J: Joints, s: int, h: float) -> float:
-    """Complete the bodies in the scratch of component s, whose pose, velocity and mobility are there; its size, the
-    length that errors are measured by."""
+    """Complete the scratch of the bodies of component s: roots of mobilities, cosine and sine of the angle.
+
+    Their pose, velocity and mobility are there. Returns the component's size, the length by which errors of its joints
+    are measured: its largest coordinate, way in h or anchor, as round-off is relative to these.
+    """
     C, local, length = J.COMPONENT[s], J.LOCAL, 0.0
     for i in range(C.end_body - C.first_body):
         for c in range(3):
@@ -47,8 +50,8 @@ def size_up(J: Joints, s: int, h: float) -> float:
 
 @inlined
 def move(local: Rows[BodyStep], bodies: int, h: float) -> None:
-    """Fill in `way` and what follows from it, of the present velocities at the end, but for the angle itself
-    (`turn`)."""
+    """Fill in `way`, and `turn_cos`, `turn_sin`, `slope`, `lever`, from the present velocities v1 at the end of h. The
+    angle itself is left to `find_turned`: an arctangent that joints between points do not need."""
     for i in range(bodies):
         for c in range(3):
             local[i].way[c] = 0.5 * h * (local[i].v0[c] + local[i].v1[c])
@@ -68,8 +71,9 @@ def move(local: Rows[BodyStep], bodies: int, h: float) -> None:
 
 
 @nonallocating
-def turn(body: BodyStep) -> None:
-    """Fill in the angle that a body turns by, over chi too, after `move`: for joints of angles."""
+def find_turned(body: BodyStep) -> None:
+    """Fill in the angle by which a body turns (`turned`), that over chi (`per`), and the derivative of `per` by chi
+    (`bend`), after `move`: for joints of angles. Small angles take the series of 2 atan(chi/2)."""
     chi = body.way[2]
     t = 0.5 * chi
     if body.cayley > 0:
@@ -89,7 +93,8 @@ def turn(body: BodyStep) -> None:
 
 @inlined
 def settle(local: Rows[BodyStep], bodies: int, h: float) -> None:
-    """Velocities at the end from the balance of momentum, to round-off, and the way that they make."""
+    """Set the velocities v1 from the balance of momentum, which then holds to round-off: v0 + h a + M^-1 J^T lam, of
+    `impulse`; and what follows from them (`move`)."""
     for i in range(bodies):
         for c in range(3):
             change = h * local[i].acceleration[c] + local[i].mobility[c] * local[i].impulse[c]
@@ -99,7 +104,8 @@ def settle(local: Rows[BodyStep], bodies: int, h: float) -> None:
 
 @inlined
 def advance(local: Rows[BodyStep], bodies: int, h: float) -> None:
-    """Make the end of a part h of the step the start of the next."""
+    """Make the end of a part h of the step the start of the next: poses and velocities move on, `travel` and `mean`
+    are summed, and `lead` keeps the accelerations by joints in this part."""
     per = 1.0 / h
     for i in range(bodies):
         for c in range(3):
@@ -121,7 +127,8 @@ def advance(local: Rows[BodyStep], bodies: int, h: float) -> None:
 
 @nonallocating
 def save(local: Rows[BodyStep], bodies: int) -> None:
-    """Keep the start of the step."""
+    """Let the present poses and velocities be the start of the step, to which `go_back` returns; no way is made yet but
+    the `shift` by the closing of joints."""
     for i in range(bodies):
         for c in range(3):
             local[i].saved_pose[c], local[i].saved_velocity[c] = local[i].pose[c], local[i].v0[c]

@@ -1,8 +1,9 @@
-"""Systems of components in the rows alone, the bodies' unknowns eliminated: S lam = c - G A^-1 b, S = G A^-1 J^T.
+"""Systems of components in the rows alone, the bodies' unknowns eliminated: S mu = c - G A^-1 b, S = G A^-1 J^T, with
+the symbols of `condensed`.
 
-A, the bodies' part of Newton's matrix, is taken to be diagonal: the masses, and of the bending of rows what is between
-a body and itself. For pivots that is all there is; for other joints without springs what is left out is of the order
-(h rate)^2, by which errors shrink at each iteration. `solve` takes the whole system where that is too slow.
+A is taken to be diagonal: the masses, and of the bending of rows the diagonal of STIFF. For pivots that is all there
+is; for other joints without springs what is left out is of the order (h w)^2, w the rate at which they turn, by which
+errors shrink at each iteration. `solve.solve` takes the component's other system where that is too slow.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from ..model.joints import Workspace
 from ..model.parameters.joints import LEAST_INERTIA
 from .condensed import factor, freeze_end, substitute
 
-STRIDE = 6  # of scratch per row
+STRIDE = 6  # numbers of scratch in MORE for each row: its J, and its G over the inertia, of one body
 
 
 @inlined
@@ -21,10 +22,11 @@ def factor_dual(W: Workspace, slopes: bool, add: float) -> bool:
     """LU factors of S + `add` in `matrix`; False if there are none that can be trusted.
 
     Args:
-        slopes: whether the rows G are the slopes of the joints, or J; they and the rows J are frozen, scaled.
+        slopes: whether the rows G are the slopes of the joints, or J; they and the rows J are frozen (`condensed`).
+        add: on the diagonal, for rows that give way or may be redundant.
 
-    `inertia` of the bodies is the diagonal of A as `newton.assemble` left it; its reciprocal on return. MORE and PIVOTS
-    are scratch, STRIDE and 1 times the rows.
+    `inertia` of the bodies is the diagonal of A as `systems.assemble` left it; its reciprocal on return. MORE and
+    PIVOTS are scratch, STRIDE and 1 times the rows.
     """
     hinge, link, local, matrix, more, numbers = W.J.HINGE, W.link, W.J.LOCAL, W.J.MATRIX, W.J.MORE, W.J.PIVOTS
     size, band = W.J.COMPONENT[W.s].dual_size, W.J.COMPONENT[W.s].dual_band
@@ -47,7 +49,7 @@ def factor_dual(W: Workspace, slopes: bool, add: float) -> bool:
         # The rows on this body, then all pairs of them.
         count, one = 0, local[i].first
         while one >= 0:
-            k, end = one >> 1, one & 1
+            k, end = one >> 1, one & 1  # see `Coupling.following`
             for r in range(link[k].rows):
                 if hinge[k].weight[r] == 0.0:
                     continue
@@ -71,7 +73,7 @@ def factor_dual(W: Workspace, slopes: bool, add: float) -> bool:
 
 @inlined
 def refresh(W: Workspace, slopes: bool) -> None:
-    """Let the rows that `back_dual` takes be those of now, though the factors are of an earlier iterate: they say how
+    """Freeze the rows of the present iterate for `back_dual`, though the factors are of an earlier one: they say how
     impulses change velocities, and in long steps these rows turn."""
     local = W.J.LOCAL
     for k in range(W.joints):
@@ -87,7 +89,7 @@ def refresh(W: Workspace, slopes: bool) -> None:
 
 @inlined
 def back_dual(W: Workspace, right: FloatArray) -> None:
-    """Solve with the factors of `factor_dual` in place of `right`, bodies and rows; `more` is scratch for the rows."""
+    """Solve with the factors of `factor_dual` in place of `right`, bodies and rows; MORE is scratch for the rows."""
     hinge, link, local, more = W.J.HINGE, W.link, W.J.LOCAL, W.J.MORE
     for i in range(W.bodies):
         for c in range(local[i].freedoms):

@@ -1,4 +1,10 @@
-"""What one joint puts into the linear system of its island: rows, columns, stiffness, all scaled (see `newton`)."""
+"""What one joint puts into the linear system of its component: rows, columns, stiffness, all scaled (see `systems`).
+
+Entries are scaled by the `root` of a body's direction and by the `scale` of a row, so that the bodies' part of the
+matrix is 1 but for stiffness, and the diagonal of G M^-1 G^T is 1. `matrix` is banded: A[i, j] stands at
+i (3 band + 1) + j - i + band in a whole system (`banded`), at i (2 band + 1) + j - i + band in the others
+(`condensed`).
+"""
 
 from __future__ import annotations
 
@@ -29,13 +35,14 @@ def held(link: Rows[Coupling], k: int, r: int) -> bool:
 @inlined
 def idle(link: Rows[Coupling], k: int) -> bool:
     """Whether joint k is a limit on which it does not stand: steps go without it, and look at it when they are solved
-    (`bounds.first_bound`)."""
+    (`..joints.bounds.first_bound`)."""
     return not held(link, k, 0) and link[k].bounded == 0
 
 
 @inlined
 def interval_of(kind: int, side: int, bound: float) -> tuple[float, float]:
-    """Least and largest impulse of a joint of bounded force, by its largest amount: limits only push inwards."""
+    """Least and largest impulse of a row whose impulse is at most `bound`: (-bound, bound), of a limit at `side` that
+    half of it which pushes inwards."""
     if is_limit(kind):
         return (0.0, bound) if side < 0 else (-bound, 0.0)
     return -bound, bound
@@ -43,7 +50,7 @@ def interval_of(kind: int, side: int, bound: float) -> tuple[float, float]:
 
 @inlined
 def along(joint: JointStep, r: int, v_a: FloatArray, v_b: FloatArray) -> float:
-    """Row r of a joint times the velocities v_a and v_b of its bodies, or their ways."""
+    """Row J of number r of a joint times the velocities v_a and v_b (3,) of its bodies, or their ways."""
     total = 0.0
     for c in range(3):
         total += joint.rows[r, c] * v_a[c] + joint.rows[r, 3 + c] * v_b[c]
@@ -71,7 +78,7 @@ def put_rows(
 def put_condensed(
     link: Rows[Coupling], hinge: Rows[JointStep], local: Rows[BodyStep], k: int, r: int, band: int, matrix: FloatArray
 ) -> None:
-    """weight J^T G of row r of joint k, as it has been frozen, into a condensed system."""
+    """Add weight J^T G of row r of joint k, as `condensed.freeze_row` left it, to a condensed matrix."""
     weight, width = hinge[k].weight[r], 2 * band + 1
     for end in range(2):
         i = link[k].body[end]
@@ -90,7 +97,10 @@ def put_stiffness(
     link: Rows[Coupling], local: Rows[BodyStep], k: int, stiff: FloatArray, bend: int, h: float, system: int,
     band: int, matrix: FloatArray,
 ) -> None:  # fmt: skip
-    """-(h/2) dF/dx of joint k, scaled; in a dual system what is on the diagonal, into `inertia`."""
+    """Add -(h/2) STIFF of joint k, scaled, to the matrix; of a dual system what is on the diagonal, to `inertia`.
+
+    x changes by h/2 of v1. bend: what of `stiff` (6, 6) there is, NO_BEND ... FULL_BEND.
+    """
     low = 0 if bend == FULL_BEND else 2
     width = 3 * band + 1 if system == WHOLE else 2 * band + 1
     for end in range(2):
@@ -116,7 +126,8 @@ def put_free(
     link: Rows[Coupling], hinge: Rows[JointStep], k: int, r: int, system: int, build: bool, band: int,
     matrix: FloatArray, right: FloatArray,
 ) -> None:  # fmt: skip
-    """A row that does not act: its impulse becomes 0."""
+    """Put in row r of joint k, which does not act: its equation lets its impulse become 0, or, with 0 written over this
+    right side (`boxes.leave_box`), stay as it is."""
     row = link[k].first_row + r
     hinge[k].weight[r] = 0.0
     right[row] = -hinge[k].lam[r] / hinge[k].scale[r]
@@ -128,7 +139,7 @@ def put_free(
 def put_idle(
     link: Rows[Coupling], hinge: Rows[JointStep], k: int, system: int, build: bool, band: int, matrix: FloatArray
 ) -> None:  # fmt: skip
-    """The row of a limit on which joint k does not stand: without impulse, as before."""
+    """Put in the row of a limit on which joint k does not stand (`idle`): it has no impulse, and stays without."""
     hinge[k].weight[0] = hinge[k].lam[0] = 0.0
     if build and system == WHOLE:
         matrix[link[k].first_row * (3 * band + 1) + band] = 1.0
@@ -136,7 +147,7 @@ def put_idle(
 
 @inlined
 def scale_rows(link: Rows[Coupling], hinge: Rows[JointStep], local: Rows[BodyStep], k: int) -> None:
-    """Scales of the rows of joint k."""
+    """Set the `scale` of the rows of joint k, 1/sqrt(J M^-1 J^T)."""
     for r in range(link[k].rows):
         total = 0.0
         for end in range(2):
