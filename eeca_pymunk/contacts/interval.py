@@ -61,7 +61,8 @@ def speeds(
     """Root mean square over the n bodies of the speed of their fastest points, the largest such speed, and the largest
     acceleration |a| of a point. Sets REACH (k,), a bound of how far points of bodies move in h.
 
-    Speeds in a free island are relative to its centre of mass.
+    Speeds in a free island are relative to its centre of mass. Where nothing accelerates, those of bodies that impulses
+    do not move count, too: nothing else says how fast bodies at rest will be that something moves into.
     """
     x, y = 0.0, 0.0
     if len(IM) == n:
@@ -72,7 +73,7 @@ def speeds(
             y += V[i, 1] / IM[i]
         x /= mass
         y /= mass
-    square, most, pull = 0.0, 0.0, 0.0
+    square, most, pull, carried = 0.0, 0.0, 0.0, 0.0
     for i in range(n):
         pull = max(pull, math.sqrt(ACC[i, 0] ** 2 + ACC[i, 1] ** 2) + abs(ACC[i, 2]) * EXTENT[i])
     for i in range(len(IM)):
@@ -82,6 +83,10 @@ def speeds(
             REACH[i] += 1.1 * pull * h * h + 1e-9 * EXTENT[i]
             square += speed * speed
             most = max(most, speed)
+        else:
+            carried = max(carried, speed)
+    if pull == 0.0:
+        return max(math.sqrt(square / n), carried), max(most, carried), pull
     return math.sqrt(square / n), most, pull
 
 

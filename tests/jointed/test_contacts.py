@@ -281,3 +281,25 @@ def test_the_elasticity_of_a_shape_does_nothing_on_what_has_none() -> None:
         assert deepest < 0.01
         paths.append([tuple(body.position) for body in bodies])
     assert paths[0] == paths[1]
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+@pytest.mark.parametrize("put_in", [0.004, -0.004])
+@pytest.mark.parametrize("joined", [False, True])
+def test_a_slow_wall_takes_resting_bodies_along_without_gravity(joined: bool, put_in: float, unit: float) -> None:
+    """Nothing but the wall says how fast they will be; it pushes on the line of their centres, and is `put_in` one."""
+    space = pymunk.Space()
+    wall = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    wall.velocity = (-0.01 * unit, 0.0)
+    first, second = pymunk.Body(1.0, 0.1 * unit**2), pymunk.Body(1.0, 0.1 * unit**2)
+    first.position, second.position = ((put_in - 0.2) * unit, 0.0), (-1.2 * unit, 0.0)
+    space.add(wall, pymunk.Segment(wall, (0.1 * unit, -5.0 * unit), (0.1 * unit, 5.0 * unit), 0.1 * unit))
+    space.add(first, pymunk.Circle(first, 0.2 * unit), second, pymunk.Circle(second, 0.2 * unit))
+    if joined:
+        space.add(pymunk.PivotJoint(first, second, (-0.7 * unit, 0.0)))
+    stepper = ep.EECA(space)
+    for _ in range(60):
+        assert stepper.step(1 / 60).converged
+    assert first.position.x + 0.2 * unit == pytest.approx(wall.position.x, abs=1e-6 * unit)
+    assert first.velocity.x == pytest.approx(-0.01 * unit, rel=1e-9)
+    assert second.velocity.x == pytest.approx(-0.01 * unit if joined else 0.0, rel=1e-9)
