@@ -6,6 +6,7 @@ SOLVER is native, eeca, or parts: eeca with clocks around its parts. NAME is one
 
 from __future__ import annotations
 
+import gc
 import hashlib
 import json
 import random
@@ -65,6 +66,7 @@ class Run:
 
     def step(self, space: pymunk.Space, dt: float) -> None:
         """In the place of `Space.step`."""
+        gc.enable()
         begun = time.thread_time()
         if not self.ours:
             self._native(space, dt)
@@ -157,6 +159,7 @@ def main(arguments: list[str]) -> int:
     run, says = Run(solver), "runs"
     if solver == "parts":
         run.hear()
+    gc.disable()  # until the first step: copy_and_pickle has a body that is lost where a collection happens to follow
     try:
         (scene if name in PROGRAMS else example)(name, frames, run)
     except Exception as error:
