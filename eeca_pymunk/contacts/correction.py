@@ -60,7 +60,7 @@ def lifting(
     MU, near = np.zeros(m), 0.1 * OVERLAP_LEFT * size
     if lift(problem, GAPS, MU, D, near, CORRECTION_SWEEPS + CORRECTION_WORK // m) > near:
         keep_walls(problem, GAPS, MU, D)
-    part = admissible(D, EXTENT, n)
+    part = admissible(D, EXTENT, n, size)
     if part < 1.0:
         for i in range(n):
             for c in range(3):
@@ -103,12 +103,13 @@ def least_of(EXTENT: FloatArray, n: int) -> float:
 
 
 @nonallocating
-def admissible(D: FloatArray, EXTENT: FloatArray, n: int) -> float:
-    """The factor <= 1 on displacements D (k, 3) of n bodies with which no point moves too far: see CORRECTION_STEP."""
+def admissible(D: FloatArray, EXTENT: FloatArray, n: int, size: float) -> float:
+    """The factor <= 1 on displacements D (k, 3) of n bodies, the smallest of extent `size`, with which no point moves
+    too far: see CORRECTION_STEP."""
     far = 0.0
     for i in range(n):
         far = max(far, math.sqrt(D[i, 0] * D[i, 0] + D[i, 1] * D[i, 1]) + abs(D[i, 2]) * EXTENT[i])
-    most = CORRECTION_STEP * least_of(EXTENT, n)
+    most = CORRECTION_STEP * size
     return most / far if far > most else 1.0
 
 

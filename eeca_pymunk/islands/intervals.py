@@ -186,17 +186,26 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
 
 
 @kernel
-def lift_here(A: Scene, root: int, t: float) -> None:
-    """Set the penetration correction of an island whose interval has been cut at instant t, at which its bodies are;
-    `accounting.apply_correction` applies it. It may cost as much energy as the island has lost in the step; where a
-    moving body without mobility is deep in the island (`depths.driven`) that does the work beyond."""
+def contacts_at(A: Scene, root: int, t: float) -> tuple[Island, IslandContacts, IntArray, int]:
+    """An island at instant t, at which its bodies are: its bodies, its contacts, (n,) rows of the bodies that impulses
+    move, with their places until `clear_places`, and the number of contacts."""
     MINE = number_bodies(A, root)
     n = len(MINE)
     found = pairs_within(A, root, t, 0.0, True, MINE, n)
     isle = local_island(A, MINE, n, found, t)
-    clear_places(A, MINE, n)
     k, contacts = len(isle.WHO), make_contacts(len(found), len(isle.WHO))
     m = gather(A, isle, contacts, isle.POSE, np.zeros(k), 0.0, k == n)
+    return isle, contacts, MINE, m
+
+
+@kernel
+def lift_here(A: Scene, root: int, t: float) -> None:
+    """Set the penetration correction of an island whose interval has been cut at instant t, at which its bodies are;
+    `accounting.apply_correction` applies it. It may cost as much energy as the island has lost in the step; where a
+    moving body without mobility is deep in the island (`depths.driven`) that does the work beyond."""
+    isle, contacts, MINE, m = contacts_at(A, root, t)
+    n = len(MINE)
+    clear_places(A, MINE, n)
     if m > 0:
         rates(contacts.A, contacts.B, contacts.ROWS, isle.V, m)
         lost = A.RESTING[root].lost

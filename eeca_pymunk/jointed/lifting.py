@@ -9,12 +9,10 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
 from ..contacts.correction import admissible, least_of, turn_by, unturn
-from ..contacts.geometry import gather
-from ..contacts.interval import make_contacts
 from ..contacts.works import against
-from ..islands.candidates import pairs_within
 from ..islands.depths import driven
-from ..islands.local import clear_places, local_island, number_bodies
+from ..islands.intervals import contacts_at
+from ..islands.local import clear_places
 from ..model.contacts import JointedProblem
 from ..model.joints import Joints
 from ..model.parameters.intervals import OVERLAP_LEFT
@@ -63,13 +61,8 @@ def lift_island(
 @kernel
 def lift_here(A: Scene, J: Joints, root: int, t: float) -> None:
     """`..islands.intervals.lift_here` of an island with joints, whose interval is over at instant t."""
-    MINE = number_bodies(A, root)
-    n = len(MINE)
-    found = pairs_within(A, root, t, 0.0, True, MINE, n)
-    isle = local_island(A, MINE, n, found, t)
-    k, contacts = len(isle.WHO), make_contacts(len(found), len(isle.WHO))
-    P, Q, ROWS = contacts.A, contacts.B, contacts.ROWS
-    m = gather(A, isle, contacts, isle.POSE, np.zeros(k), 0.0, k == n)
+    isle, contacts, MINE, m = contacts_at(A, root, t)
+    n, k, P, Q, ROWS = len(MINE), len(isle.WHO), contacts.A, contacts.B, contacts.ROWS
     if not conserves(ROWS, m):
         groups, NOTHING = find_groups(isle.WHO, isle.IM, J.OF), np.zeros((k, 3))
         motion = Motion(isle.V.copy(), isle.V, NOTHING, isle.POSE.copy(), np.zeros((k, 2)), NOTHING)
@@ -99,7 +92,8 @@ def correct(A: Scene, J: Joints, interval: Interval, end: float, budget: float, 
     for i in range(m):
         GAPS[i] = ROWS[i].gap + normal_rate(P, Q, ROWS, WAY, i)
         deepest = min(deepest, GAPS[i])
-    if deepest >= -OVERLAP_LEFT * least_of(isle.EXTENT, n) or not budget > 0.0:
+    size = least_of(isle.EXTENT, n)
+    if deepest >= -OVERLAP_LEFT * size or not budget > 0.0:
         return 0.0
     NOTHING, INDEX = np.zeros_like(V), np.full(len(isle.IM), -1, np.int64)
     for g in range(len(groups.COMPONENT)):
@@ -115,7 +109,7 @@ def correct(A: Scene, J: Joints, interval: Interval, end: float, budget: float, 
     weigh(groups, C, P, Q, KEEP, m)
     D = np.zeros_like(V)
     raise_gaps(JointedProblem(P, Q, KEEP, C, room_for_rows(0, 0), m), GAPS, D, 1e-3 * -deepest)
-    cost, part = -against(isle.ACC, isle.IM, isle.II, n, D), admissible(D, isle.EXTENT, n)
+    cost, part = -against(isle.ACC, isle.IM, isle.II, n, D), admissible(D, isle.EXTENT, n, size)
     if cost * part > 0.5 * budget:
         part = 0.5 * budget / cost
     HELD = np.zeros(len(groups.COMPONENT))
