@@ -28,6 +28,7 @@ from ..model.parameters.intervals import (
     WAITING_SWEEPS,
 )
 from ..model.parameters.joints import COLUMN_CONTACTS
+from ..rows.build import rubs
 from ..rows.conjugate import iterate
 from ..rows.direct import refine
 from ..rows.laws import solve_few
@@ -47,14 +48,14 @@ def relax(
         fine: change of velocity in a sweep at which the solve ends.
         coarse: that with which a moving island is content, or one near rest after a direct solve.
         STATE: of the island, changed.
-        most: largest number of sweeps of a moving island; one that waits gets WAITING_SWEEPS times as many.
+        most: largest number of sweeps of a moving island; one with friction that waits gets WAITING_SWEEPS times as many.
 
     Returns:
         Numbers of sweeps and direct solves, and the change of velocity in the last sweep.
     """
     if rounds == 0 or STATE.wait > 0.0:
         STATE.wait = max(STATE.wait - 1.0, 0.0)
-        turns = most if rounds == 0 else WAITING_SWEEPS * most
+        turns = WAITING_SWEEPS * most if rounds > 0 and rubs(problem.ROWS, problem.m) else most
         sweeps, worst = iterate(problem, L, V, max(fine, coarse), turns)
         return sweeps, 0, worst
     sweeps, worst = 0, np.inf

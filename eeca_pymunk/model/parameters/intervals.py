@@ -84,8 +84,8 @@ SWEEPS_AFTER = work(4, "sweeps", "Sweeps of an island after each direct solution
 WAITING_SWEEPS = work(
     3,
     "times those of a moving island",
-    "Sweeps of a slow island that waits for its next direct solution. With 1, fewer large piles with friction come to "
-    "rest; with 2 to 4, those without cost up to a fifth more.",
+    "Sweeps of a slow island with friction that waits for its next direct solution. With 1, fewer large piles come to "
+    "rest. Without friction they slide on for ever, and more sweeps cost up to a fifth more for nothing.",
 )
 BACKOFF_CONTACTS = work(
     40, "contacts", "Number beyond which direct solutions that did not converge are suspended for some steps."
