@@ -84,9 +84,10 @@ def step_with_limits(
     if foreseen:
         meeting, side, when, events = component.met, component.met_side, component.met_at, 1
     last, before = 0.0, 0.0  # the last instant of the search, and the gap there
+    most_solves = LIMIT_SOLVES if linear else 2 * W.joints + 100  # more of them neither let go nor search
     begin_part(link, W.joints)
     while True:
-        redundant = loops or standing(link, W.joints)
+        redundant, at_once = loops or standing(link, W.joints), True
         if when > 1e-13 * abs(h) or h < 0.0:
             if solved != 0.0 and not linear:
                 begin_as_before(W, solved, when)
@@ -94,17 +95,17 @@ def step_with_limits(
                 return False
             solves, solved = solves + 1, when
             if meeting < 0:  # a step to the end
-                if solves < (LIMIT_SOLVES if linear else 2 * W.joints + 100) and release(W):
+                if solves < most_solves and release(W):
                     continue
                 k, other, instant = first_bound(W, when)
-                if k < 0 or solves > 4 * W.joints + 200 or linear:
+                if k < 0 or linear:
                     book(W, when, ledger)
                     advance(local, W.bodies, when)
                     return True
                 if whole:
                     return False
                 side, events = other, events + 1
-                if events > LIMIT_EVENTS or progress.effort > progress.hurry:  # land
+                if events > LIMIT_EVENTS or solves >= most_solves or progress.effort > progress.hurry:  # land
                     link[k].side = side
                     continue
                 meeting, when, low, high, secants = k, instant, 0.0, left, 0
@@ -145,14 +146,15 @@ def step_with_limits(
                 continue
             rate, after = gap_rates(W, meeting, side)
             near = rate < 0.0 and -when * min(rate, after) <= LIMIT_WAY * hinge[meeting].size
-            if when > MEET_INSTANT * abs(h) and not near:  # else round-off of places would be velocities
+            at_once = near or when <= MEET_INSTANT * abs(h)
+            if not at_once:  # round-off of places would be velocities
                 book(W, when, ledger)
                 advance(local, W.bodies, when)
                 if left == h:
                     component.met, component.met_side, component.met_at, component.met_within = meeting, side, when, h
                 left -= when
         solved, foreseen = 0.0, False
-        stop_at(W, meeting, side, when <= MEET_INSTANT * abs(h), ledger)
+        stop_at(W, meeting, side, at_once, ledger)
         if left <= 1e-13 * h:
             return True
         meeting, when = -1, left
