@@ -5,8 +5,11 @@ from __future__ import annotations
 from ..compiled import kernel, nonallocating
 from ..geometry.flight import pose
 from ..geometry.gap import gap
+from ..geometry.sides import remembers, smaller
+from ..islands.depths import depth_limit
 from ..islands.membership import in_large_island
 from ..model.joints import Joints
+from ..model.parameters.intervals import INTERVAL_DEPTH
 from ..model.parameters.joints import (
     COLUMN_CONTACTS,
     MEET,
@@ -18,6 +21,8 @@ from ..model.parameters.joints import (
     MEET_SECANTS_LOADED,
 )
 from ..model.scene import Scene
+from ..pairs.lists import far_apart
+from ..pairs.rules import barred
 from ..prediction.impact_times import meet as find_meeting
 from .ends import end_here, left_apart, shorten, under_way
 
@@ -45,10 +50,36 @@ def shorten_both(A: Scene, J: Joints, one: int, other: int, t: float) -> int:
     return loaded
 
 
+@nonallocating
+def passes(A: Scene, root: int, t: float) -> bool:
+    """Whether a shape of an island is deeper at instant t, the end of its interval, in another one that it has no
+    contact with than an interval allows, and than at its start: the path of an interval that is shortened is another
+    one, on which nobody has looked for impacts."""
+    i = root if under_way(A, root) else -1
+    while i >= 0:
+        for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
+            for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
+                o = int(A.POOL[w])
+                if A.FLAG[w] != 0 or barred(A.RULE, s, o) or far_apart(A, s, o, t, 0.0):
+                    continue
+                g, small = gap(A, s, o, t)[0], smaller(A, s, o)
+                began = max(A.BODY[i].since, A.BODY[A.LINK[o].owner].since)
+                # Thin shapes that are deeper remember their sides.
+                deep = INTERVAL_DEPTH * small if remembers(A, s, o) else depth_limit(A, s, o)
+                if g < -deep and g < gap(A, s, o, began)[0] - MEET_MANY * small:
+                    return True
+        i = A.MEMBER[i].following
+    return False
+
+
 @kernel
-def either_apart(A: Scene, J: Joints, roots: tuple[int, int]) -> bool:
-    """`left_apart` of either island."""
-    return bool(left_apart(A, J, roots[0]) or left_apart(A, J, roots[1]))
+def too_late(A: Scene, J: Joints, roots: tuple[int, int], t: float) -> bool:
+    """Whether instant t is beyond what both islands come to: either is `left_apart` there, or `passes` another
+    shape."""
+    for root in roots:
+        if left_apart(A, J, root) or passes(A, root, t):
+            return True
+    return False
 
 
 @kernel
@@ -57,9 +88,9 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
     instant, and whether they are apart there.
 
     The end of a coarse interval is not a continuous function of its length: stiff springs swing more than once in it.
-    If the shapes are on the far side of each other, or on the way there, as their paths meet before the end, or joints
-    do not hold, the instant is before that. If no interval is found that ends where they touch, both end at one at
-    which they are apart.
+    If the shapes are on the far side of each other, or on the way there, as their paths meet before the end, or it is
+    `too_late` for joints or others, the instant is before that. If no interval is found that ends where they touch,
+    both end at one at which they are apart.
     """
     i, j = A.LINK[a].owner, A.LINK[b].owner
     roots = (A.STATE[i].island, A.STATE[j].island if A.BODY[j].inv_mass > 0.0 else -1)
@@ -113,7 +144,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
             crossed, before = True, -1.0
             t = through if apart < through < t else 0.5 * (apart + t)
             continue
-        if g > 0.0 and not either_apart(A, J, roots):
+        if g > 0.0 and not too_late(A, J, roots, t):
             apart = t
         # The islands end where they were brought last.
         if not slope < 0.0 or tries + 1 == MEET_SECANTS:
@@ -128,7 +159,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
     if loaded == 0 and rate >= 0.0 and g < -MEET_MANY * small:
         crosses = True  # what joints bring together again meets before secants come to
     for _ in range(MEET_HALVINGS):
-        if not (crosses or either_apart(A, J, roots)):
+        if not (crosses or too_late(A, J, roots, t)):
             break
         crossed, t = True, 0.5 * (apart + t)
         shorten_both(A, J, roots[0], roots[1], t)
@@ -140,7 +171,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
         met = min(max(A.STATE[i].events, A.STATE[j].events), MEET_DOUBLINGS)
         t = min(least + 2.0 ** (met + 1) * A.PAR.instant, latest)
         shorten_both(A, J, roots[0], roots[1], t)
-        while t - least > A.PAR.instant and either_apart(A, J, roots):
+        while t - least > A.PAR.instant and too_late(A, J, roots, t):
             t = 0.5 * (least + t)
             shorten_both(A, J, roots[0], roots[1], t)
     end_here(A, J, roots[0], t)

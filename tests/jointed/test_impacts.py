@@ -159,3 +159,36 @@ def test_an_impact_does_not_stop_a_spin_of_infinite_moment(off: float) -> None:
         assert wheel.angular_velocity == 1.0
         assert off > 0.0 or abs(report.ledger.external) < 1e-13
     assert hits > 0
+
+
+@pytest.mark.parametrize(
+    ("balls", "ratio", "gap", "first", "every"),
+    [(8, 50, 0.0006, 0.0075, 0.001), (4, 100, 0.0019, 0.0035, 0.003), (4, 20, 0.0019, 0.0082, 0.002)],
+)
+def test_what_a_limit_pushes_to_a_wall_is_not_in_it_when_another_impact_ends_its_interval(
+    balls: int, ratio: float, gap: float, first: float, every: float
+) -> None:
+    """A disk bounces to and fro between a wall and a heavy plate behind it, which meets others meanwhile: within a part
+    of the interval the plate turns it to the wall again. It comes no deeper than one interval allows, a 20th of its
+    size."""
+    space = pymunk.Space()
+    wall = pymunk.Segment(space.static_body, (0.0, -3.0), (0.0, 3.0), 0.0)
+    light, heavy = pymunk.Body(1.0, 1.0), pymunk.Body(ratio, ratio)
+    light.position, heavy.position = (-0.1 - gap, 0.0), (-1.0, 0.0)
+    light.velocity = heavy.velocity = 1.0, 0.0
+    far = light.position.x - heavy.position.x
+    joint = pymunk.SlideJoint(heavy, light, (0, 0), (0, 0), far, far + 1.0)
+    joint.collide_bodies = False
+    shapes = [wall, pymunk.Circle(light, 0.1), pymunk.Poly.create_box(heavy, (0.2, 4.0))]
+    space.add(*shapes, light, heavy, joint)
+    for k in range(balls):
+        ball = pymunk.Body(0.01, 1e-5)
+        ball.position = -0.85 + first + every * k, (-1) ** k * (0.5 + 0.18 * (k // 2))
+        shapes.append(pymunk.Circle(ball, 0.05))
+        space.add(ball, shapes[-1])
+    for shape in shapes:
+        shape.elasticity = 1.0
+    stepper = ep.EECA(space)
+    for _ in range(3):
+        assert stepper.step(1 / 60).converged
+        assert light.position.x + 0.1 < 0.0052
