@@ -18,10 +18,7 @@ from ..islands.depths import closes_too_far, depth_limit, too_deep_at_end
 from ..model.contacts import Row
 from ..model.islands import Island
 from ..model.joints import Joints
-from ..model.parameters.intervals import (
-    INTERVAL_RETRY,
-    INTERVAL_WAY,
-)
+from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_WAY, UNSOLVED_DEPTH
 from ..model.scene import Scene
 from ..pairs.lists import far_apart
 from ..pairs.rules import barred
@@ -117,3 +114,14 @@ def led_in(
         if OUT[z] != 0 and closed < 0.0 and ROWS[z].gap + closed < -depth_limit(A, pair // shapes, pair % shapes):
             return z
     return -1
+
+
+@nonallocating
+def sinks(A: Scene, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, WAY: FloatArray, m: int) -> bool:
+    """Whether any of m contacts becomes deeper on the way by more than UNSOLVED_DEPTH of what an interval allows."""
+    shapes = A.SHAPE.shape[0]
+    for z in range(m):
+        closed, pair = normal_rate(P, Q, ROWS, WAY, z), KEY[z] >> 1
+        if closed + max(ROWS[z].gap, 0.0) < -UNSOLVED_DEPTH * depth_limit(A, pair // shapes, pair % shapes):
+            return True
+    return False

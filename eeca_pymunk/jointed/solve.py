@@ -28,7 +28,7 @@ from ..model.islands import Island
 from ..model.joint_steps import ELASTIC
 from ..model.joints import Joints
 from ..model.parameters.events import RESOLUTION
-from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, UNSOLVED_PART
+from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, LARGE_ISLAND, UNSOLVED_PART
 from ..model.parameters.joints import COLUMN_CONTACTS, FORESEEN, INTERVAL_SHARE
 from ..model.scene import Scene
 from ..model.step import AGAIN, CONTACTS, DONE, PUSHES_FULL, SPENT
@@ -42,7 +42,7 @@ from .fitting import fit
 from .gathered import gather_component, keep_joints, restore_joints
 from .groups import Groups, find_groups
 from .ledger import budget_at, is_spent
-from .lengths import excess, led_in
+from .lengths import excess, led_in, sinks
 from .lifting import lift_island
 from .lock import lost, slip_of
 from .motors import drives
@@ -158,9 +158,11 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
         strays = excess(A, isle, P, Q, ROWS, KEY, motion, m, n, t, h)
         A.RESTING[root].strays, far = 0.0 if held else strays, max(far, strays)
     if not held:  # the motion is not that of a solution, and says little of how long it may be
-        # Contacts that are not solved in a long interval may be in a short one, if the step has work for many of these.
+        # Contacts that are not solved in a long interval may be in a short one, if the step has work for many of these;
+        # and what sinks in by them would sink further in the next one.
         payable = RESOLUTION * (J.PROGRESS.effort - before) <= budget_at(A, J, t)
-        hard = m <= COLUMN_CONTACTS and payable and h * UNSOLVED_PART**2 > A.PAR.dt / RESOLUTION
+        hard = (m <= COLUMN_CONTACTS and payable) or (n < LARGE_ISLAND and sinks(A, P, Q, ROWS, KEY, motion.WAY, m))
+        hard = hard and h * UNSOLVED_PART**2 > A.PAR.dt / RESOLUTION
         far = UNSOLVED_PART if hard else min(far, UNSOLVED_PART)
     if far > INTERVAL_RETRY and not last:
         for s in groups.JOINTED:

@@ -58,6 +58,12 @@ SMALL_SWEEPS = work(40, "sweeps", "Sweeps of a small island that moves, and of a
 UNSOLVED_PART = work(
     4.0, "ratio", "Factor by which an interval with joints becomes shorter, at most, where its contacts are not solved."
 )
+UNSOLVED_DEPTH = accuracy(
+    0.1,
+    "of what an interval allows",
+    "Depth by which a contact of a small island with joints may close in an interval that is not solved: beyond it the "
+    "interval becomes shorter whatever work the step has left.",
+)
 INTERVAL_TRIES = work(12, "number", "Attempts at an interval, each shorter, at most.")
 MIDSTEP_PASSES = work(3, "solves", "Further solves of `Midstep` for bodies that impulses move into others, at most.")
 LARGE_ISLAND = heuristic(
