@@ -9,7 +9,7 @@ from ..model.contacts import Bounded, Row
 from ..model.joints import Joints
 from ..model.parameters.joints import PRESS_LOCKS
 from ..model.scene import Scene
-from ..rows.build import normal_rate, tangent_rate
+from ..rows.build import normal_rate, slip_rate, tangent_rate
 from ..rows.columns import push_columns
 from .advance import Interval, advance_aligned
 from .bounded import settle_bounded
@@ -17,8 +17,9 @@ from .bounded import settle_bounded
 
 @nonallocating
 def slip_of(P: IntArray, Q: IntArray, ROWS: Rows[Row], WAY: FloatArray, i: int, h: float) -> float:
-    """How far contact i slips in h while bodies go WAY: its surfaces move at a rate, bodies by ways."""
-    return tangent_rate(P, Q, ROWS, WAY, i) + (h - 1.0) * ROWS[i].surface
+    """How far contact i slips in h while bodies go WAY: its surfaces move at a rate, bodies by ways, of which nothing
+    may be rounded away where h is short."""
+    return slip_rate(P, Q, ROWS, WAY, i) + h * ROWS[i].surface
 
 
 @nonallocating

@@ -75,15 +75,21 @@ def normal_rate(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, i: int
 
 
 @nonallocating
-def tangent_rate(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, i: int) -> float:
-    """u_t of contact i at velocities V (k, 3), surface velocities included."""
+def slip_rate(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, i: int) -> float:
+    """The part of `tangent_rate` that is of the bodies."""
     a, b = A[i], B[i]
     rate: float = (
         ROWS[i].nx * (V[b, 1] - V[a, 1])
         - ROWS[i].ny * (V[b, 0] - V[a, 0])
         + (ROWS[i].arm_tb * V[b, 2] - ROWS[i].arm_ta * V[a, 2])
-        + ROWS[i].surface
     )
+    return rate
+
+
+@nonallocating
+def tangent_rate(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, i: int) -> float:
+    """u_t of contact i at velocities V (k, 3), surface velocities included."""
+    rate: float = slip_rate(A, B, ROWS, V, i) + ROWS[i].surface
     return rate
 
 

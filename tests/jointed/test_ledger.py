@@ -6,6 +6,7 @@ import math
 from random import Random
 from types import SimpleNamespace
 
+import numpy as np
 import pymunk
 import pytest
 
@@ -13,7 +14,8 @@ import eeca_pymunk as ep
 from eeca_pymunk.compiled.records import kind_of, zeros
 from eeca_pymunk.jointed.ends import take_back
 from eeca_pymunk.jointed.ledger import account_component
-from eeca_pymunk.model.contacts import Pair, Pushed
+from eeca_pymunk.jointed.lock import slip_of
+from eeca_pymunk.model.contacts import Pair, Pushed, Row
 from eeca_pymunk.model.joint_steps import JointLedger
 from eeca_pymunk.model.step import Step
 
@@ -179,3 +181,13 @@ def test_joints_give_no_energy_in_the_shortest_steps(dt: float) -> None:
         book = stepper.step(dt).ledger
         assert book is not None
         assert book.external <= 1e-10 * (rail.kinetic_energy + bead.kinetic_energy)
+
+
+def test_slip_on_a_belt_is_exact_however_short_the_interval() -> None:
+    """A body that moves 2 mm/s beside a belt that moves 1 m/s: the way of a nanosecond beside what is 1."""
+    row = zeros(1, kind_of(Row))
+    row[0].nx, row[0].ny, row[0].surface = 0.0, 1.0, 1.0
+    for h in 10.0 ** np.arange(-12.0, 0.0):
+        way = np.array([[h * 2e-3, 0.0, 0.0], [0.0, 0.0, 0.0]])
+        slip = slip_of(np.array([0]), np.array([1]), row, way, 0, h)
+        assert slip == pytest.approx(h * (1.0 + 2e-3), rel=1e-14, abs=0.0)
