@@ -39,18 +39,24 @@ from .works import moved
 
 @nonallocating
 def recall(
-    KEY: IntArray, m: int, KEYS: IntArray, FORCES: Rows[Force], stamp: float, h: float, L: FloatArray,
+    KEY: IntArray, m: int, KEYS: IntArray, FORCES: Rows[Force], stamp: float, h: float, forces: bool, L: FloatArray,
     EXPECTED: FloatArray,
 ) -> None:  # fmt: skip
     """Set the initial impulses L (m, 2), and those of loads EXPECTED (m,), from remembered forces of this step, whose
-    number is `stamp`, or the last."""
+    number is `stamp`, or the last.
+
+    forces: they act over the whole of h, as loads do. Else L is no more than the impulses from which forces are known:
+    what stops bodies in a short interval is a force that grows as the interval shrinks. Sweeps over many contacts,
+    which do not end, are better off with loads; Newton's method is far off with such a force.
+    """
     for i in range(m):
         L[i, 0] = L[i, 1] = 0.0
         EXPECTED[i] = 0.0
         row = find(KEYS, KEY[i])
         if row >= 0 and FORCES[row].stamp >= stamp - 1.0:
-            L[i, 0] = h * FORCES[row].normal
-            L[i, 1] = h * FORCES[row].tangential
+            span = h if forces else min(h, FORCES[row].length)
+            L[i, 0] = span * FORCES[row].normal
+            L[i, 1] = span * FORCES[row].tangential
             EXPECTED[i] = h * FORCES[row].load
 
 
@@ -140,7 +146,7 @@ def step_island(
     if m > 0:
         problem = Problem(A, B, ROWS, IM, II, isle.POSE, n, m)
         L, EXPECTED = contacts.L[:m], np.empty(m)
-        recall(contacts.KEY, m, S.KEYS, S.FORCES, S.PAR.stamp, h, L, EXPECTED)
+        recall(contacts.KEY, m, S.KEYS, S.FORCES, S.PAR.stamp, h, True, L, EXPECTED)
         rates(A, B, ROWS, V, m)
         target(A, B, ROWS, m, ACC, EXPECTED, pull, h)
         if rest_speed != 0.0:

@@ -35,16 +35,17 @@ def find(KEYS: IntArray, key: int) -> int:
 @nonallocating
 def remember(
     KEYS: IntArray, FORCES: Rows[Force], COUNT: Count, key: int, normal: float, tangential: float, load: float,
-    stamp: float,
+    length: float, stamp: float,
 ) -> None:  # fmt: skip
-    """Write a contact's forces (mass length/time²). The table must have a free row."""
+    """Write a contact's forces (mass length/time²) over an interval of this length. The table must have a free row."""
     row = find(KEYS, key)
     if row < 0:
         row = -1 - row
         KEYS[row] = key
         COUNT.remembered += 1
     force = FORCES[row]
-    force.normal, force.tangential, force.load, force.stamp = normal, tangential, load, stamp
+    force.normal, force.tangential, force.load = normal, tangential, load
+    force.length, force.stamp = length, stamp
 
 
 @nonallocating
@@ -58,7 +59,7 @@ def remember_loads(
         if L[i, 0] > 0.0:
             stopped = max(max(ROWS[i].target, 0.0) - ROWS[i].un, 0.0) * ROWS[i].k_n
             load = max(L[i, 0] - stopped, 0.0)
-            remember(KEYS, FORCES, COUNT, KEY[i], L[i, 0] / h, L[i, 1] / h, load / h, stamp)
+            remember(KEYS, FORCES, COUNT, KEY[i], L[i, 0] / h, L[i, 1] / h, load / h, h, stamp)
 
 
 @nonallocating
@@ -72,5 +73,6 @@ def forget(
         if KEYS[row] >= 0 and FORCES[row].stamp >= stamp:
             force = FORCES[row]
             remember(
-                KEYS_2, FORCES_2, COUNT, KEYS[row], force.normal, force.tangential, force.load, force.stamp
+                KEYS_2, FORCES_2, COUNT, KEYS[row], force.normal, force.tangential, force.load, force.length,
+                force.stamp,
             )  # fmt: skip

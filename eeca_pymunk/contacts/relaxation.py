@@ -48,7 +48,7 @@ def relax(
         fine: change of velocity in a sweep at which the solve ends.
         coarse: that with which a moving island is content, or one near rest after a direct solve.
         STATE: of the island, changed.
-        most: largest number of sweeps of a moving island; one with friction that waits gets WAITING_SWEEPS times as many.
+        most: largest number of sweeps of a moving island; one with friction that waits gets WAITING_SWEEPS times that.
 
     Returns:
         Numbers of sweeps and direct solves, and the change of velocity in the last sweep.

@@ -126,7 +126,7 @@ def remember_forces(A: Scene, c: int) -> None:
         R = A.PUSHED[c]
         force = R.normal / R.length
         remember(
-            A.KEYS, A.FORCES, A.COUNT, key, force, R.tangential / R.length, force, A.PAR.stamp
+            A.KEYS, A.FORCES, A.COUNT, key, force, R.tangential / R.length, force, R.length, A.PAR.stamp
         )  # fmt: skip
 
 

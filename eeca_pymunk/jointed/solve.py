@@ -140,7 +140,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     held, before = True, J.PROGRESS.effort
     J.PROGRESS.share = before + INTERVAL_SHARE * max(budget_at(A, J, t) - before, 0.0)
     if m > 0:
-        recall(KEY, m, A.KEYS, A.FORCES, A.PAR.stamp, h, L, EXPECTED)
+        recall(KEY, m, A.KEYS, A.FORCES, A.PAR.stamp, h, m > COLUMN_CONTACTS, L, EXPECTED)
         owed = max(-A.RESTING[root].lost, 0.0)
         held = press(A, J, interval, L, EXPECTED, slow, fast, pull, owed)
         if held or m > COLUMN_CONTACTS:

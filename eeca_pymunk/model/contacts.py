@@ -180,6 +180,7 @@ class Force(Record):
     normal: float  # force, mass length/time²
     tangential: float
     load: float  # part of the normal force that bears loads, without the part that stopped an approach
+    length: float  # of the interval in which they acted: time
     stamp: float  # number of the step that wrote the row
 
 

@@ -211,7 +211,7 @@ def test_memory_finds_what_was_remembered() -> None:
     for _ in range(300):
         key = int(rng.integers(0, 60)) * 1024
         known[key] = (float(rng.random()), float(rng.integers(1, 4)))
-        remember(keys, forces, count, key, known[key][0], 0.0, 0.0, known[key][1])
+        remember(keys, forces, count, key, known[key][0], 0.0, 0.0, 1.0, known[key][1])
     assert count.remembered == len(known)
     assert all(forces[find(keys, key)].normal == value for key, (value, _) in known.items())
     assert find(keys, 7) < 0
