@@ -10,12 +10,12 @@ import pytest
 
 import eeca_pymunk as ep
 from comparisons import meeting_scenes, program_joints
-from eeca_pymunk.compiled.records import zeros
 from eeca_pymunk.contacts.interval import make_contacts
 from eeca_pymunk.jointed.advance import Interval, Motion
 from eeca_pymunk.jointed.groups import Groups
 from eeca_pymunk.jointed.secant import fit_columns
 from eeca_pymunk.model.contacts import Columns
+from eeca_pymunk.model.islands import Island
 from eeca_pymunk.rows.bounded import room_for_rows
 from eeca_pymunk.rows.columns import push_columns
 
@@ -71,8 +71,8 @@ def test_columns_answer_as_the_last_motion_did() -> None:
     mean, before = rng.normal(size=(3, 3)), rng.normal(size=(3, 3))
     motion = Motion(bodies, mean, bodies, bodies, bodies[:, :2], bodies)
     P, Q = np.array([0, 1]), np.array([2, 2])
-    isle = zeros(1, np.dtype(float))
-    interval = Interval(isle, groups, P, Q, contacts.ROWS, motion, columns, 2, 3, 0.0, 1.0)  # type: ignore[arg-type]
+    isle = Island(*[bodies] * 6, np.ones(3), np.ones(3), np.empty((0, 4), np.int64))
+    interval = Interval(isle, groups, P, Q, contacts.ROWS, motion, columns, 2, 3, 0.0, 1.0)
     old, new = rng.normal(size=(2, 2)), rng.normal(size=(2, 2))
     across = np.array([[new[0, 1] - old[0, 1], old[0, 0] - new[0, 0]], [0.0, 0.0]])
 
