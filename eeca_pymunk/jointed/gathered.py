@@ -6,6 +6,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import nonallocating
 from ..geometry.flight import pose, rate
 from ..joints.ledger import clear_interval
+from ..joints.parts import meets_limit
 from ..model.joints import RATCHET, Joints
 from ..model.scene import Scene
 from ..newton.motion import read_body, seat, size_up
@@ -14,7 +15,7 @@ from ..newton.motion import read_body, seat, size_up
 @nonallocating
 def keep_joints(J: Joints, s: int) -> None:
     """Remember the joints of component s as they are, at a new start."""
-    J.COMPONENT[s].met = -1
+    J.COMPONENT[s].parts = 0
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         j = J.COUPLING[k].joint
         J.KEPT[j] = J.JOINT[j]
@@ -96,7 +97,7 @@ def gather_alone(A: Scene, J: Joints, s: int, t: float, h: float) -> float:
 def lead_component(A: Scene, J: Joints, s: int, V: FloatArray, ACC: FloatArray, GUESS: FloatArray, h: float) -> None:
     """Let the next step of component s begin with velocities GUESS (k, 3) at its end, from V under ACC at its start;
     with what joints did before if it has met a limit, which changed them."""
-    if J.COMPONENT[s].met >= 0:
+    if meets_limit(J.COMPONENT[s]):
         return
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         for end in range(2):

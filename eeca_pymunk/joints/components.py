@@ -37,7 +37,7 @@ def step_all(JOINTS: Table, bodies: Rows[Body], h: float) -> int:
     for s in range(J.TALLY.components):
         length = read_bodies(bodies, J, s, h)
         W = workspace(J, s)
-        W.J.COMPONENT[s].met = -1
+        W.J.COMPONENT[s].parts = 0
         worst = max(worst, take_step(W, h, J.TALLY.order, length, J.STEPPED[s]))
         for i in range(W.bodies):
             b, L = bodies[J.JOINED[W.J.COMPONENT[W.s].first_body + i].body], J.LOCAL[i]

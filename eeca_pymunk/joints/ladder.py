@@ -77,7 +77,7 @@ def take_parts(W: Workspace, h: float, length: float, rung: int, parts: int, giv
     before = h
     for p in range(parts):
         if parts > 1:
-            W.J.COMPONENT[W.s].met = -1
+            W.J.COMPONENT[W.s].parts = 0
         piece = h / parts if rung >= 0 else (1.0 - 4.0 * SUZUKI) * h if p == 2 else SUZUKI * h
         warm = 0.0 if cold else piece / before
         for k in range(W.joints):

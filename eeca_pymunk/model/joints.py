@@ -53,7 +53,7 @@ class Joint(Record):
     led: Annotated[FloatArray, 2, 3]  # accelerations that joints gave to bodies a and b last
     known_parts: int  # parts of steps of order 4 that are known (`..joints.foresight`); the length of their steps
     known_step: float
-    past_led: Annotated[FloatArray, 6, 6]  # accelerations of bodies a and b along their three ways in these parts
+    past_led: Annotated[FloatArray, 6, 6]  # accelerations of bodies a and b along their three ways in parts of a step
     past_push: Annotated[FloatArray, 2, 6]  # impulses along two rows, over the lengths of the parts
     owed: float  # of the first joint of a component: energy that steps whose joints did not hold have taken
     compliance: float  # likewise: with which compliance (time²) joints gave way in the last step, 0 if they held
@@ -92,10 +92,11 @@ class Component(Record):
     taut: int  # 1 if its loops held by their pull in the last step (`..joints.taut`)
     boxes: int  # most rows of bounded impulses that may act, if few enough for `..newton.boxes`; else 0
     factored: int  # 1 if the matrix holds factors of an earlier part of the present step
-    met: int  # joint (`Coupling`) whose limit a step from the present start has met first, -1 for none or not known
-    met_side: int  # the side of that limit
-    met_at: float  # instant at which it did, from the start of that step, and the length of the step
-    met_within: float
+    parts: int  # parts of the last solution from the present start that are known (`..joints.parts`)
+    parts_within: float  # length of its step
+    part_limit: Annotated[IntArray, 6]  # joint (`Coupling`) whose limit each part met, -1 for the last; its side
+    part_side: Annotated[IntArray, 6]
+    part_length: Annotated[FloatArray, 6]
 
 
 # Linear systems: of bodies and rows; of bodies alone (`..newton.condensed`); of rows alone (`..newton.dual`).
