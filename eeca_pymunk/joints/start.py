@@ -27,21 +27,33 @@ from .ledger import springs_hold
 
 
 @nonallocating
+def mark_bounded(W: Workspace) -> None:
+    """Mark the joints whose impulses are bounded. Their rows are boxed if they are few (`..newton.boxes`)."""
+    joint, link, rows = W.J.JOINT, W.link, 0
+    for k in range(W.joints):
+        kind = link[k].kind
+        finite = joint[link[k].joint].bounded != 0 and kind not in (SPRING, ROTARY_SPRING)
+        link[k].bounded = BOUNDED if kind == MOTOR or finite else 0
+        rows += link[k].rows if link[k].bounded != 0 else 0
+    for k in range(W.joints if rows <= W.J.COMPONENT[W.s].boxes else 0):
+        if link[k].bounded != 0:
+            link[k].bounded = BOXED
+
+
+@nonallocating
 def read_joints(W: Workspace, h: float, length: float) -> tuple[bool, bool]:
     """Fill in what the joints bring from the last step to one of h: impulses, over the length of the step, `lead`, the
-    limits on which they stand. Rows of bounded impulses are boxed if they are few (`..newton.boxes`).
+    limits on which they stand.
 
     Returns whether a joint was `touched`, and whether there is a bounded joint, which `bounded_targets` gives a speed;
     a motor has its own.
     """
     joint, hinge, link = W.J.JOINT, W.J.HINGE, W.link
-    touched, bounded, rows = False, False, 0
+    touched, bounded = False, False
+    mark_bounded(W)
     for k in range(W.joints):
         j, kind = link[k].joint, link[k].kind
         link[k].side = joint[j].side
-        is_bounded = joint[j].bounded != 0 and kind not in (SPRING, ROTARY_SPRING)
-        link[k].bounded = BOUNDED if kind == MOTOR or is_bounded else 0
-        rows += link[k].rows if link[k].bounded != 0 else 0
         warm = 0.0 if joint[j].last_step == 0.0 else h / joint[j].last_step
         hinge[k].lam[0], hinge[k].lam[1] = joint[j].impulse[0] * warm, joint[j].impulse[1] * warm
         hinge[k].total[0] = hinge[k].total[1] = 0.0
@@ -54,11 +66,8 @@ def read_joints(W: Workspace, h: float, length: float) -> tuple[bool, bool]:
                 W.J.LOCAL[link[k].body[end]].lead[c] = joint[j].led[end, c]
         if kind == MOTOR:
             hinge[k].target[0] = -joint[j].rate
-        bounded = bounded or (is_bounded and kind != MOTOR)
+        bounded = bounded or (link[k].bounded != 0 and kind != MOTOR)
         touched = touched or joint[j].touched != 0
-    for k in range(W.joints if rows <= W.J.COMPONENT[W.s].boxes else 0):
-        if link[k].bounded != 0:
-            link[k].bounded = BOXED
     return touched, bounded
 
 
