@@ -13,10 +13,8 @@ from ..contacts.works import carried, kinetic_energy
 from ..islands.building import comes_to_rest
 from ..islands.local import clear_places, set_places
 from ..islands.membership import jointed, members
-from ..jointed.columns import fill_free, fill_group, make_columns, weigh
-from ..jointed.component import answer, fit_speeds, ready
+from ..jointed.columns import fill_free, make_columns, weigh
 from ..jointed.ends import end_here, shorten, under_way
-from ..jointed.gathered import find_places, gather_component
 from ..jointed.groups import find_groups
 from ..jointed.meet import meet
 from ..model.bodies import AT_REST
@@ -24,7 +22,7 @@ from ..model.contacts import SOLVED, JointedProblem, Row, Solved
 from ..model.joints import Joints
 from ..model.parameters.events import EVENT_LOOKS
 from ..model.parameters.impulses import WEDGED
-from ..model.parameters.joints import CLOSES, SOLUTION_WORK
+from ..model.parameters.joints import CLOSES, IMPACT_LIMITS, SOLUTION_WORK
 from ..model.scene import Scene
 from ..rows.blocks import TRUNCATED, close_block, solve_block
 from ..rows.bounded import room_for_rows
@@ -32,20 +30,11 @@ from ..rows.build import aim, conserves, normal_rate, rubs
 from ..rows.coulomb import slip_freely
 from ..rows.energy import offset_gain, scale_to_lose
 from ..rows.gentle import excessive, sweep_gently
+from ..rows.inplace import copy
 from ..rows.sweeps import velocities
+from .joint_answers import answer_impact, begin_impact, hold_limits
 from .resolution import finish, rejoin
 from .simultaneous import Block, energy_owed, gather, make_block
-
-
-@nonallocating
-def carried_along(J: Joints, s: int) -> bool:
-    """Whether what impulses do not change moves a part of component s: a moving partner, or a spin of infinite moment;
-    its bodies are in the scratch of `..joints`."""
-    for i in range(J.COMPONENT[s].end_body - J.COMPONENT[s].first_body):
-        for c in range(3):
-            if J.LOCAL[i].mobility[c] == 0.0 and J.LOCAL[i].v0[c] != 0.0:
-                return True
-    return False
 
 
 @nonallocating
@@ -164,43 +153,19 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     J.PROGRESS.effort += SOLUTION_WORK * C.AT[rows]
     fill_free(groups, C, Q, ROWS, block.IM, block.II, rows)
     BEFORE = V.copy()
-    INDEX, driven = np.full(len(block.IM), -1, np.int64), False
-    for g in range(len(groups.COMPONENT)):
-        s = groups.COMPONENT[g]
-        if s < 0:
-            continue
-        length = gather_component(A, J, s, block.POSE, V, np.zeros_like(V), block.IM, block.II, t, 0.0)
-        size = find_places(A, J, s, INDEX)
-        PUSH = np.zeros((size, 3))
-        # Only the part of the velocities that joints allow takes part in the impact.
-        along = carried_along(J, s)
-        driven = driven or along
-        if along:
-            fit_speeds(J, s, length)
-            for q in range(n):
-                if groups.GROUP[q] == g:
-                    for c in range(3):
-                        V[q, c] = J.LOCAL[INDEX[q]].v0[c]
-        if not ready(J, s, 2.0, False):
-            continue
-        fill_group(J, groups, C, g, INDEX, False, P, Q, ROWS, rows, PUSH, 2)
-        if along:
-            continue
-        PUSH[:] = 0.0
-        for q in range(n):
-            if groups.GROUP[q] == g:
-                for c in range(3):
-                    mobility = block.II[q] if c == 2 else block.IM[q]
-                    PUSH[INDEX[q], c] = V[q, c] / mobility if mobility > 0.0 else 0.0
-        answer(J, s, False, PUSH)
-        for q in range(n):
-            if groups.GROUP[q] == g:
-                for c in range(3):
-                    V[q, c] = PUSH[INDEX[q], c]
-    FITTED = V.copy()
-    weigh(groups, C, P, Q, ROWS, rows)
     problem = JointedProblem(P, Q, ROWS, C, room_for_rows(0, 0), rows)
-    status = solve_block(problem, L, V, owed, False, OUT)
+    status, driven, FITTED = TRUNCATED, False, BEFORE
+    begin_impact(J, groups)
+    for solution in range(IMPACT_LIMITS):
+        # Only the part of the velocities that joints allow takes part in the impact.
+        driven = answer_impact(A, J, block, groups, C, n, t)
+        FITTED = V.copy()
+        weigh(groups, C, P, Q, ROWS, rows)
+        status = solve_block(problem, L, V, owed, False, OUT)
+        if solution + 1 == IMPACT_LIMITS or not hold_limits(A, J, block, groups, t):
+            break
+        copy(V, BEFORE)
+        L[:] = 0.0
     if OUT[0].residual > WEDGED * aim(ROWS, rows) and rubs(ROWS, rows):
         sweeps, direct = OUT[0].sweeps, OUT[0].direct
         slip_freely(ROWS, rows)

@@ -12,7 +12,7 @@ from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.joint_steps import JointStep
 from ..model.joints import GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, Coupling, Joint, Workspace
-from ..model.parameters.joints import JOINT_TOUCH, LIMIT_WAY
+from ..model.parameters.joints import JOINT_TOUCH, LIMIT_HOP, LIMIT_WAY
 from ..newton.entries import along, idle
 from ..newton.rows import joint_rows
 
@@ -83,6 +83,20 @@ def standing(link: Rows[Coupling], joints: int) -> bool:
 
 
 @nonallocating
+def closes_on_limit(W: Workspace, h: float) -> bool:
+    """Whether a joint that stands on a limit moves into its bound, by more than round-off of its place in a step h.
+    Rows must be those of the present poses."""
+    link = W.link
+    for k in range(W.joints):
+        if link[k].side != 0 and link[k].bounded == 0:
+            a, b = W.J.LOCAL[link[k].body[0]], W.J.LOCAL[link[k].body[1]]
+            rate = gap_rate(W.J.HINGE[k], link[k].rows, link[k].side, a.v0, b.v0)
+            if -rate * h > LIMIT_WAY * W.J.HINGE[k].size:
+                return True
+    return False
+
+
+@nonallocating
 def look(W: Workspace, k: int, h: float) -> None:
     """Bring the rows of joint k to the present iterate if it is a limit on which it does not stand (`idle`)."""
     if idle(W.link, k):
@@ -128,6 +142,18 @@ def held_till_then(W: Workspace, k: int, side: int, instant: float) -> bool:
     link, hinge = W.link, W.J.HINGE
     rate, _ = gap_rates(W, k, side)
     return bool(link[k].let_go == side and rate * instant <= LIMIT_WAY * hinge[k].size)
+
+
+@nonallocating
+def hops(W: Workspace, k: int, side: int, instant: float, h: float) -> bool:
+    """Whether limit k is on its bound at the start of the solved part h, leaves it by no more than LIMIT_HOP, and is
+    back at about this instant: limits that stop one another do so ever sooner, and end on their bounds both. Not if it
+    has been let go in this part: its force changes sign."""
+    link, hinge = W.link, W.J.HINGE
+    before, after = gap_rates(W, k, side)
+    start = gap(W.J.JOINT, hinge, link, k, side) - 0.5 * h * (before + after)
+    way = max(start, 0.0) + 0.25 * before * instant
+    return bool(link[k].let_go != side and before >= 0.0 and way <= LIMIT_HOP * hinge[k].size)
 
 
 @inlined

@@ -30,8 +30,9 @@ def correct(W: Workspace, what: int) -> None:
 
     POSES: until g is on its targets, at most CLOSINGS times. SPEEDS: those before stay at `v_kept`. Free limits whose
     gap is closed and closing are held from the first pass on. Two passes with the same factors take back what epsilon
-    left, three if rows are redundant; then, as long as a limit pulls, all begins again without it. There are at most
-    joints + 1 tries. What is solved for is `pose` or `v0`; the impulses are in `pushed`.
+    left, three if rows are redundant; then, as long as a limit pulls, all begins again without it, and as long as the
+    solution moves into others, with them. There are at most joints + 1 tries. What is solved for is `pose` or `v0`; the
+    impulses are in `pushed`.
     """
     component, passes, tries = W.J.COMPONENT[W.s], 0, 0
     enough = 2 if component.loops == 0 else 3
@@ -47,7 +48,7 @@ def correct(W: Workspace, what: int) -> None:
         error = linearise(W, what, 2.0, 1.0, 0.0, turn == 0, system, fresh)
         if what == POSES and (error <= 1e-14 or turn == CLOSINGS):
             return
-        if what == SPEEDS and turn == 0 and hold_closing(W):
+        if what == SPEEDS and turn == 0 and hold_closing(W, True):
             error = linearise(W, what, 2.0, 1.0, 0.0, False, system, True)
         if fresh:
             system = factorise(W, what, 2.0, 1.0, 0.0, system, epsilon)
@@ -59,7 +60,7 @@ def correct(W: Workspace, what: int) -> None:
         if what == SPEEDS:
             passes += 1
             if passes == enough or not error > 0.0:
-                if tries > W.joints or not let_go(W):
+                if tries > W.joints or not (let_go(W) or hold_closing(W, False)):
                     return
                 passes, tries = 0, tries + 1
                 restore_speeds(W)
@@ -121,12 +122,12 @@ def restore_speeds(W: Workspace) -> None:
 @nonallocating
 def let_go(W: Workspace) -> bool:
     """Let go of the limit whose impulse in the correction pulls most; False if none does. (`bounds.release` does that
-    by the impulses of a step.)"""
+    by the impulses of a step.) One that is held after it has been let go stays (`limits.stop_at`)."""
     hinge, link = W.J.HINGE, W.link
     pulling, pull = -1, 0.0
     for k in range(W.joints):
         last = link[k].rows - 1
-        if last < 0 or link[k].side == 0 or link[k].bounded != 0:
+        if last < 0 or link[k].side == 0 or link[k].bounded != 0 or link[k].let_go == link[k].side:
             continue
         if hinge[k].pushed[last] * link[k].side > max(pull, noise(hinge, link, k, last, W.J.LOCAL)):
             pulling, pull = k, hinge[k].pushed[last] * link[k].side
@@ -139,20 +140,27 @@ def let_go(W: Workspace) -> bool:
 def noise(hinge: Rows[JointStep], link: Rows[Coupling], k: int, r: int, local: Rows[BodyStep]) -> float:
     """The impulse that changes the rate of row r of joint k by what is round-off of the velocities before: a limit that
     pulls no more than that is in nobody's way, and to let it go would only have it met again."""
+    return float(JOINT_SPEED_ROUND_OFF * terms(hinge, link, k, r, local) * hinge[k].scale[r] ** 2)
+
+
+@nonallocating
+def terms(hinge: Rows[JointStep], link: Rows[Coupling], k: int, r: int, local: Rows[BodyStep]) -> float:
+    """The sum of the amounts of the terms of the rate of row r of joint k, of the velocities before a correction."""
     total = 0.0
     for c in range(3):
         total += abs(hinge[k].rows[r, c] * local[link[k].body[0]].v_kept[c])
         total += abs(hinge[k].rows[r, c + 3] * local[link[k].body[1]].v_kept[c])
-    return float(JOINT_SPEED_ROUND_OFF * total * hinge[k].scale[r] ** 2)
+    return total
 
 
 @nonallocating
-def hold_closing(W: Workspace) -> bool:
-    """Hold all free limits whose gap is closed and was closing with the kept velocities; whether there were any.
+def hold_closing(W: Workspace, kept: bool) -> bool:
+    """Hold all free limits whose gap is closed and closing with the velocities that were kept, or by more than
+    round-off with the present ones; whether there are any.
 
     Rows are those of the present poses.
     """
-    hinge, link = W.J.HINGE, W.link
+    hinge, link, local = W.J.HINGE, W.link, W.J.LOCAL
     found = False
     for k in range(W.joints):
         if link[k].side == 0 and link[k].bounded == 0:
@@ -161,8 +169,15 @@ def hold_closing(W: Workspace) -> bool:
                     has_bound(W.J.JOINT, link, k, side)
                     and gap(W.J.JOINT, hinge, link, k, side) <= JOINT_TOUCH * hinge[k].size
                 )
-                a, b = W.J.LOCAL[link[k].body[0]], W.J.LOCAL[link[k].body[1]]
-                if closed and gap_rate(hinge[k], link[k].rows, side, a.v_kept, b.v_kept) < 0.0:
+                if not closed:
+                    continue
+                a, b, last = local[link[k].body[0]], local[link[k].body[1]], link[k].rows - 1
+                if kept:
+                    closes = gap_rate(hinge[k], link[k].rows, side, a.v_kept, b.v_kept) < 0.0
+                else:
+                    least = terms(hinge, link, k, last, local) * JOINT_SPEED_ROUND_OFF
+                    closes = gap_rate(hinge[k], link[k].rows, side, a.v0, b.v0) < -least
+                if closes:
                     link[k].side = side
                     found = True
     return found

@@ -8,8 +8,8 @@ instant the row does not leave its bound, its force changes sign later: it is he
 step is bounded; past it, rows land: they are held from where they are, g reaches its bound at the end of the part, and
 their work enters the ledger.
 
-The solutions of one interval differ by little: each looks first for the limit that the one before has met, at its
-instant.
+The solutions of one interval differ by little: each looks first for the limits that the one before has met, at their
+instants (`parts`).
 """
 
 from __future__ import annotations
@@ -28,9 +28,10 @@ from ..model.parameters.joints import (
 )
 from ..newton.motion import advance
 from ..newton.solve import drop_impulses, solve, solve_linearly
-from .bounds import begin_part, first_bound, gap, gap_rates, held_till_then, hold_limits, look, release, standing
+from .bounds import begin_part, first_bound, gap, gap_rates, held_till_then, hold_limits, hops, look, release, standing
 from .correct import correct, fitting_loss
 from .ledger import book
+from .parts import begin_as_known, meets_limit, note_part
 
 
 @nonallocating
@@ -47,13 +48,30 @@ def begin_as_before(W: Workspace, before: float, h: float) -> None:
 
 
 @nonallocating
-def stop_at(W: Workspace, k: int, side: int, at_once: bool, ledger: JointLedger) -> None:
+def weaken_lead(W: Workspace, share: float) -> None:
+    """Let the next part begin with this share of the accelerations by joints in the part before: the shorter that was,
+    the more they tell of velocities that did not fit, and the less of forces."""
+    for i in range(W.bodies):
+        for c in range(3):
+            W.J.LOCAL[i].lead[c] *= share
+
+
+@nonallocating
+def stop_at(W: Workspace, k: int, side: int, at_once: bool, stays: bool, ledger: JointLedger) -> None:
     """Let joint k stand on its limit at this side, where it is: velocities into the bound vanish, and what that costs
-    enters `ledger`. The next part begins without impulses. at_once: the part before is empty but for round-off."""
+    enters `ledger`. The next part begins without impulses.
+
+    Args:
+        at_once: the part before is empty but for round-off.  stays: velocities out of the bound vanish, too, and none
+            that stands is let go.
+    """
     link = W.link
     begin_part(link, W.joints)
     link[k].side = side
+    for i in range(W.joints if stays else 0):
+        link[i].let_go = link[i].side
     correct(W, SPEEDS)
+    begin_part(link, W.joints)
     if at_once:
         link[k].side = side  # the velocity that lets go is round-off: forces press it to its bound at once
     ledger.limited += fitting_loss(W.J.LOCAL, W.bodies, ledger)
@@ -78,14 +96,15 @@ def step_with_limits(
     solved = 0.0  # length of the last solve from the present start
     # The limit whose instant is searched, -1 for none, and its side.
     events, solves, secants, meeting, side = 0, 0, 0, -1, 0
-    foreseen = component.met >= 0 and component.met_within == h and not (linear or whole)
-    if foreseen:
-        foreseen = link[component.met].side == 0
-    if foreseen:
-        meeting, side, when, events = component.met, component.met_side, component.met_at, 1
     last, before = 0.0, 0.0  # the last instant of the search, and the gap there
+    part, foreseen, hopped = 0, False, 0
     most_solves = LIMIT_SOLVES if linear else 2 * W.joints + 100  # more of them neither let go nor search
     begin_part(link, W.joints)
+    if component.parts_within != h or linear or whole:
+        component.parts, component.parts_within = 0, 0.0 if linear or whole else h
+    if meets_limit(component):
+        meeting, side, when = begin_as_known(W, 0, h, loops)
+        foreseen, events = meeting >= 0, 1
     while True:
         redundant, at_once = loops or standing(link, W.joints), True
         if when > 1e-13 * abs(h) or h < 0.0:
@@ -101,10 +120,16 @@ def step_with_limits(
                 if k < 0 or linear:
                     book(W, when, ledger)
                     advance(local, W.bodies, when)
+                    if component.parts_within == h:
+                        note_part(W, part, -1, 0, when)
                     return True
                 if whole:
                     return False
                 side, events = other, events + 1
+                if hopped < W.joints and hops(W, k, other, instant, when):
+                    solved, hopped = 0.0, hopped + 1
+                    stop_at(W, k, other, True, True, ledger)
+                    continue
                 if events > LIMIT_EVENTS or solves >= most_solves or progress.effort > progress.hurry:  # land
                     link[k].side = side
                     continue
@@ -116,7 +141,7 @@ def step_with_limits(
             if foreseen:  # perhaps it is not met now
                 _, rate = gap_rates(W, meeting, side)
                 if not (rate < 0.0 and 0.0 < when - distance / rate < left):
-                    meeting, when, secants, events, foreseen = -1, left, 0, 0, False
+                    meeting, when, secants, events, foreseen = -1, left, 0, events - 1, False
                     continue
             most = LIMIT_SECANTS if progress.effort <= progress.hurry else LIMIT_SECANTS_HASTE
             if abs(distance) > 0.1 * JOINT_TOUCH * hinge[meeting].size and secants < most:
@@ -125,9 +150,10 @@ def step_with_limits(
                 else:
                     high = when
                 _, rate = gap_rates(W, meeting, side)
-                # Beyond the bound the tangent is taken: a secant to before a gap that opens first hardly moves.
-                if secants > 1 and when != last and distance > 0.0:
-                    rate = (distance - before) / (when - last)
+                # Not the secant from beyond the bound to before a gap that opens first: it hardly moves.
+                if secants > 1 and when != last:
+                    secant = (distance - before) / (when - last)
+                    rate = secant if distance > 0.0 or secant < 0.5 * rate else rate
                 last, before = when, distance
                 step = when - distance / rate if rate < 0.0 else 0.5 * (low + high)
                 when = step if low < step < high else 0.5 * (low + high)
@@ -150,11 +176,15 @@ def step_with_limits(
             if not at_once:  # round-off of places would be velocities
                 book(W, when, ledger)
                 advance(local, W.bodies, when)
-                if left == h:
-                    component.met, component.met_side, component.met_at, component.met_within = meeting, side, when, h
+                note_part(W, part, meeting, side, when)
+                part += 1
                 left -= when
-        solved, foreseen = 0.0, False
-        stop_at(W, meeting, side, at_once, ledger)
+                if when < left:
+                    weaken_lead(W, when / left)
+        solved, hopped = 0.0, 0
+        stop_at(W, meeting, side, at_once, False, ledger)
         if left <= 1e-13 * h:
             return True
-        meeting, when = -1, left
+        meeting, side, when = begin_as_known(W, part, left, loops)
+        foreseen, low, high, secants = meeting >= 0, 0.0, left, 0
+        events += 1 if foreseen else 0

@@ -11,14 +11,14 @@ from __future__ import annotations
 import numpy as np
 
 from ..compiled import nonallocating
-from ..model.joint_steps import ELASTIC, HALVED, LINEAR, JointLedger
+from ..model.joint_steps import ELASTIC, HALVED, LINEAR, SPEEDS, JointLedger
 from ..model.joints import APART, GIVES_WAY, LEFT_APART, RATCHET, Workspace
 from ..model.parameters.joints import NEARLY_HELD
 from ..newton.motion import save
 from ..newton.solve import drop_impulses
-from .bounds import hold_limits, standing
+from .bounds import closes_on_limit, hold_limits, standing
 from .closing import close_joints, farthest
-from .correct import kinetic
+from .correct import correct, fitting_loss, kinetic
 from .ladder import climb, limit_work
 from .ledger import add, clear_ledger, close_ledger
 from .start import bounded_targets, compute_rows, read_joints
@@ -81,6 +81,11 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
         compute_rows(W)
     if bounded:
         bounded_targets(W, h)
+    if stands and closes_on_limit(W, h):
+        # An impact on its bodies has given it velocities into a bound on which it stands: these are met at once.
+        correct(W, SPEEDS)
+        ledger.limited += fitting_loss(local, W.bodies, ledger)
+        save(local, W.bodies)
     if stands:
         hold_limits(W)
     for k in range(W.joints):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pymunk
 import pytest
 
 import eeca_pymunk as ep
@@ -33,3 +34,35 @@ def test_an_error_of_the_response_is_no_work_from_outside(error: float, elastic:
     assert out[0].restitution == pytest.approx(9.0 - left, abs=1e-12)
     assert out[0].restitution == pytest.approx(0.0, abs=1e-12) if elastic else out[0].restitution > 8.9
     assert impulses[0, 0] / impulse == pytest.approx((after[0, 0] + 3.0) / (1.0 + error) / impulse * 2.0, rel=1e-12)
+
+
+def door_and_ball(elasticity: float, above: bool) -> tuple[pymunk.Body, pymunk.Body]:
+    """A door on a hinge, on the lower bound of its angle, after a ball has met it 1.6 from the hinge with speed 2."""
+    space = pymunk.Space()
+    door, ball = pymunk.Body(2.0, 0.7), pymunk.Body(0.5, 0.02)
+    door.position, ball.position, ball.velocity = (1.0, 0.0), (1.6, 0.35 if above else -0.35), (0, -2 if above else 2)
+    leaf, round_ = pymunk.Segment(door, (-1, 0), (1, 0), 0.1), pymunk.Circle(ball, 0.2)
+    leaf.elasticity, round_.elasticity = elasticity, 1.0
+    space.add(door, ball, leaf, round_, pymunk.PivotJoint(space.static_body, door, (0, 0), (-1, 0)))
+    space.add(pymunk.RotaryLimitJoint(space.static_body, door, 0.0, 3.0))
+    stepper = ep.EECA(space)
+    for _ in range(6):
+        stepper.step(1 / 60)
+    return door, ball
+
+
+@pytest.mark.parametrize("elasticity", [0.0, 0.5, 1.0])
+def test_a_door_at_its_stop_is_a_wall(elasticity: float) -> None:
+    """The limit takes part in the impact: v+ = -e v-, and the door does not move."""
+    door, ball = door_and_ball(elasticity, True)
+    assert ball.velocity.y == pytest.approx(2.0 * elasticity, abs=1e-12)
+    assert abs(door.angular_velocity) < 1e-14
+
+
+@pytest.mark.parametrize("elasticity", [0.5, 1.0])
+def test_a_door_is_hit_away_from_its_stop(elasticity: float) -> None:
+    """(1 + e) v = J (1/m + r^2/I), I about the hinge."""
+    door, ball = door_and_ball(elasticity, False)
+    impulse = (1.0 + elasticity) * 2.0 / (1.0 / 0.5 + 1.6**2 / 2.7)
+    assert ball.velocity.y == pytest.approx(2.0 - impulse / 0.5, abs=1e-12)
+    assert door.angular_velocity == pytest.approx(1.6 * impulse / 2.7, abs=1e-12)

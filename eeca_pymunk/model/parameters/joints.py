@@ -27,8 +27,14 @@ LEAST_INERTIA = work(
     "Inertia that the geometric stiffness of joints may leave in the smaller one of two systems, whose solution is the "
     "same; below it the larger one is solved.",
 )
+IMPACT_LIMITS = work(4, "solutions", "Solutions of an impact, each with the limits that the one before moves into.")
 LIMIT_EVENTS = work(12, "number", "Limits that are reached in one step of a component, at most.")
 LIMIT_WAY = round_off(1e-9, "of the component", "Way of a limit to its bound up to which the part before it is empty.")
+LIMIT_HOP = accuracy(
+    1e-6,
+    "of the component",
+    "Way by which a limit may leave its bound and return in a part of a step, and be held.",
+)
 LIMIT_SECANTS = work(30, "iterations", "Secant steps to the instant at which a limit is reached, at most.")
 LIMIT_SECANTS_HASTE = work(2, "iterations", "Secant steps to that instant after the work HASTE.")
 LIMIT_SOLVES = work(8, "number", "Linear solves that release limits which pull, at most.")
@@ -160,6 +166,9 @@ PRESS_RESIDUAL = accuracy(1e-09, "of |a| h and the speed", "Residual of sweeps o
 PRESS_RESIDUAL_REST = accuracy(1e-12, "of |a| h and the speed", "Residual of these sweeps near rest.")
 PRESS_LOCKS = work(10, "number", "Attempts of the energy lock of components, at most.")
 JOINTS_NEAR = accuracy(1e-09, "of the component", "Error of joints while many contacts have not converged.")
+FIT_ROUND_OFF = round_off(
+    1e-12, "of the size of a body", "Way in an interval up to which columns are not made to fit what they missed."
+)
 OUTER_FLOOR = round_off(
     1e-08, "of the speed", "Difference of the velocities that is round-off of stiff components if it does not fall."
 )

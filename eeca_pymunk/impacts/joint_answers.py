@@ -1,0 +1,108 @@
+"""How components answer an impact: the columns of its contacts, and limits that take part in it.
+
+A limit on its bound acts as contacts do, 0 <= lam _|_ rate >= 0. All are free at first; those into which the solution
+moves are held in the next one. None is let go again: of several limits of one component one may pull.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel, nonallocating
+from ..jointed.columns import fill_group
+from ..jointed.component import answer, fit_speeds, ready, size_joints
+from ..jointed.gathered import find_places, gather_component
+from ..jointed.groups import Groups
+from ..joints.correct import hold_closing, keep_speeds
+from ..joints.start import compute_rows, mark_bounded
+from ..joints.workspace import workspace
+from ..model.contacts import Columns
+from ..model.joints import Joints
+from ..model.scene import Scene
+from .simultaneous import Block
+
+
+@nonallocating
+def carried_along(J: Joints, s: int) -> bool:
+    """Whether what impulses do not change moves a part of component s: a moving partner, or a spin of infinite moment;
+    its bodies are in the scratch of `..joints`."""
+    for i in range(J.COMPONENT[s].end_body - J.COMPONENT[s].first_body):
+        for c in range(3):
+            if J.LOCAL[i].mobility[c] == 0.0 and J.LOCAL[i].v0[c] != 0.0:
+                return True
+    return False
+
+
+@nonallocating
+def begin_impact(J: Joints, groups: Groups) -> None:
+    """Let neither limits of the components take part in the impact, nor joints of bounded force."""
+    for s in groups.JOINTED:
+        W = workspace(J, s)
+        mark_bounded(W)
+        for k in range(W.joints):
+            W.link[k].side = 0
+
+
+@nonallocating
+def hold_limits(A: Scene, J: Joints, block: Block, groups: Groups, t: float) -> bool:
+    """Let limits on their bounds into which the velocities of the block move take part in the impact at instant t;
+    whether there are any that did not before."""
+    more = False
+    for s in groups.JOINTED:
+        length = gather_component(A, J, s, block.POSE, block.V, block.V, block.IM, block.II, t, 0.0)
+        W = workspace(J, s)
+        size_joints(W, length)
+        compute_rows(W)
+        keep_speeds(W)
+        more = hold_closing(W, False) or more
+    return more
+
+
+@kernel
+def answer_impact(A: Scene, J: Joints, block: Block, groups: Groups, C: Columns, n: int, t: float) -> bool:
+    """Fill in the columns C of the contacts of the block at instant t, and take from its velocities the part that
+    joints do not allow; whether partners drive a component."""
+    P, Q, ROWS, V = block.A, block.B, block.ROWS, block.V
+    INDEX, driven = np.full(len(block.IM), -1, np.int64), False
+    for g in range(len(groups.COMPONENT)):
+        s = groups.COMPONENT[g]
+        if s < 0:
+            continue
+        length = gather_component(A, J, s, block.POSE, V, np.zeros_like(V), block.IM, block.II, t, 0.0)
+        size = find_places(A, J, s, INDEX)
+        PUSH = np.zeros((size, 3))
+        along = carried_along(J, s)
+        driven = driven or along
+        if along:
+            fit_speeds(J, s, length)
+            for q in range(n):
+                if groups.GROUP[q] == g:
+                    for c in range(3):
+                        V[q, c] = J.LOCAL[INDEX[q]].v0[c]
+        if not ready(J, s, 2.0, False):
+            continue
+        fill_group(J, groups, C, g, INDEX, False, P, Q, ROWS, len(ROWS), PUSH, 2)
+        if not along:
+            keep_allowed(J, block, groups, g, n, INDEX, PUSH)
+    return driven
+
+
+@nonallocating
+def keep_allowed(
+    J: Joints, block: Block, groups: Groups, g: int, n: int, INDEX: IntArray, PUSH: FloatArray
+) -> None:  # fmt: skip
+    """Of the velocities of group g, whose component is `ready`, only what joints allow: M^-1 G^T impulses take the
+    rest."""
+    V = block.V
+    PUSH[:] = 0.0
+    for q in range(n):
+        if groups.GROUP[q] == g:
+            for c in range(3):
+                mobility = block.II[q] if c == 2 else block.IM[q]
+                PUSH[INDEX[q], c] = V[q, c] / mobility if mobility > 0.0 else 0.0
+    answer(J, groups.COMPONENT[g], False, PUSH)
+    for q in range(n):
+        if groups.GROUP[q] == g:
+            for c in range(3):
+                V[q, c] = PUSH[INDEX[q], c]
