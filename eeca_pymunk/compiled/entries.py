@@ -31,7 +31,7 @@ TABLES = {
         POOL:i4[1] FLAG:u1[1] HEAD:i8[1] GRID:Grid BOX:f8[2] CSR:i8[1] RULE:f8[2] HEAP_TIME:f8[1]
         HEAP_BODY:i8[1] LOG:Impulse[1] BEGAN:f8[2] PLACE:i8[1] BLOCK:i8[1] PULL:f8[2] MEMBER:Member[1] RESTING:Rest[1]
         PUSHED_BY:Pair[1] PUSHED:Pushed[1] KEYS:i8[1] FORCES:Force[1] CORE:f8[3]
-        SIDE:Side[1] CORNER:Corner[1] HELD:Held[1] MISSED:Missed[1] PAR:Step COUNT:Count
+        SIDE:Side[1] CORNER:Corner[1] PINNED:Pinned[1] MISSED:Missed[1] PAR:Step COUNT:Count
     """,
     "Reading": """
         TOLD:i8[1] BODIES:BodyValues[1] SHAPES:ShapeValues[1] OWNER:i8[1] POINT:f8[2] STATES:f8[3] WALK:i8[2]
@@ -86,7 +86,7 @@ ENTRIES = {
     "impacts.step:step": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 i8",
     "impacts.run:run": "{Scene} {Joints} {RunArrays} f8[3] i8[2] f8[2] f8[1]",
     "joints.workspace:plan_components": "{Joints} Body[1] i8[1] i8",
-    "joints.held:find_held": "Body[1] Body[1] Joint[1] i8[1] Shape[1] Link[1] i8[1]",
+    "joints.straight:find_pinned": "Body[1] Body[1] Joint[1] i8[1] Shape[1] Link[1] i8[1]",
     # Only tests call these, which solve single islands and components: some hundred times slower as plain Python.
     "joints.components:step_all": "{Joints} Body[1] f8",
     "contacts.interval:step_island": "{Scene} {Island} {IslandContacts} i8 f8 i8 f8 f8 f8",

@@ -14,11 +14,11 @@ from ..compiled.library import check
 from ..compiled.records import R, Rows, columns, from_bytes, put, rows
 from ..contacts.memory import forget
 from ..islands.accounting import flag_pairs
-from ..joints.held import NO_HELD, held_bodies
+from ..joints.straight import NO_PINNED, pinned_bodies
 from ..layout import NOW as READ
 from ..model.bodies import CHECK, Body
 from ..model.contacts import Force, Impulse
-from ..model.joints import Held, Joint
+from ..model.joints import Joint, Pinned
 from ..model.parameters.events import MANY_BODIES, STEP_LOOKS, STEP_LOOKS_BODY
 from ..model.scene import Scene
 from ..model.shapes import Link, Shape
@@ -79,9 +79,9 @@ class EventLoop(Remembering):
         self.joint, self.partner = _NO_JOINTS if joint is None else joint, BODY[:0] if PARTNER is None else PARTNER
         self._still: IntArray = np.ones(len(self.partner), np.int64) if still is None else still
         self._mobility: FloatArray | None = None  # of bodies, if joints hold any
-        HELD = self._hold(BODY, SHAPE, LINK) if self.jointed else NO_HELD
+        PINNED = self._hold(BODY, SHAPE, LINK) if self.jointed else NO_PINNED
         budget = STEP_LOOKS + STEP_LOOKS_BODY * n * max(n, MANY_BODIES) // MANY_BODIES
-        self.table = memory.scene(BODY, SHAPE, LINK, VERTEX, HELD, limit, disks, together, budget)
+        self.table = memory.scene(BODY, SHAPE, LINK, VERTEX, PINNED, limit, disks, together, budget)
         (self._par, self._count, self.log), self._bound = memory.records(), UNBOUND
         self._laid, self._memory, self.thin = self.table, memory, memory.thin > 0
         self._rules: dict[tuple[int, int], tuple[float, float, float, float]] = {}  # those of the table
@@ -90,13 +90,13 @@ class EventLoop(Remembering):
         else:
             self.ties = memory.unjointed(n)
 
-    def _hold(self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link]) -> Rows[Held]:
+    def _hold(self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link]) -> Rows[Pinned]:
         """The bodies that straight chains of joints hold, which lose their mobilities."""
-        HELD = held_bodies(BODY, self.partner, self.joint, self._still, SHAPE, LINK)
-        if len(HELD):
+        PINNED = pinned_bodies(BODY, self.partner, self.joint, self._still, SHAPE, LINK)
+        if len(PINNED):
             self._mobility = columns(BODY, "inv_mass", "inv_inertia")
-            BODY["inv_mass"][HELD["body"]] = BODY["inv_inertia"][HELD["body"]] = 0.0
-        return HELD
+            BODY["inv_mass"][PINNED["body"]] = BODY["inv_inertia"][PINNED["body"]] = 0.0
+        return PINNED
 
     def release(self) -> None:
         """Give the bodies that joints hold their mobilities back, before another loop is made for them."""
@@ -118,13 +118,13 @@ class EventLoop(Remembering):
         tie_components(self.table, self.ties)
 
     def holds_others(self) -> bool:
-        """Whether straight chains of joints hold other bodies than those of HELD, after changes of joints or of their
+        """Whether straight chains of joints hold other bodies than those of PINNED, after changes of joints or of their
         ends."""
         scene = self.scene
         BODY = scene.BODY.copy()
         put(BODY, self.mobility, "inv_mass", "inv_inertia")
-        HELD = held_bodies(BODY, self.partner, self.joint, self._still, scene.SHAPE, scene.LINK)
-        return HELD.tobytes() != scene.HELD.tobytes()
+        PINNED = pinned_bodies(BODY, self.partner, self.joint, self._still, scene.SHAPE, scene.LINK)
+        return PINNED.tobytes() != scene.PINNED.tobytes()
 
     def rebind(self, joint: Rows[Joint], PARTNER: Rows[Body]) -> None:
         """Use other arrays of joints with the same values."""

@@ -13,7 +13,7 @@ from ..compiled.records import Rows, rows
 from ..geometry.corners import side_rows
 from ..joints.workspace import JointMemory
 from ..model.bodies import Body
-from ..model.joints import Held, Joint
+from ..model.joints import Joint, Pinned
 from ..model.scene import Scene
 from ..model.shapes import Link, Shape, Side
 from ..pairs.setup import NO_GRID, filled, pool_sizes
@@ -33,7 +33,7 @@ _FILLED = "LOG", "KEYS", "FORCES", "PUSHED_BY", "PUSHED"  # before they are read
 @cache
 def _arrays() -> Plan[Scene]:
     return Plan(
-        Scene, _ZEROS + _FILLED, len(_ZEROS), ("BODY", "SHAPE", "LINK", "VERTEX", "HELD"),
+        Scene, _ZEROS + _FILLED, len(_ZEROS), ("BODY", "SHAPE", "LINK", "VERTEX", "PINNED"),
         {"RULE": _NO_RULE, "CSR": NO_GRID},
         {"CORE": (2, COUNT, 4), "PULL": (COUNT, 3), "BEGAN": (COUNT, 3), "BOX": (COUNT, 4), "VERTEX": (COUNT, 4)},
     )  # fmt: skip
@@ -56,8 +56,8 @@ class SceneMemory:
         self._unjointed: tuple[Table, int] = None, 0
 
     def scene(
-        self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, HELD: Rows[Held], limit: int,
-        disks: int, together: bool, budget: int,
+        self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, PINNED: Rows[Pinned],
+        limit: int, disks: int, together: bool, budget: int,
     ) -> Table:  # fmt: skip
         """The table of a scene that has taken no step; the arrays given are kept, not copied. The numbers are fields of
         COUNT."""
@@ -71,13 +71,13 @@ class SceneMemory:
         counts = {
             "PAR": 1, "COUNT": 1, "GRID": 1,
             "BODY": n, "STATE": n, "MEMBER": n, "RESTING": n, "PLACE": n, "PULL": n, "BEGAN": n, "BLOCK": n,
-            "HEAP_TIME": 8 * n + 64, "HEAP_BODY": 8 * n + 64, "LOG": max(4 * n + 64, self.log), "HELD": len(HELD),
+            "HEAP_TIME": 8 * n + 64, "HEAP_BODY": 8 * n + 64, "LOG": max(4 * n + 64, self.log), "PINNED": len(PINNED),
             "SHAPE": k, "LINK": k, "MARK": moving, "CELL": moving, "LIST": moving, "BOX": k - moving,
             "POOL": pool, "FLAG": pool, "HEAD": heads, "VERTEX": len(VERTEX), "CORE": corners,
             "SIDE": side_rows(self.thin, k), "CORNER": 4 * k if self.thin else 0,
             "KEYS": 4 * room, "FORCES": 4 * room, "PUSHED_BY": room, "PUSHED": room, "MISSED": _MISSED,
         }  # fmt: skip
-        table = self._layout.lay(counts, BODY, SHAPE, LINK, VERTEX, HELD)
+        table = self._layout.lay(counts, BODY, SHAPE, LINK, VERTEX, PINNED)
         begin_scene(table, limit, disks, together, budget, lossy)
         return filled(table, SHAPE, moving)
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 from ..arrays import FloatArray, IntArray
 from ..compiled import Table, kernel
 from ..jointed.ledger import account_joints, start_joints
-from ..joints.held import put_held
+from ..joints.straight import put_pinned
 from ..model.joints import Joints, joints_of
 from ..model.parameters.joints import MEET_INSTANT
 from ..model.scene import Scene, scene_of
@@ -34,12 +34,12 @@ def start(
         start_joints(A, J, STATES, WALK)
     status = take(STATES, WALK, EXTRA, A.BODY, gx, gy, half_damping)
     if status >= 0:
-        lost = put_held(A.HELD, A.BODY)
+        lost = put_pinned(A.PINNED, A.BODY)
         A.PAR.planned = dt
         A.PAR.dt, A.PAR.gravity_x, A.PAR.gravity_y, A.PAR.half_damping = dt, gx, gy, half_damping
         A.PAR.instant = MEET_INSTANT * dt
         begin(A, WALK)
-        # The kinetic energy that `put_held` has taken from held bodies is a loss of this step.
+        # The kinetic energy that `put_pinned` has taken from held bodies is a loss of this step.
         A.PAR.before += lost
         A.PAR.restitution += lost
     return status

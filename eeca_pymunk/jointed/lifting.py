@@ -112,7 +112,7 @@ def correct(A: Scene, J: Joints, interval: Interval, end: float, budget: float, 
     cost, part = -against(isle.ACC, isle.IM, isle.II, n, D), admissible(D, isle.EXTENT, n, size)
     if cost * part > 0.5 * budget:
         part = 0.5 * budget / cost
-    HELD = np.zeros(len(groups.COMPONENT))
+    STORED = np.zeros(len(groups.COMPONENT))
     # Of what something holds no body is turned.
     ALL = np.ones(n if len(isle.IM) == n and not hangs(groups, J.COMPONENT, J.JOINED) else 0, np.uint8)
     for _ in range(4):
@@ -128,8 +128,8 @@ def correct(A: Scene, J: Joints, interval: Interval, end: float, budget: float, 
                 for c in range(3):
                     moves = max(moves, abs(D[groups.BODY[w], c]))
             if s >= 0 and moves > 0.0:
-                HELD[g] = close_joints(A, J, s, END, NEW, V, isle.IM, isle.II, end, h)
-                spent += HELD[g]
+                STORED[g] = close_joints(A, J, s, END, NEW, V, isle.IM, isle.II, end, h)
+                spent += STORED[g]
         spent -= against(isle.ACC, isle.IM, isle.II, n, NEW - END)
         turn, x, y, spin, inertia = unturn(NEW, NEW - END, V, isle.IM, isle.II, ALL)
         spent += turn * spin + 0.5 * inertia * turn * turn
@@ -138,7 +138,7 @@ def correct(A: Scene, J: Joints, interval: Interval, end: float, budget: float, 
             for g in range(len(groups.COMPONENT)):
                 s = groups.COMPONENT[g]
                 if s >= 0:
-                    J.STEPPED[s].stored += HELD[g]
+                    J.STEPPED[s].stored += STORED[g]
             copy(END, NEW)
             return spent
         part *= 0.25

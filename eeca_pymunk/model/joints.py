@@ -132,11 +132,11 @@ class Coupling(Record):
 BOUNDED, PRESCRIBED, BOXED = 1, 2, 3
 
 
-class Held(Record):
-    """A body that joints hold on a straight line between fixed points (`..joints.held`)."""
+class Pinned(Record):
+    """A body that joints hold on a straight line between fixed points (`..joints.straight`)."""
 
     body: int  # row of `Body`
-    kind: int  # WHOLLY or CENTRE of `..joints.held`
+    kind: int  # WHOLLY or CENTRE of `..joints.straight`
     x: float  # pose: length, length, rad
     y: float
     angle: float

@@ -115,7 +115,7 @@ class ConstraintValues(NamedTuple):
 
     @property
     def reach(self) -> tuple[object, ...]:
-        """The values that decide whether it can be part of a straight chain (`..joints.held`)."""
+        """The values that decide whether it can be part of a straight chain (`..joints.straight`)."""
         return self.kind, self.bounded, self.anchor_a, self.anchor_b, self.length, self.limits
 
     def is_fine(self) -> bool:

@@ -22,12 +22,12 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, rows
 from ..model.bodies import Body
-from ..model.joints import PIN, PIVOT, SLIDE, Held, Joint
+from ..model.joints import PIN, PIVOT, SLIDE, Joint, Pinned
 from ..model.parameters.joints import STRAIGHT_CHAIN
 from ..model.shapes import Link, Shape
 from .plan import together, turning
 
-NO_HELD = rows(Held, 0)
+NO_PINNED = rows(Pinned, 0)
 FREE, WHOLLY, CENTRE = 0, 1, 2  # what of a body a straight chain holds
 
 
@@ -68,7 +68,7 @@ def straight(X: FloatArray, first: int, p: int, length: float) -> bool:
 
 @nonallocating
 def fix_chain(
-    joint: Rows[Joint], X: FloatArray, FROM: IntArray, p: int, first: int, spins: IntArray, held: IntArray
+    joint: Rows[Joint], X: FloatArray, FROM: IntArray, p: int, first: int, spins: IntArray, pinned: IntArray
 ) -> int:
     """Hold the bodies of the straight chain from `first` that ends in p, on a fixed body; how many there are: none if a
     body of it has all its points on the chain in one place and might turn about that, unless it only spins (`spins`).
@@ -85,7 +85,7 @@ def fix_chain(
             if not wholly and spins[i] == 0:
                 return 0
             if pass_ == 1:
-                held[i] = WHOLLY if wholly else CENTRE
+                pinned[i] = WHOLLY if wholly else CENTRE
             count += 1
     return count
 
@@ -103,9 +103,9 @@ def may_hold(joint: Rows[Joint], still: IntArray, n: int) -> bool:
 
 
 @kernel
-def find_held(
+def find_pinned(
     BODY: Rows[Body], PARTNER: Rows[Body], joint: Rows[Joint], STILL: IntArray, SHAPE: Rows[Shape], LINK: Rows[Link],
-    held: IntArray,
+    pinned: IntArray,
 ) -> int:  # fmt: skip
     """Find the bodies of straight chains between fixed points.
 
@@ -113,10 +113,10 @@ def find_held(
         BODY (n,), PARTNER (x,): at their present poses; the latter cannot be moved by joints.  joint (j,).
         STILL (x,): 1 for rows of PARTNER that never move.
         SHAPE, LINK: of the bodies; contacts do not turn those without friction.
-        held (n + x,): out, FREE, WHOLLY, or CENTRE for a body that is held at its centre of mass and spins on.
+        pinned (n + x,): out, FREE, WHOLLY, or CENTRE for a body that is pinned at its centre of mass and spins on.
 
     Returns:
-        the number of bodies that are held.
+        the number of bodies that are pinned.
     """
     if not may_hold(joint, STILL, len(BODY)):
         return 0
@@ -136,17 +136,17 @@ def find_held(
     turns, cayley = np.zeros(n, np.int64), np.zeros(n, np.int64)
     turning(bodies, joint, len(joint), turns, cayley)
     for i in range(n):
-        held[i] = FREE
+        pinned[i] = FREE
         spins[i] = spins[i] if turns[i] == 0 else 0
     place_points(bodies, joint, X, HEAD, NEXT)
     total, found = 0, 1
     while found > 0:
-        # What is held holds others.
+        # What is pinned holds others.
         found, stamp = 0, -1
         SEEN[:] = -1
         for first in range(points):
             begin, across = joint[first // 2].body[first % 2], reach(joint[first // 2])
-            if across == math.inf or (still[begin] == 0 and held[begin] == FREE):
+            if across == math.inf or (still[begin] == 0 and pinned[begin] == FREE):
                 continue
             stamp += 1
             FROM[first ^ 1], LENGTH[first ^ 1], STACK[0], room = first, across, first ^ 1, 1
@@ -156,8 +156,8 @@ def find_held(
                 i = joint[p // 2].body[p % 2]
                 if not straight(X, first, p, LENGTH[p]):
                     continue
-                if still[i] > 0 or held[i] != FREE:
-                    found += fix_chain(joint, X, FROM, p, first, spins, held)
+                if still[i] > 0 or pinned[i] != FREE:
+                    found += fix_chain(joint, X, FROM, p, first, spins, pinned)
                     continue
                 q = HEAD[i]
                 while q >= 0:
@@ -173,31 +173,31 @@ def find_held(
 
 
 @nonallocating
-def put_held(HELD: Rows[Held], BODY: Rows[Body]) -> float:
-    """Put held bodies where they are held, at rest but for the spin of those that are held at their centre; the kinetic
+def put_pinned(PINNED: Rows[Pinned], BODY: Rows[Body]) -> float:
+    """Put pinned bodies where they are, at rest but for the spin of those that are pinned at their centre; the kinetic
     energy that they lose, which joints take as they take that of any velocity that does not fit them."""
     lost = 0.0
-    for k in range(len(HELD)):
-        held, body = HELD[k], BODY[HELD[k].body]
-        lost += 0.5 * held.mass * (body.vx * body.vx + body.vy * body.vy)
-        body.x, body.y, body.vx, body.vy, body.ax, body.ay, body.angular = held.x, held.y, 0.0, 0.0, 0.0, 0.0, 0.0
-        if held.kind == WHOLLY:
-            lost += 0.5 * held.moment * body.spin * body.spin
-            body.angle, body.spin = held.angle, 0.0
+    for k in range(len(PINNED)):
+        pinned, body = PINNED[k], BODY[PINNED[k].body]
+        lost += 0.5 * pinned.mass * (body.vx * body.vx + body.vy * body.vy)
+        body.x, body.y, body.vx, body.vy, body.ax, body.ay, body.angular = pinned.x, pinned.y, 0.0, 0.0, 0.0, 0.0, 0.0
+        if pinned.kind == WHOLLY:
+            lost += 0.5 * pinned.moment * body.spin * body.spin
+            body.angle, body.spin = pinned.angle, 0.0
     return lost
 
 
-def held_bodies(
+def pinned_bodies(
     BODY: Rows[Body], PARTNER: Rows[Body], joint: Rows[Joint], still: IntArray, SHAPE: Rows[Shape], LINK: Rows[Link]
-) -> Rows[Held]:  # fmt: skip
-    """The bodies that straight chains hold, see `find_held`; BODY has their mobilities."""
+) -> Rows[Pinned]:  # fmt: skip
+    """The bodies that straight chains hold, see `find_pinned`; BODY has their mobilities."""
     kind: IntArray = np.zeros(len(BODY) + len(PARTNER), np.int64)
-    if not find_held(BODY, PARTNER, joint, still, SHAPE, LINK, kind):
-        return NO_HELD
+    if not find_pinned(BODY, PARTNER, joint, still, SHAPE, LINK, kind):
+        return NO_PINNED
     at = np.flatnonzero(kind)
-    HELD, one = rows(Held, len(at)), BODY[at]
-    HELD["body"], HELD["kind"] = at, kind[at]
+    PINNED, one = rows(Pinned, len(at)), BODY[at]
+    PINNED["body"], PINNED["kind"] = at, kind[at]
     for name in ("x", "y", "angle"):
-        HELD[name] = one[name]
-    HELD["mass"], HELD["moment"] = 1.0 / one["inv_mass"], 1.0 / one["inv_inertia"]
-    return HELD
+        PINNED[name] = one[name]
+    PINNED["mass"], PINNED["moment"] = 1.0 / one["inv_mass"], 1.0 / one["inv_inertia"]
+    return PINNED

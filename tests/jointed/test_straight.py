@@ -22,7 +22,7 @@ def held(stepper: ep.EECA) -> int:
     """How many bodies are held."""
     method = stepper._method
     assert isinstance(method, EventLoop)
-    return len(method.scene.HELD)
+    return len(method.scene.PINNED)
 
 
 def laden(load: float, planks: int, height: float = 0.06) -> tuple[pymunk.Space, list[pymunk.Body], pymunk.Body]:
