@@ -68,6 +68,18 @@ def kinetic_energy(V: FloatArray, IM: FloatArray, II: FloatArray, n: int) -> flo
     return total
 
 
+@nonallocating
+def gained_energy(V: FloatArray, BEFORE: FloatArray, IM: FloatArray, II: FloatArray, n: int) -> float:
+    """`kinetic_energy` at velocities V less that at velocities BEFORE, to the round-off of velocities only."""
+    total = 0.0
+    for q in range(n):
+        for c in range(3):
+            mobility = II[q] if c == 2 else IM[q]
+            if mobility > 0.0:
+                total += 0.5 * (V[q, c] - BEFORE[q, c]) * (V[q, c] + BEFORE[q, c]) / mobility
+    return total
+
+
 @kernel
 def moved(X: FloatArray, V: FloatArray, s: float) -> FloatArray:
     """X + s V, (k, 3) as X and V: poses or velocities after a time s at the rates V."""

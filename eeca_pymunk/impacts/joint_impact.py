@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, zeros
-from ..contacts.works import carried, kinetic_energy
+from ..contacts.works import carried, gained_energy, kinetic_energy
 from ..islands.building import comes_to_rest
 from ..islands.local import clear_places, set_places
 from ..islands.membership import jointed, members
@@ -22,7 +22,7 @@ from ..model.contacts import SOLVED, JointedProblem, Row, Solved
 from ..model.joints import Joints
 from ..model.parameters.events import EVENT_LOOKS
 from ..model.parameters.impulses import WEDGED
-from ..model.parameters.joints import CLOSES, IMPACT_LIMITS, SOLUTION_WORK
+from ..model.parameters.joints import CLOSES, IMPACT_ENERGY, IMPACT_LIMITS, SOLUTION_WORK
 from ..model.scene import Scene
 from ..rows.blocks import TRUNCATED, close_block, solve_block
 from ..rows.bounded import room_for_rows
@@ -97,13 +97,14 @@ def settle_energy(
     """
     P, Q, ROWS, V, IM, II, rows = block.A, block.B, block.ROWS, block.V, block.IM, block.II, len(block.ROWS)
     outside = carried(P, Q, ROWS, L, V, V, IM, II, rows)
-    before, free = kinetic_energy(BEFORE, IM, II, n), kinetic_energy(FREE, IM, II, n)
-    gained, square = kinetic_energy(V, IM, II, n) - free, kinetic_energy(V - FREE, IM, II, n)
+    gained, square = gained_energy(V, FREE, IM, II, n), kinetic_energy(V - FREE, IM, II, n)
     if driven:
         OUT[0].restitution += kinetic_energy(BEFORE - FREE, IM, II, n)
-        A.PAR.external += free + gained - before + OUT[0].restitution + OUT[0].friction - outside
+        A.PAR.external += gained_energy(V, BEFORE, IM, II, n) + OUT[0].restitution + OUT[0].friction - outside
         return
     s, OUT[0].owed = scale_to_lose(outside - gained + square, square, owed, exact)
+    if abs(outside - gained - owed) <= IMPACT_ENERGY * kinetic_energy(FREE, IM, II, n):
+        s, OUT[0].owed = 1.0, 0.0  # a small impact on what moves fast would be scaled by round-off
     for z in range(rows):
         L[z, 0], L[z, 1] = s * L[z, 0], s * L[z, 1]
     for q in range(n):
@@ -112,7 +113,7 @@ def settle_energy(
     OUT[0].lock *= s
     lost = s * (outside - gained + square) - s * s * square
     OUT[0].restitution, OUT[0].friction = offset_gain(lost - s * OUT[0].friction, s * OUT[0].friction)
-    OUT[0].restitution += before - free
+    OUT[0].restitution += gained_energy(BEFORE, FREE, IM, II, n)
 
 
 @kernel

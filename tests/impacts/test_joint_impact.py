@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pymunk
 import pytest
@@ -66,3 +68,22 @@ def test_a_door_is_hit_away_from_its_stop(elasticity: float) -> None:
     impulse = (1.0 + elasticity) * 2.0 / (1.0 / 0.5 + 1.6**2 / 2.7)
     assert ball.velocity.y == pytest.approx(2.0 - impulse / 0.5, abs=1e-12)
     assert door.angular_velocity == pytest.approx(1.6 * impulse / 2.7, abs=1e-12)
+
+
+@pytest.mark.parametrize("turn", [0.3, 0.7, 1.1, 1.9])
+def test_a_small_impact_on_what_moves_fast_is_not_round_off(turn: float) -> None:
+    """A body closes at 1e-9 of its other speeds: the energy of that is less than the last digit of all."""
+    scene = ep.EECA(build("gas", count=2).space).event_loop.scene
+    rows, out = zeros(1, Row.TYPE), zeros(1, SOLVED)
+    normal, along = np.array([math.cos(turn), math.sin(turn)]), np.array([-math.sin(turn), math.cos(turn)])
+    rows[0].nx, rows[0].ny, rows[0].elasticity = normal[0], normal[1], 1.0
+    before, after = np.zeros((2, 3)), np.zeros((2, 3))
+    before[0, :2], after[0, :2] = along - 1e-9 * normal, along + 1e-9 * normal
+    block = Block(
+        before, after, np.array([0.5, 0.0]), np.array([0.5, 0.0]), np.array([1]), np.array([0]), rows,
+        np.zeros((1, 2)), np.zeros(1, np.int64),
+    )  # fmt: skip
+    impulses = np.array([[4e-9, 0.0]])
+    settle_energy(scene, block, 1, impulses, before, before.copy(), False, 0.0, True, out)
+    assert after[0, :2] @ normal == pytest.approx(1e-9, rel=1e-6)
+    assert impulses[0, 0] == pytest.approx(4e-9, rel=1e-6)

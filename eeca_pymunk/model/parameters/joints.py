@@ -28,6 +28,7 @@ LEAST_INERTIA = work(
     "same; below it the larger one is solved.",
 )
 IMPACT_LIMITS = work(4, "solutions", "Solutions of an impact, each with the limits that the one before moves into.")
+IMPACT_ENERGY = round_off(4e-16, "of the kinetic energy", "Change of energy by an impact that is round-off.")
 LIMIT_EVENTS = work(12, "number", "Limits that are reached in one step of a component, at most.")
 LIMIT_WAY = round_off(1e-9, "of the component", "Way of a limit to its bound up to which the part before it is empty.")
 LIMIT_HOP = accuracy(
