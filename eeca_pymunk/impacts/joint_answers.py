@@ -41,7 +41,7 @@ def begin_impact(J: Joints, groups: Groups) -> None:
         W = workspace(J, s)
         mark_bounded(W)
         for k in range(W.joints):
-            W.link[k].side = 0
+            W.link[k].side = W.link[k].let_go = 0
 
 
 @nonallocating

@@ -53,7 +53,7 @@ def read_joints(W: Workspace, h: float, length: float) -> tuple[bool, bool]:
     mark_bounded(W)
     for k in range(W.joints):
         j, kind = link[k].joint, link[k].kind
-        link[k].side = joint[j].side
+        link[k].side, link[k].let_go = joint[j].side, 0
         warm = 0.0 if joint[j].last_step == 0.0 else h / joint[j].last_step
         hinge[k].lam[0], hinge[k].lam[1] = joint[j].impulse[0] * warm, joint[j].impulse[1] * warm
         hinge[k].total[0] = hinge[k].total[1] = 0.0
