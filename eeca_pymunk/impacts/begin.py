@@ -92,8 +92,6 @@ def begin(A: Scene, WALK: IntArray) -> None:
             STATE[i].version += 1
             if BODY[i].due < NUDGED:
                 forget_sides(A, i, (NUDGED - BODY[i].due) * BODY[i].extent)
-            if BODY[i].due <= ANEW:
-                A.RESTING[i].longest = math.inf
             if BODY[i].due <= NUDGED:
                 A.MEMBER[i].placed, COUNT.any_placed = MOVED, 1
             elif BODY[i].due <= ANEW:

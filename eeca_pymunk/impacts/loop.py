@@ -175,7 +175,7 @@ def follow(A: Scene, J: Joints, may_rest: bool) -> int:
                 rest = comes_to_rest(A, s, o, t)
             COUNT.waiting = strike(A, s, o, t, rest)
             joints = COUNT.waiting < 0
-        if joints and is_spent(A, J, t):
+        if joints and is_spent(J):
             COUNT.waiting = 0
             return cut_short(A, J, i, t)
         if joints and not has_room(A):

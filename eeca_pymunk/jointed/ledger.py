@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from ..arrays import FloatArray, IntArray
 from ..compiled import nonallocating
 from ..contacts.unmet import note_unmet
@@ -10,14 +12,15 @@ from ..layout import BODY_ROW, LEFT
 from ..layout import NOW as READ
 from ..model.joint_steps import ELASTIC
 from ..model.joints import EDITED, Joints
-from ..model.parameters.joints import STEP_BEGUN, STEP_EXCESS, STEP_WORK, STEP_WORK_BODY
+from ..model.parameters.joints import STEP_WORK, STEP_WORK_BODY
 from ..model.scene import Scene
 from ..model.step import JOINTS as UNMET_JOINTS
 
 
 @nonallocating
 def mark_edited(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray) -> None:
-    """Mark the joints of bodies that were edited since the last step: their velocities may not fit."""
+    """Mark the joints of bodies that were edited since the last step: their velocities may not fit. How long
+    intervals of these bodies may be is not known either."""
     now, before = STATES[READ], STATES[LEFT]
     for k in range(WALK.shape[1]):
         i = WALK[BODY_ROW, k]
@@ -27,6 +30,8 @@ def mark_edited(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray) -> None
         for c in range(6):
             same = same and now[k, c] == before[k, c]
         A.PLACE[i] = -1 if same else 1
+        if not same:
+            A.RESTING[i].longest = math.inf
     n = A.PLACE.shape[0]
     for j in range(J.JOINT.shape[0]):
         a, b = J.JOINT[j].body[0], J.JOINT[j].body[1]
@@ -50,16 +55,9 @@ def start_joints(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray) -> Non
 
 
 @nonallocating
-def budget_at(A: Scene, J: Joints, t: float) -> float:
-    """Work that a step may have taken for joints up to instant t. That is more while it has hardly begun, so that a
-    scene whose first intervals take all of it moves on."""
-    return float(J.PROGRESS.budget * (STEP_EXCESS if t <= STEP_BEGUN * A.PAR.dt else 1.0))
-
-
-@nonallocating
-def is_spent(A: Scene, J: Joints, t: float) -> bool:
-    """Whether a step has no work left for joints at instant t."""
-    return bool(J.PROGRESS.effort > budget_at(A, J, t))
+def is_spent(J: Joints) -> bool:
+    """Whether a step has no work left for joints."""
+    return bool(J.PROGRESS.effort > J.PROGRESS.budget)
 
 
 @nonallocating

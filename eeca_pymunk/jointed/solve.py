@@ -41,7 +41,7 @@ from .component import step_component
 from .fitting import fit
 from .gathered import gather_component, keep_joints, restore_joints
 from .groups import Groups, find_groups
-from .ledger import budget_at, is_spent
+from .ledger import is_spent
 from .lengths import excess, led_in, sinks
 from .lifting import lift_island
 from .lock import lost, slip_of
@@ -89,7 +89,8 @@ def begin_interval(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
     for attempt in range(INTERVAL_TRIES):
         h = max(h, least)
         last = attempt + 1 == INTERVAL_TRIES or A.COUNT.together > 0 or h <= least
-        if t > 0.0 and is_spent(A, J, t):
+        if t > 0.0 and is_spent(J):
+            rest.longest = h  # where the next step begins
             return SPENT
         status, h = open_span(A, J, root, t, h, last)
         if status != AGAIN:
@@ -138,7 +139,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
         m = gather(A, isle, contacts, moved(isle.POSE, isle.V, 0.5 * h), REACH, h, k == n)
     interval = Interval(isle, groups, P, Q, ROWS, motion, make_columns(groups, P, Q, m), m, n, t, h)
     held, before = True, J.PROGRESS.effort
-    J.PROGRESS.share = before + INTERVAL_SHARE * max(budget_at(A, J, t) - before, 0.0)
+    J.PROGRESS.share = before + INTERVAL_SHARE * max(J.PROGRESS.budget - before, 0.0)
     if m > 0:
         recall(KEY, m, A.KEYS, A.FORCES, A.PAR.stamp, h, m > COLUMN_CONTACTS, L, EXPECTED)
         owed = max(-A.RESTING[root].lost, 0.0)
@@ -160,7 +161,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     if not held:  # the motion is not that of a solution, and says little of how long it may be
         # Contacts that are not solved in a long interval may be in a short one, if the step has work for many of these;
         # and what sinks in by them would sink further in the next one.
-        payable = RESOLUTION * (J.PROGRESS.effort - before) <= budget_at(A, J, t)
+        payable = RESOLUTION * (J.PROGRESS.effort - before) <= J.PROGRESS.budget
         hard = (m <= COLUMN_CONTACTS and payable) or (n < LARGE_ISLAND and sinks(A, P, Q, ROWS, KEY, motion.WAY, m))
         hard = hard and h * UNSOLVED_PART**2 > A.PAR.dt / RESOLUTION
         far = UNSOLVED_PART if hard else min(far, UNSOLVED_PART)

@@ -10,6 +10,7 @@ import pymunk
 import pytest
 
 import eeca_pymunk as ep
+from scenes.linkages import body, empty
 from tests.programs.compositions import Composition
 
 HALF = 3.0
@@ -102,3 +103,25 @@ def test_what_a_stiff_spring_swings_in_a_step_stays_inside(seed: int) -> None:
     for _ in range(4):
         stepper.step(dt)
         assert max(abs(x) for body in (heavy, light) for x in body.position) < 5.0
+
+
+@pytest.mark.parametrize("handler", [False, True])
+@pytest.mark.parametrize("edited", [False, True])
+def test_how_long_intervals_may_be_is_known_until_a_body_is_edited(edited: bool, handler: bool) -> None:
+    """A pendulum whose last interval was shortened to a quarter of a step takes 1/4, 3/8 and the rest of the next
+    one, also where the program has a handler of collisions; and a whole one if its velocity was set."""
+    space = empty(9.81)
+    bob = body(space, 1.0, 0.1, (0.0, -1.0))
+    bob.velocity = (0.5, 0.0)
+    space.add(pymunk.Circle(bob, 0.1), pymunk.PinJoint(space.static_body, bob))
+    if handler:
+        space.on_collision(1, 2, begin=lambda *_: None)
+    stepper = ep.EECA(space)
+    stepper.step(1 / 60)
+    loop = stepper.event_loop
+    assert loop is not None
+    loop.scene.RESTING["longest"] = 0.25 / 60
+    if edited:
+        bob.velocity *= 0.9
+    stepper.step(1 / 60)
+    assert loop.scene.COUNT.solves == (1 if edited else 3)

@@ -126,8 +126,6 @@ INTERVAL_SHARE = work(
     "of what is left of the budget",
     "Work of an interval after which it is solved again, shorter, if it has not converged.",
 )
-STEP_BEGUN = work(0.015625, "of the step", "Part of a step up to which it may take STEP_EXCESS times its work.")
-STEP_EXCESS = work(2, "times", "Work of a step that has hardly begun.")
 STEP_WORK_BODY = work(250000.0, "operations", "Work of a step with joints for each body of the scene.")
 MEET = round_off(1e-13, "of the smaller shape", "Gap at the located instant of an impact on a component.")
 MEET_LOADED = accuracy(1e-06, "of the smaller shape", "Gap at that instant if contacts push on the component.")
