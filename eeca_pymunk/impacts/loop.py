@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from ..compiled import inlined, kernel, nonallocating
 from ..contacts.single import alone, strike_disk
-from ..contacts.unmet import most_work, note_unmet
+from ..contacts.unmet import note_unmet
 from ..geometry.sides import remembers
 from ..islands.accounting import end_interval
 from ..islands.building import comes_to_rest, hits_of, most_hits, passed_over
 from ..islands.membership import jointed, members
 from ..jointed.ends import end_here
-from ..jointed.ledger import is_spent
+from ..jointed.ledger import most_looks, work_left
 from ..model.bodies import LEAVE, RENEW
 from ..model.joints import Joints
 from ..model.parameters.events import AHEAD, EVENT_LOOKS, RESOLUTION
@@ -50,15 +50,15 @@ def met_too_often(A: Scene, i: int, j: int) -> bool:
 
 
 @nonallocating
-def run(A: Scene, may_rest: bool) -> int:
+def run(A: Scene, may_rest: bool, most: float) -> int:
     """Process events up to the end of the step, or up to the next one that the loop does not process itself (BLOCK_DUE)
     or that needs more memory.
 
     Args:
-        may_rest: whether contacts may persist.
+        may_rest: whether contacts may persist.  most: COUNT.work after which the step is to be cut short.
     """
     BODY, STATE, COUNT, TIME, OF = A.BODY, A.STATE, A.COUNT, A.HEAP_TIME, A.HEAP_BODY
-    disks, moving, end, most = COUNT.disks, A.LIST.shape[0], A.PAR.dt, most_work(A)
+    disks, moving, end = COUNT.disks, A.LIST.shape[0], A.PAR.dt
     one, two, t = -1, -1, 0.0  # bodies to be predicted
     while True:
         while one >= 0:
@@ -146,12 +146,12 @@ def follow(A: Scene, J: Joints, may_rest: bool) -> int:
     while True:
         status = start_waiting(A, J) if COUNT.waiting > 0 else DONE
         if status == DONE:
-            status = run(A, may_rest)
+            status = run(A, may_rest, most_looks(A, J))
         if status != BLOCK_DUE:
             return status
         t, i = A.PAR.now, COUNT.struck
         s, o = STATE[i].own, STATE[i].other
-        if COUNT.work > most_work(A):
+        if COUNT.work > most_looks(A, J):
             return cut_short(A, J, i, t)
         if COUNT.logged + COUNT.pushes + 8 * STATE.shape[0] > A.LOG.shape[0]:
             COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
@@ -175,7 +175,7 @@ def follow(A: Scene, J: Joints, may_rest: bool) -> int:
                 rest = comes_to_rest(A, s, o, t)
             COUNT.waiting = strike(A, s, o, t, rest)
             joints = COUNT.waiting < 0
-        if joints and is_spent(J):
+        if joints and work_left(A, J) < 0.0:
             COUNT.waiting = 0
             return cut_short(A, J, i, t)
         if joints and not has_room(A):

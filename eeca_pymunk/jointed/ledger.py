@@ -6,7 +6,7 @@ import math
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import nonallocating
-from ..contacts.unmet import note_unmet
+from ..contacts.unmet import most_work, note_unmet
 from ..joints.ledger import clear_interval
 from ..layout import BODY_ROW, LEFT
 from ..layout import NOW as READ
@@ -55,9 +55,18 @@ def start_joints(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray) -> Non
 
 
 @nonallocating
-def is_spent(J: Joints) -> bool:
-    """Whether a step has no work left for joints."""
-    return bool(J.PROGRESS.effort > J.PROGRESS.budget)
+def work_left(A: Scene, J: Joints) -> float:
+    """Work for joints that a step has left, in operations: what events have taken of their budget is not there for
+    joints either, as both take time."""
+    return float(J.PROGRESS.budget * (1.0 - A.COUNT.work / most_work(A)) - J.PROGRESS.effort)
+
+
+@nonallocating
+def most_looks(A: Scene, J: Joints) -> float:
+    """Largest work of the events of this step, in looks: `most_work`, but for the part that joints have taken of their
+    budget."""
+    taken = J.PROGRESS.effort / J.PROGRESS.budget if J.TALLY.components > 0 else 0.0
+    return float(most_work(A) * (1.0 - taken))
 
 
 @nonallocating

@@ -11,7 +11,7 @@ from ..compiled import kernel, nonallocating
 from ..contacts.geometry import gather
 from ..contacts.interval import make_contacts, recall, speeds
 from ..contacts.memory import remember_loads
-from ..contacts.unmet import note_unmet
+from ..contacts.unmet import note_unmet, spend
 from ..contacts.works import moved
 from ..islands.candidates import before_end, pairs_within
 from ..islands.local import (
@@ -41,7 +41,7 @@ from .component import step_component
 from .fitting import fit
 from .gathered import gather_component, keep_joints, restore_joints
 from .groups import Groups, find_groups
-from .ledger import is_spent
+from .ledger import work_left
 from .lengths import excess, led_in, sinks
 from .lifting import lift_island
 from .lock import lost, slip_of
@@ -89,7 +89,7 @@ def begin_interval(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
     for attempt in range(INTERVAL_TRIES):
         h = max(h, least)
         last = attempt + 1 == INTERVAL_TRIES or A.COUNT.together > 0 or h <= least
-        if t > 0.0 and is_spent(J):
+        if t > 0.0 and work_left(A, J) < 0.0:
             rest.longest = h  # where the next step begins
             return SPENT
         status, h = open_span(A, J, root, t, h, last)
@@ -114,6 +114,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     # As in a whole step where it is cut short: nobody looks for impacts of pairs that would be left out.
     found = pairs_within(A, root, t, A.PAR.planned - t, lossy(A, root), MINE, n)
     p = len(found)
+    spend(A, 2 * p, 0, 0, 0)  # besides what joints take
     if p == 0 and whole:
         clear_places(A, MINE, n)
         far = begin_alone(A, J, root, t, h, last)
@@ -139,7 +140,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
         m = gather(A, isle, contacts, moved(isle.POSE, isle.V, 0.5 * h), REACH, h, k == n)
     interval = Interval(isle, groups, P, Q, ROWS, motion, make_columns(groups, P, Q, m), m, n, t, h)
     held, before = True, J.PROGRESS.effort
-    J.PROGRESS.share = before + INTERVAL_SHARE * max(J.PROGRESS.budget - before, 0.0)
+    J.PROGRESS.share = before + INTERVAL_SHARE * max(work_left(A, J), 0.0)
     if m > 0:
         recall(KEY, m, A.KEYS, A.FORCES, A.PAR.stamp, h, m > COLUMN_CONTACTS, L, EXPECTED)
         owed = max(-A.RESTING[root].lost, 0.0)
