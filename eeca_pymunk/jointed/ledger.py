@@ -89,8 +89,16 @@ def account_component(A: Scene, J: Joints, s: int) -> None:
 
 @nonallocating
 def account_joints(A: Scene, J: Joints) -> None:
-    """Book what all joints have done until the end of the step."""
+    """Book what all joints have done until the end of the step, and leave their impulses as those of a whole step by
+    their last forces: an interval may have been shorter, or the last step longer, of what was not stepped in this one.
+    """
     for s in range(J.TALLY.components):
         account_component(A, J, s)
     if J.TALLY.worst >= ELASTIC:
         note_unmet(A, UNMET_JOINTS, -1, -1, float(J.TALLY.worst), float(ELASTIC))
+    for j in range(J.JOINT.shape[0]):
+        joint = J.JOINT[j]
+        if joint.last_step > 0.0 and joint.last_step != A.PAR.planned:
+            longer = A.PAR.planned / joint.last_step
+            joint.impulse[0], joint.impulse[1] = joint.impulse[0] * longer, joint.impulse[1] * longer
+            joint.last_step = A.PAR.planned

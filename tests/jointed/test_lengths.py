@@ -125,3 +125,18 @@ def test_how_long_intervals_may_be_is_known_until_a_body_is_edited(edited: bool,
         bob.velocity *= 0.9
     stepper.step(1 / 60)
     assert loop.scene.COUNT.solves == (1 if edited else 3)
+
+
+def test_a_joint_tells_its_force_whatever_the_intervals_of_a_step() -> None:
+    """What hangs pulls with m g, and the impulse of a step is m g dt."""
+    space = empty(9.81)
+    weight = body(space, 2.0, 0.1, (0.0, -1.0))
+    joint = pymunk.PinJoint(space.static_body, weight)
+    space.add(joint)
+    stepper = ep.EECA(space)
+    for dt in (1 / 60, 1 / 60, 1 / 240):
+        stepper.step(dt)
+        assert joint.impulse == pytest.approx(2.0 * 9.81 * dt, rel=1e-9)
+        loop = stepper.event_loop
+        assert loop is not None
+        loop.scene.RESTING["longest"] = 0.25 * dt
