@@ -31,7 +31,7 @@ def start(
 ) -> int:  # fmt: skip
     """Take the states read from pymunk, and begin a step of length dt; returns the bits so far, or a negative code."""
     if len(J.JOINT) > 0:
-        start_joints(A, J, STATES, WALK)
+        start_joints(A, J, STATES, WALK, dt)
     status = take(STATES, WALK, EXTRA, A.BODY, gx, gy, half_damping)
     if status >= 0:
         lost = put_pinned(A.PINNED, A.BODY)

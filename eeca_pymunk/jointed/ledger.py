@@ -12,6 +12,7 @@ from ..layout import BODY_ROW, LEFT
 from ..layout import NOW as READ
 from ..model.joint_steps import ELASTIC
 from ..model.joints import EDITED, Joints
+from ..model.parameters.events import BUDGET_TIME
 from ..model.parameters.joints import STEP_WORK, STEP_WORK_BODY
 from ..model.scene import Scene
 from ..model.step import JOINTS as UNMET_JOINTS
@@ -45,11 +46,12 @@ def mark_edited(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray) -> None
 
 
 @nonallocating
-def start_joints(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray) -> None:
-    """Begin a step of a scene with joints, before its states are taken."""
+def start_joints(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray, dt: float) -> None:
+    """Begin a step of length dt of a scene with joints, before its states are taken."""
     mark_edited(A, J, STATES, WALK)
     J.TALLY.worst = 0
-    J.PROGRESS.effort, J.PROGRESS.budget = 0.0, STEP_WORK + STEP_WORK_BODY * A.BODY.shape[0]
+    J.PROGRESS.effort = 0.0
+    J.PROGRESS.budget = (STEP_WORK + STEP_WORK_BODY * A.BODY.shape[0]) * max(1.0, dt / BUDGET_TIME)
     for s in range(len(J.STEPPED)):
         clear_interval(J.STEPPED[s])
 
