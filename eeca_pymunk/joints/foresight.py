@@ -83,11 +83,9 @@ def foretell(W: Workspace, part: int, piece: float, loops: bool) -> None:
 
 
 @nonallocating
-def remember(W: Workspace, piece: float) -> None:
-    """Store `lead` and `lam` of the part of length `piece` that was taken."""
+def store(W: Workspace, at: int, piece: float) -> None:
+    """Store `lead` and `lam` of a part of length `piece` that was taken at a place of the DEPTH there are."""
     joint, link = W.J.JOINT, W.link
-    count = joint[link[0].joint].known_parts
-    at = count % DEPTH
     for k in range(W.joints):
         j = link[k].joint
         for c in range(6):
@@ -95,4 +93,13 @@ def remember(W: Workspace, piece: float) -> None:
             joint[j].past_led[c, at] = W.J.LOCAL[i].lead[c % 3]
         for r in range(link[k].rows):
             joint[j].past_push[r, at] = W.J.HINGE[k].lam[r] / piece
-        joint[j].known_parts = count + 1 if count + 1 < 2 * PARTS * DEPTH else PARTS * DEPTH
+
+
+@nonallocating
+def remember(W: Workspace, piece: float) -> None:
+    """`store` the part of length `piece` that was taken after those that are known."""
+    joint, link = W.J.JOINT, W.link
+    count = joint[link[0].joint].known_parts
+    store(W, count % DEPTH, piece)
+    for k in range(W.joints):
+        joint[link[k].joint].known_parts = count + 1 if count + 1 < 2 * PARTS * DEPTH else PARTS * DEPTH

@@ -66,10 +66,9 @@ def stop_at(W: Workspace, k: int, side: int, at_once: bool, stays: bool, ledger:
             that stands is let go.
     """
     link = W.link
-    begin_part(link, W.joints)
     link[k].side = side
-    for i in range(W.joints if stays else 0):
-        link[i].let_go = link[i].side
+    for i in range(W.joints):
+        link[i].let_go = link[i].side if stays else 0
     correct(W, SPEEDS)
     begin_part(link, W.joints)
     if at_once:

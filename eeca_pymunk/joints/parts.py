@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from ..compiled import inlined, nonallocating
 from ..model.joints import Component, Workspace
-from .foresight import DEPTH
+from .foresight import DEPTH, store
 
 
 @inlined
@@ -45,15 +45,10 @@ def begin_as_known(W: Workspace, part: int, left: float, cold: bool) -> tuple[in
 def note_part(W: Workspace, part: int, k: int, side: int, when: float) -> None:
     """Note that a part of length `when` has been taken, at whose end joint k met its limit at this side; -1: none, it
     was the last one."""
-    joint, link, component = W.J.JOINT, W.link, W.J.COMPONENT[W.s]
+    component = W.J.COMPONENT[W.s]
     if part >= DEPTH:
         return
     if part >= component.parts or component.part_limit[part] != k:
         component.parts = part + 1  # what came after another limit is not known
     component.part_limit[part], component.part_side[part], component.part_length[part] = k, side, when
-    for i in range(W.joints):
-        j = link[i].joint
-        for c in range(6):
-            joint[j].past_led[c, part] = W.J.LOCAL[link[i].body[c // 3]].lead[c % 3]
-        for r in range(link[i].rows):
-            joint[j].past_push[r, part] = W.J.HINGE[i].lam[r] / when
+    store(W, part, when)
