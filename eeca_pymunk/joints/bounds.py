@@ -188,3 +188,41 @@ def first_bound(W: Workspace, h: float) -> tuple[int, int, float]:
             if which < 0 or when < instant:
                 which, at_side, instant = k, side, when
     return which, at_side, instant
+
+
+@nonallocating
+def least_gap(W: Workspace, k: int, side: int, h: float) -> tuple[float, float]:
+    """The smallest gap of limit k within the solved step h, and the part of h after which it is there; 1 if that is at
+    an end. The distance of a slide is that of the chord d(s) = d0 + s (d1 - d0) from 0; the gaps of others change at
+    rates that go evenly from b to a: they are smallest at s = b/(b - a), by b s h/2."""
+    hinge = W.J.HINGE[k]
+    end = gap(W.J.JOINT, W.J.HINGE, W.link, k, side)
+    if W.link[k].kind == SLIDE:
+        x, y = hinge.apart[0], hinge.apart[1]
+        way_x, way_y = 2.0 * (hinge.measure * hinge.rows[0, 3] - x), 2.0 * (hinge.measure * hinge.rows[0, 4] - y)
+        along_way, squared = -(x * way_x + y * way_y), way_x * way_x + way_y * way_y
+        if side > 0 or not 0.0 < along_way < squared:
+            return end, 1.0
+        across = x * way_y - y * way_x
+        return end - hinge.measure + math.sqrt(across * across / squared), along_way / squared
+    before, after = gap_rates(W, k, side)
+    if not before * h < 0.0 < after * h:
+        return end, 1.0
+    start, part = max(end - 0.5 * h * (before + after), 0.0), before / (before - after)
+    return start + 0.5 * before * part * h, part
+
+
+@nonallocating
+def passed_within(W: Workspace, h: float) -> float:
+    """The first instant, from the start of the solved step h, at which a free limit that ends within its bounds is
+    farthest beyond one; h if there is none. Only after `first_bound`, which looks at the rows of limits."""
+    link, first = W.link, 1.0
+    for k in range(W.joints):
+        if link[k].side != 0 or link[k].bounded != 0 or is_far(W, k):
+            continue
+        for side in (-1, 1):
+            if has_bound(W.J.JOINT, link, k, side):
+                least, part = least_gap(W, k, side, h)
+                if part < first and least < -JOINT_TOUCH * W.J.HINGE[k].size:
+                    first = part
+    return first * h

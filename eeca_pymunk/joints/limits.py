@@ -28,7 +28,19 @@ from ..model.parameters.joints import (
 )
 from ..newton.motion import advance
 from ..newton.solve import drop_impulses, solve, solve_linearly
-from .bounds import begin_part, first_bound, gap, gap_rates, held_till_then, hold_limits, hops, look, release, standing
+from .bounds import (
+    begin_part,
+    first_bound,
+    gap,
+    gap_rates,
+    held_till_then,
+    hold_limits,
+    hops,
+    look,
+    passed_within,
+    release,
+    standing,
+)
 from .correct import correct, fitting_loss
 from .ledger import book
 from .parts import begin_as_known, meets_limit, note_part
@@ -117,11 +129,24 @@ def step_with_limits(
                     continue
                 k, other, instant = first_bound(W, when)
                 if k < 0 or linear:
+                    may_end = not linear and events < LIMIT_EVENTS and progress.effort <= progress.hurry
+                    within = passed_within(W, when) if may_end else when
+                    if within != when:  # a limit is passed, and passed again: the part ends between
+                        if whole:
+                            return False
+                        when, events, component.parts_within = within, events + 1, 0.0
+                        continue
                     book(W, when, ledger)
                     advance(local, W.bodies, when)
                     if component.parts_within == h:
                         note_part(W, part, -1, 0, when)
-                    return True
+                    if when == left:
+                        return True
+                    left -= when
+                    when, solved = left, 0.0
+                    begin_part(link, W.joints)
+                    drop_impulses(W)
+                    continue
                 if whole:
                     return False
                 side, events = other, events + 1

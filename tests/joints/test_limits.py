@@ -177,6 +177,26 @@ def test_a_limit_whose_gap_opens_first_is_found(speed: float, unit: float) -> No
     assert report.ledger.restitution == pytest.approx(0.5 * (speed * unit) ** 2, rel=1e-6, abs=round_off)
 
 
+@pytest.mark.parametrize("unit", UNITS)
+@pytest.mark.parametrize("parts", [1, 2, 3, 7])
+def test_what_would_pass_within_its_least_distance_in_a_step_stops_there(parts: int, unit: float) -> None:
+    # On a line that is .1 off the anchor, from -1 to 1: it meets the circle of radius .5, and goes on along the tangent
+    # there with .2 of its speed, which is the tangential part.
+    space, aside, least = empty(0.0), 0.1 * unit, 0.5 * unit
+    ball = body(space, 2.0, 0.5 * unit**2, (-unit, aside))
+    ball.velocity = (2.0 * unit, 0.0)
+    space.add(pymunk.SlideJoint(space.static_body, ball, (0, 0), (0, 0), least, 9.0 * unit))
+    stepper = JointedSpace(space)
+    for _ in range(parts):
+        stepper.step(1.0 / parts)
+    across = math.sqrt(least**2 - aside**2)
+    tangent = pymunk.Vec2d(aside, across) / least
+    speed, left = 2.0 * unit * aside / least, 1.0 - (unit - across) / (2.0 * unit)
+    assert (ball.velocity - speed * tangent).length < 1e-9 * unit
+    assert (ball.position - pymunk.Vec2d(-across, aside) - speed * left * tangent).length < 1e-9 * unit
+    assert stepper.ledger.limited == pytest.approx(4.0 * unit**2 - speed**2, rel=1e-9)
+
+
 def test_what_hangs_at_its_limit_is_held_in_the_shortest_step() -> None:
     """The bound is met but for round-off, which a short step must not close: that would take any force."""
     space = empty()
