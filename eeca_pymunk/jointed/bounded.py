@@ -16,7 +16,7 @@ from ..model.joints import GROOVE, PRESCRIBED, Joints
 from ..model.parameters.joints import BOUNDED_SWEEPS, MOTOR_OFF
 from ..model.scene import Scene
 from ..newton.entries import held, interval_of, is_limit
-from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, bounded_rate, room_for_rows, sweep_bounded
+from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, bounded_rate, room_for_rows, sweep_bounded, weigh_rows
 from .component import answer
 from .groups import Groups
 
@@ -119,7 +119,8 @@ def fill_rows(
 
 @kernel
 def with_bounded(B: Bounded, L: FloatArray, m: int) -> FloatArray:
-    """Impulses of m contacts and those of the bounded rows in the last motion, (m + rows, 2)."""
+    """Impulses of m contacts and those of the bounded rows in the last motion, (m + rows, 2); these are weighed."""
+    weigh_rows(B)
     BOTH = np.zeros((m + B.USED[0], 2))
     for i in range(m):
         BOTH[i, 0], BOTH[i, 1] = L[i, 0], L[i, 1]

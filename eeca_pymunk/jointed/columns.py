@@ -39,7 +39,7 @@ def make_columns(groups: Groups, A: IntArray, B: IntArray, m: int) -> Columns:
                     at += 1
             if way == 0:
                 AT[i + 1] = at
-    return Columns(AT, BODY, np.zeros((AT[m], 3)), np.zeros((AT[m], 3)), np.zeros(m, np.int64))
+    return Columns(AT, BODY, np.zeros((AT[m], 3)), np.zeros((AT[m], 3)), np.zeros(m, np.int64), np.zeros(1))
 
 
 @nonallocating

@@ -164,9 +164,11 @@ def press(
             NOW[i] = B.ROWS[i].now
         leave_out(C, L, m, FORESEEN)
         BOTH = with_bounded(B, L, m)
-        worst = solve_columns(problem, BOTH, FORESEEN, fine, COLUMN_SWEEPS if anew else 0, most)
+        C.WORK[0], work = 0.0, J.PROGRESS.share - J.PROGRESS.effort
+        worst = solve_columns(problem, BOTH, FORESEEN, fine, COLUMN_SWEEPS if anew else 0, most, work)
         if worst > WEDGED * scale and m <= COLUMN_CONTACTS and rubs(ROWS, m):
-            worst = solve_wedged(problem, BOTH, FORESEEN, fine, most)
+            worst = solve_wedged(problem, BOTH, FORESEEN, fine, most, work)
+        J.PROGRESS.effort += C.WORK[0]
         for i in range(m):
             L[i, 0], L[i, 1] = BOTH[i, 0], BOTH[i, 1]
         converged = worst <= 10.0 * max(fine, min(agree, AGREE * scale))

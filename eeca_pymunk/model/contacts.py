@@ -106,13 +106,15 @@ class Problem(NamedTuple):
 
 
 class Columns(NamedTuple):
-    """Of contact i: AT[i] : AT[i + 1] the entries BODY, N and T (., 3) of its columns; OUT (m,) 1 if it is left out."""
+    """Of contact i: AT[i] : AT[i + 1] the entries BODY, N and T (., 3) of its columns; OUT (m,) 1 if it is left out.
+    WORK (1,): operations that solutions with these columns have taken."""
 
     AT: IntArray
     BODY: IntArray
     N: FloatArray
     T: FloatArray
     OUT: IntArray
+    WORK: FloatArray
 
 
 class BoundedRow(Record):
@@ -123,6 +125,8 @@ class BoundedRow(Record):
     high: float
     part: float  # SINGLE, or the place in a disc (`..rows.bounded`)
     now: float  # impulse of the last motion
+    give: float  # change of the velocity along it by a unit impulse
+    cross: float  # of the first row of a disc: by one of the second row
 
 
 BOUNDED_ROW = kind_of(BoundedRow)

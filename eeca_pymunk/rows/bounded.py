@@ -84,6 +84,15 @@ def per_impulse(B: Bounded, i: int, j: int) -> float:
 
 
 @nonallocating
+def weigh_rows(B: Bounded) -> None:
+    """Set what unit impulses of the rows change along them: `give` and `cross`."""
+    for i in range(B.USED[0]):
+        B.ROWS[i].give = per_impulse(B, i, i)
+        if B.ROWS[i].part == FIRST_OF_DISC:
+            B.ROWS[i].cross = 0.5 * (per_impulse(B, i, i + 1) + per_impulse(B, i + 1, i))
+
+
+@nonallocating
 def push_row(B: Bounded, i: int, change: float, V: FloatArray) -> None:
     """Add the change of velocities by an impulse `change` of row i to V (k, 3)."""
     if change != 0.0:
@@ -101,15 +110,14 @@ def sweep_bounded(B: Bounded, L: FloatArray, m: int, V: FloatArray) -> float:
         part, low, high = B.ROWS[i].part, B.ROWS[i].low, B.ROWS[i].high
         if part == SECOND_OF_DISC:
             continue
-        a, x = per_impulse(B, i, i), L[m + i, 0]
+        a, x = B.ROWS[i].give, L[m + i, 0]
         if not a > 0.0:
             continue
         u = B.ROWS[i].speed + bounded_rate(B, i, V)
         if part == SINGLE:
             L[m + i, 0] = min(max(x - u / a, low), high)
         else:
-            b = 0.5 * (per_impulse(B, i, i + 1) + per_impulse(B, i + 1, i))
-            c, y = per_impulse(B, i + 1, i + 1), L[m + i + 1, 0]
+            b, c, y = B.ROWS[i].cross, B.ROWS[i + 1].give, L[m + i + 1, 0]
             if not c > 0.0:
                 continue
             other = B.ROWS[i + 1].speed + bounded_rate(B, i + 1, V)

@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import inlined, kernel, nonallocating
 from ..model.contacts import Columns, JointedProblem, Problem
-from .bounded import SINGLE, bounded_rate, per_impulse, push_row, room_for_rows, sweep_bounded
+from .bounded import SINGLE, bounded_rate, push_row, room_for_rows, sweep_bounded
 from .build import normal_rate, tangent_rate
 from .coulomb import coulomb, limited_slip
 
@@ -35,7 +35,8 @@ def as_columns(problem: Problem) -> JointedProblem:
             N[w, 2] = sign * II[q] * (ROWS[i].arm_nb if side == 1 else ROWS[i].arm_na)
             T[w, 2] = sign * II[q] * (ROWS[i].arm_tb if side == 1 else ROWS[i].arm_ta)
     AT[m] = 2 * m
-    return JointedProblem(A, B, ROWS, Columns(AT, BODY, N, T, np.zeros(m, np.int64)), room_for_rows(0, 0), m)
+    C = Columns(AT, BODY, N, T, np.zeros(m, np.int64), np.zeros(1))
+    return JointedProblem(A, B, ROWS, C, room_for_rows(0, 0), m)
 
 
 @inlined
@@ -128,7 +129,7 @@ def breach(problem: JointedProblem, L: FloatArray, V: FloatArray) -> float:
         row, x = D.ROWS[i], L[m + i, 0]
         if row.part != SINGLE:
             return np.inf
-        if per_impulse(D, i, i) > 0.0:
+        if row.give > 0.0:
             u = row.speed + bounded_rate(D, i, V)
             worst = max(worst, abs(u) if row.low < x < row.high else u if x >= row.high else -u)
     return worst

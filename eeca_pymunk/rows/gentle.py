@@ -8,6 +8,8 @@ and the solution.
 
 from __future__ import annotations
 
+from math import inf
+
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..model.contacts import AnyProblem, Problem
@@ -48,7 +50,7 @@ def unwedge(problem: Problem, L: FloatArray, V: FloatArray, FREE: FloatArray, to
     far from solved they are (velocity)."""
     L[:] = 0.0
     copy(V, FREE)
-    worst = solve_wedged(as_columns(problem), L, V, tolerance, COLUMN_SWEEPS_AFTER)
+    worst = solve_wedged(as_columns(problem), L, V, tolerance, COLUMN_SWEEPS_AFTER, inf)
     if excessive(L, problem.m, problem.IM, problem.n, speed):
         L[:] = 0.0
         copy(V, FREE)

@@ -17,6 +17,7 @@ from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..model.contacts import JointedProblem
 from ..model.parameters.impulses import HOMOTOPY_CHANGES, HOMOTOPY_CHANGES_ANEW, HOMOTOPY_REFINEMENTS
+from ..model.parameters.joints import HOMOTOPY_WORK
 from .bounded import SINGLE, bounded_rate
 from .build import normal_rate, tangent_rate
 from .coulomb import limited_slip
@@ -59,6 +60,7 @@ def begin(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: bool) -> 
     for k in range(size):
         AT[k], KIND[k] = (k // 2, k % 2) if k < 2 * m else (k - 2 * m, 2)
     matrix_jointed(problem, np.zeros(m), AT, KIND, size, T)
+    pivots = HOMOTOPY_WORK
     for i in range(m):
         tableau.MU[i] = max(ROWS[i].friction, 0.0)
         if C.OUT[i] == 0 and not ROWS[i].wake < np.inf:
@@ -70,6 +72,7 @@ def begin(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: bool) -> 
             if L[i, 0] > 0.0 and L[i, 1] == 0.0 and slides * ROWS[i].ut < 0.0:
                 tableau.MU[i] = 0.0  # a slip that has reversed by less than its size: no friction without giving energy
             X[2 * i], X[2 * i + 1] = L[i, 0], L[i, 1]
+            pivots += 1.0 if L[i, 0] > 0.0 else 0.0
     for i in range(n):
         row, k = D.ROWS[i], 2 * m + i
         tableau.LOW[i], tableau.HIGH[i] = row.low, row.high
@@ -85,6 +88,7 @@ def begin(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: bool) -> 
         set_opening_direction(tableau, m)
     else:
         restore_states(tableau, m, X)
+    C.WORK[0] += pivots * size * size
     return tableau
 
 
@@ -225,5 +229,6 @@ def follow_homotopy(problem: JointedProblem, L: FloatArray, V: FloatArray, FREE:
         if changed < 0:
             return False
         theta += way * nearest
+        problem.C.WORK[0] += size * size
         number = change(tableau, m, changed, number, theta)
     return False

@@ -12,7 +12,13 @@ from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import JointedProblem, Problem, Row
-from ..model.parameters.joints import COLUMN_CONTACTS, COLUMN_HOMOTOPIES, COLUMN_SWEEPS, COLUMN_SWEEPS_AFTER
+from ..model.parameters.joints import (
+    COLUMN_CONTACTS,
+    COLUMN_HOMOTOPIES,
+    COLUMN_SWEEPS,
+    COLUMN_SWEEPS_AFTER,
+    SWEEP_WORK,
+)
 from .columns import as_columns, breach
 from .conjugate import iterate
 from .coulomb import slip_freely
@@ -22,25 +28,37 @@ from .sweeps import push, sweep, velocities
 
 
 @kernel
+def sweep_columns(problem: JointedProblem, L: FloatArray, V: FloatArray, tolerance: float, most: int) -> float:
+    """`iterate`, whose work is counted; the change in the last sweep."""
+    done, worst = iterate(problem, L, V, tolerance, most)
+    entries = problem.C.AT[problem.m] + problem.D.AT[problem.D.USED[0]]
+    problem.C.WORK[0] += SWEEP_WORK * done * entries
+    return worst
+
+
+@kernel
 def solve_columns(
-    problem: JointedProblem, L: FloatArray, V: FloatArray, tolerance: float, sweeps: int, most: int,
-) -> float:  # fmt: skip
+    problem: JointedProblem, L: FloatArray, V: FloatArray, tolerance: float, sweeps: int, most: int, work: float
+) -> float:
     """Impulses L (m contacts, then the bounded rows) and velocities V.
 
     Args:
         tolerance: velocity by which laws may be broken, or contacts change in a sweep.  sweeps: before a homotopy.
-        most: sweeps where there are too many contacts for a homotopy, or it has no end.
+        most: sweeps where there are too many contacts for a homotopy, or it has no end.  work: `Columns.WORK` from
+            which on none begins.
 
     Returns:
         the largest velocity by which a law is broken, or of a change in the last sweep if that came last.
     """
     if problem.m > COLUMN_CONTACTS:
-        return iterate(problem, L, V, tolerance, most)[1]
-    worst = iterate(problem, L, V, tolerance, sweeps)[1] if sweeps > 0 else breach(problem, L, V)
+        return sweep_columns(problem, L, V, tolerance, most)
+    worst = sweep_columns(problem, L, V, tolerance, sweeps) if sweeps > 0 else breach(problem, L, V)
     best, L0, V0, before = worst, L.copy(), V.copy(), np.inf
     for _ in range(COLUMN_HOMOTOPIES):
         if worst <= tolerance:
             return worst
+        if problem.C.WORK[0] > work:
+            break
         FREE = V.copy()
         push(problem, L, -1.0, FREE)
         if not follow_homotopy(problem, L, V, FREE, False):
@@ -65,7 +83,7 @@ def solve_columns(
         copy(L, L0)
         copy(V, V0)
         before = breach(problem, L, V)
-        worst = iterate(problem, L, V, tolerance, most)[1]
+        worst = sweep_columns(problem, L, V, tolerance, most)
         if not breach(problem, L, V) <= 2.0 * before:
             # Sweeps diverge where friction could open contacts.
             copy(L, L0)
@@ -76,15 +94,15 @@ def solve_columns(
 
 @kernel
 def solve_wedged(
-    problem: JointedProblem, L: FloatArray, V: FloatArray, tolerance: float, most: int,
-) -> float:  # fmt: skip
+    problem: JointedProblem, L: FloatArray, V: FloatArray, tolerance: float, most: int, work: float
+) -> float:
     """`solve_columns` without friction, from no impulses of contacts."""
     slip_freely(problem.ROWS, problem.m)
     push(problem, L, -1.0, V)
     for i in range(problem.m):
         L[i, 0] = L[i, 1] = 0.0
     push(problem, L, 1.0, V)
-    return solve_columns(problem, L, V, tolerance, COLUMN_SWEEPS, most)
+    return solve_columns(problem, L, V, tolerance, COLUMN_SWEEPS, most, work)
 
 
 @kernel
@@ -110,6 +128,6 @@ def solve_few(problem: Problem, L: FloatArray, V: FloatArray, tolerance: float) 
     """`solve_columns` of contacts of free bodies, whose sweeps and direct solutions have come to no end, with Coulomb's
     law alone: friction that energy limits has no solution more often, and the energy lock takes what this may give."""
     SLIP = take_slips(problem.ROWS, problem.m)
-    worst = solve_columns(as_columns(problem), L, V, tolerance, 0, COLUMN_SWEEPS_AFTER)
+    worst = solve_columns(as_columns(problem), L, V, tolerance, 0, COLUMN_SWEEPS_AFTER, np.inf)
     give_slips(problem.ROWS, problem.m, SLIP)
     return worst

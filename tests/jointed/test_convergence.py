@@ -65,7 +65,7 @@ def test_columns_answer_as_the_last_motion_did() -> None:
     groups = Groups(np.array([0, 0, 1]), np.array([0, 2, 3]), np.array([0, 1, 2]), np.array([0, -1]), np.array([0]))
     columns = Columns(
         np.array([0, 3, 6]), np.array([0, 1, 2, 0, 1, 2]), rng.normal(size=(6, 3)), rng.normal(size=(6, 3)),
-        np.zeros(2, np.int64),
+        np.zeros(2, np.int64), np.zeros(1),
     )  # fmt: skip
     contacts, bodies = make_contacts(2, 3), np.zeros((3, 3))
     mean, before = rng.normal(size=(3, 3)), rng.normal(size=(3, 3))

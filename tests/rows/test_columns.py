@@ -36,7 +36,7 @@ def problems(block: Block) -> tuple[Problem, JointedProblem]:
     at = np.searchsorted([i for i, _ in entries], np.arange(m + 1)).astype(np.int64)
     columns = Columns(
         at, np.array([q for _, q in entries], np.int64), np.zeros((len(entries), 3)), np.zeros((len(entries), 3)),
-        np.zeros(m, np.int64),
+        np.zeros(m, np.int64), np.zeros(1),
     )  # fmt: skip
     for w, (i, q) in enumerate(entries):
         for tangent, table in enumerate((columns.N, columns.T)):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
@@ -76,5 +78,5 @@ def test_an_inactive_contact_breaks_its_law_beyond_the_velocity_that_activates_i
     L, V = np.zeros((2, 2)), block.velocity.copy()
     columns = as_columns(problem)
     assert breach(columns, L, V) == pytest.approx(2.0, rel=1e-15)
-    assert solve_columns(columns, L, V, 1e-13, 0, 20) <= 1e-13
+    assert solve_columns(columns, L, V, 1e-13, 0, 20, math.inf) <= 1e-13
     assert min(normal_rate(problem.A, problem.B, problem.ROWS, V, i) for i in range(2)) >= -1e-13

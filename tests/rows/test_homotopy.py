@@ -9,7 +9,7 @@ import pytest
 
 from eeca_pymunk.compiled.records import zeros
 from eeca_pymunk.model.contacts import BOUNDED_ROW, ROW, Bounded, Columns, JointedProblem
-from eeca_pymunk.rows.bounded import room_for_rows
+from eeca_pymunk.rows.bounded import room_for_rows, weigh_rows
 from eeca_pymunk.rows.build import normal_rate, place_row, tangent_rate
 from eeca_pymunk.rows.homotopy import follow_homotopy
 from eeca_pymunk.rows.sweeps import push, sweep, velocities
@@ -30,7 +30,7 @@ def problem_of(
     contacts = zeros(m, ROW)
     columns = Columns(
         2 * np.arange(m + 1), np.empty(2 * m, np.int64), np.empty((2 * m, 3)), np.empty((2 * m, 3)),
-        np.zeros(m, np.int64),
+        np.zeros(m, np.int64), np.zeros(1),
     )  # fmt: skip
     for i in range(m):
         contacts[i].nx, contacts[i].ny, contacts[i].friction = normals[i, 0], normals[i, 1], mu
@@ -51,6 +51,7 @@ def problem_of(
         )  # fmt: skip
         for i in range(rows):
             bounded.ROWS[i].speed, bounded.ROWS[i].low, bounded.ROWS[i].high = 2.0 * (-1.0) ** i, -0.05, 0.08
+        weigh_rows(bounded)
     return JointedProblem(A, B, contacts, columns, bounded, m)
 
 

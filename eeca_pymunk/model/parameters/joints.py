@@ -172,6 +172,10 @@ OUTER_FLOOR = round_off(
     1e-08, "of the speed", "Difference of the velocities that is round-off of stiff components if it does not fall."
 )
 PRESS_WORK_ROUND_OFF = round_off(4e-14, "of impulses times speed", "Round-off of the work of contacts of components.")
+SWEEP_WORK = work(40.0, "operations", "Work of a sweep over contacts for each entry of their columns.")
+HOMOTOPY_WORK = work(
+    25.0, "operations", "Work of the matrix of a homotopy for each of its entries; a change of state takes one."
+)
 SOLUTION_WORK = work(1000.0, "operations", "Work of a solution for each entry of its columns.")
 PRESS_WORK_TAUT = round_off(
     1e-09, "of impulses times speed", "Round-off of the work of contacts on taut joints, at most."
