@@ -24,7 +24,7 @@ from ..model.scene import Scene
 from ..pairs.lists import far_apart
 from ..pairs.rules import barred
 from ..prediction.impact_times import meet as find_meeting
-from .ends import end_here, left_apart, shorten, under_way
+from .ends import end_here, left_apart, shorten, stand_still, under_way
 
 
 @nonallocating
@@ -90,7 +90,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
     The end of a coarse interval is not a continuous function of its length: stiff springs swing more than once in it.
     If the shapes are on the far side of each other, or on the way there, as their paths meet before the end, or it is
     `too_late` for joints or others, the instant is before that. If no interval is found that ends where they touch,
-    both end at one at which they are apart.
+    both end at one at which they are apart; what has no interval that joints hold in stands still until then.
     """
     i, j = A.LINK[a].owner, A.LINK[b].owner
     roots = (A.STATE[i].island, A.STATE[j].island if A.BODY[j].inv_mass > 0.0 else -1)
@@ -174,9 +174,11 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
         while t - least > A.PAR.instant and too_late(A, J, roots, t):
             t = 0.5 * (least + t)
             shorten_both(A, J, roots[0], roots[1], t)
-    end_here(A, J, roots[0], t)
-    if roots[1] != roots[0]:
-        end_here(A, J, roots[1], t)
+    for root in roots:
+        if left_apart(A, J, root):
+            stand_still(A, J, root, t)
+            g, crossed = gap(A, a, b, t)[0] - level, True
+        end_here(A, J, root, t)
     return t, crossed and g > close * small
 
 
