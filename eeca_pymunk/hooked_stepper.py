@@ -56,7 +56,7 @@ class HookedStepper(PackedSpace):
         gx, gy = world.gravity
         if not world.plain and not self.adjust(world, dt):
             return OTHER_BODIES
-        return self._method.step(world.STATES, world.WALK, world.EXTRA, world.ENDS, dt, gx, gy, half_damping)
+        return self._method.step(world.reading, dt, gx, gy, half_damping)
 
     def details(self, world: World, dt: float) -> Details | Callable[[], Details]:
         """The arrays of the report of the last step, whose status has EVENTS, or a function that makes them."""
@@ -145,7 +145,7 @@ class HookedStepper(PackedSpace):
                 # So that changes by functions after the step count as edits in the next one.
                 world.keep_unaltered()
         except BaseException:
-            self._undo(world, world.START)
+            self._undo(world, world.start)
             raise
         self.time += dt
         report = self._make_report(world, dt, status, outcome, lost)
@@ -159,11 +159,12 @@ class HookedStepper(PackedSpace):
             if slept and not body.is_sleeping:
                 body.velocity, body.angular_velocity = (0.0, 0.0), 0.0
         world.bodies.scatter(world.state)
+        world.HELD, world.EXTRA = world.HELD.copy(), world.EXTRA.copy()
         now = self._update_world(anew=True)
         now.gather()
         now.check_start()
         rows = [world.bodies.row[body] for body in now.bodies.items]
-        now.START[:], now.EXTRA[:], now.CHANGES[:] = world.START[rows], world.EXTRA[rows], world.CHANGES[:, rows]
+        now.EXTRA[:], now.HELD[:] = world.EXTRA[rows], world.HELD[:, rows]
         now.rehearsal.go_on(world.rehearsal)
         now.hooks.late = world.hooks.late
         return now

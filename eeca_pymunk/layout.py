@@ -2,9 +2,10 @@
 
 STATES (2, N, 9) float: the state that was read (NOW), and the state at the end of the last step (LEFT; NaN: unknown).
 Columns: position, angle, velocity, spin, force, torque. WALK (4, N) int: ids, rows and flags of the bodies. EXTRA
-(N, 5) float: values for bodies with flags. ENDS (18 N) float: four tables in the form of pymunk's batch calls, (N, 6)
-pose and velocity at the end of the step; (N, 6) this pose with velocity 0, and (N, 3) this velocity, for a rest step in
-between; (N, 3) forces, reset. If no body rotates, the first three have no columns of angle and spin.
+(N, 5) float: values for bodies with flags. ENDS (18 N + 1) float: four tables in the form of pymunk's batch calls,
+(N, 6) pose and velocity at the end of the step; (N, 6) this pose with velocity 0, and (N, 3) this velocity, for a rest
+step in between; (N, 3) forces, reset; then the energy lost by damping 0. If no body rotates, the first three have no
+columns of angle and spin. HELD (6, N, 9) float: states and changes in steps that call functions of the program.
 """
 
 # STATES
@@ -25,3 +26,7 @@ EXTRA_COLUMNS = 5
 # ENDS
 END, STILL, SPEED, PULL = 0, 6, 12, 15  # where each begins, in N
 END_COLUMNS = 18
+# HELD: changes by functions before the bodies move, and afterwards; the state at the start of the step, at the start of
+# the rehearsal, and before a function was called; the end of the step without changes by functions
+EARLY, LATE, START, REHEARSED, SEEN, UNALTERED = 0, 1, 2, 3, 4, 5
+HELD = 6

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypeVar
 import numpy as np
 
 from .arrays import FloatArray, IntArray
+from .compiled import Table
 from .errors import NotFiniteError
 from .impacts.scene import EventLoop
 from .report import Details, Outcome
@@ -34,10 +35,7 @@ class Method(Protocol):
     """Steps the arrays of one world: an `EventLoop`, or `closures.motion.Disks`. Results of earlier steps that it
     keeps, such as contact forces, last as long as the world."""
 
-    def step(
-        self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
-        half_damping: float,
-    ) -> int:  # fmt: skip
+    def step(self, reading: Table, dt: float, gx: float, gy: float, half_damping: float) -> int:
         """From the states read to those to be written: status bits or a negative code of `transfer.py`."""
 
     def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:

@@ -6,23 +6,29 @@ from __future__ import annotations
 import math
 
 from .arrays import FloatArray, IntArray
-from .compiled import kernel
-from .compiled.records import Rows
+from .compiled import Table, kernel
 from .layout import (
     ANEW,
     BODY_ROW,
     COG_X,
     COG_Y,
+    EARLY,
     ECCENTRIC,
     END,
+    END_COLUMNS,
     FOUND,
     KNOWN,
+    LATE,
     LEFT,
     NOW,
+    REHEARSED,
+    SEEN,
     SPECIAL,
+    START,
     STEERED,
+    UNALTERED,
 )  # fmt: skip
-from .model.bodies import Body
+from .model.values import reading_of
 from .transfer import (
     FORCES,
     MOVED_STATIC,
@@ -32,8 +38,8 @@ from .transfer import (
     TURNS,
     acceleration,
     finite,
+    put_ends,
     to_centre,
-    write_ends,
 )  # fmt: skip
 
 HEARD_COLUMNS = 7
@@ -42,15 +48,17 @@ PRESS = 1e-7  # part of its height by which a body is moved towards its support 
 
 
 @kernel
-def copy_start(STATES: FloatArray, WALK: IntArray, BODY: Rows[Body], START: FloatArray) -> int:
-    """Copy the state that was read to START (N, 9), and void all predictions: functions may change anything, so that
+def copy_start(table: Table) -> int:
+    """Copy the state that was read to HELD[START], and void all predictions: functions may change anything, so that
     all bodies count as placed by the program, and may overlap others.
 
     Returns:
         0; OTHER_BODIES, MOVED_STATIC or NOT_FINITE if the bodies are others, a static one was moved, or a number is not
         finite.
     """
-    now, left = STATES[NOW], STATES[LEFT]
+    R = reading_of(table)
+    WALK, BODY, start = R.WALK, R.BODY, R.HELD[START]
+    now, left = R.STATES[NOW], R.STATES[LEFT]
     status = 0
     for i in range(WALK.shape[1]):
         if WALK[FOUND, i] != WALK[KNOWN, i]:
@@ -63,37 +71,36 @@ def copy_start(STATES: FloatArray, WALK: IntArray, BODY: Rows[Body], START: Floa
             if now[i, 0] != left[i, 0] or now[i, 1] != left[i, 1] or now[i, 2] != left[i, 2]:
                 return MOVED_STATIC
         for c in range(9):
-            START[i, c] = now[i, c]
+            start[i, c] = now[i, c]
     for i in range(BODY.shape[0]):
         BODY[i].due = min(BODY[i].due, ANEW)
     return status
 
 
 @kernel
-def alter_end(
-    STATES: FloatArray, WALK: IntArray, BODY: Rows[Body], ENDS: FloatArray, AFTER: FloatArray, UNALTERED: FloatArray,
-    LOST: FloatArray, stops: int,
-) -> int:  # fmt: skip
-    """At the end of a step: set all velocities to 0 if `stops` (damping 0); copy the result to UNALTERED (N, 9); add
-    AFTER (N, 9), the changes by functions, and clear it; write all to ENDS.
+def alter_end(table: Table, stops: int) -> int:
+    """At the end of a step: set all velocities to 0 if `stops` (damping 0); copy the result to HELD[UNALTERED]; add
+    HELD[LATE], the changes by functions, and clear it; write all to ENDS.
 
-    Within the step bodies keep their velocities, as under pymunk, which moves bodies before it damps them. LOST[0]: the
-    energy lost by damping 0. Forces are reset.
+    Within the step bodies keep their velocities, as under pymunk, which moves bodies before it damps them. The
+    energy lost by damping 0 is the last number of ENDS. Forces are reset.
 
     Returns:
-        the bits of `write_ends`, or OVERFLOW if a number is not finite.
+        the bits of `put_ends`, or OVERFLOW if a number is not finite.
     """
-    now, left = STATES[NOW], STATES[LEFT]
+    R = reading_of(table)
+    WALK, BODY, late, kept = R.WALK, R.BODY, R.HELD[LATE], R.HELD[UNALTERED]
+    now, left = R.STATES[NOW], R.STATES[LEFT]
     status, straight, turning = FORCES | TURNS, 0.0, 0.0
     for i in range(WALK.shape[1]):
         row = WALK[BODY_ROW, i]
         for c in range(9):
-            UNALTERED[i, c] = left[i, c]
+            kept[i, c] = left[i, c]
         if row < 0:
             for c in range(9):
                 left[i, c] = now[i, c]
             if stops:
-                UNALTERED[i, 3], UNALTERED[i, 4], UNALTERED[i, 5] = now[i, 3], now[i, 4], now[i, 5]
+                kept[i, 3], kept[i, 4], kept[i, 5] = now[i, 3], now[i, 4], now[i, 5]
         else:
             left[i, 6], left[i, 7], left[i, 8] = 0.0, 0.0, 0.0
             if stops and BODY[row].inv_mass > 0.0 and not WALK[SPECIAL, i] & STEERED:
@@ -101,23 +108,24 @@ def alter_end(
                 if BODY[row].inv_inertia > 0.0:
                     turning += left[i, 5] * left[i, 5] / BODY[row].inv_inertia
                 for c in range(3, 6):
-                    left[i, c], UNALTERED[i, c] = 0.0, 0.0
+                    left[i, c], kept[i, c] = 0.0, 0.0
         for c in range(9):
-            left[i, c] += AFTER[i, c]
-            AFTER[i, c] = 0.0
+            left[i, c] += late[i, c]
+            late[i, c] = 0.0
         if row >= 0 and not finite(left[i, 0], left[i, 1], left[i, 2], left[i, 3], left[i, 4], left[i, 5]):
             status = OVERFLOW
-    LOST[0] = 0.5 * (straight + turning)
+    R.ENDS[END_COLUMNS * WALK.shape[1]] = 0.5 * (straight + turning)
     if status == OVERFLOW:
         return OVERFLOW
-    return write_ends(STATES, WALK, ENDS, status)
+    return put_ends(R.STATES, WALK, R.ENDS, status)
 
 
 @kernel
-def as_read(STATES: FloatArray, EXTRA: FloatArray) -> None:
+def as_read(table: Table) -> None:
     """Accept positions that differ from STATES[LEFT] by round-off as unedited: pymunk rounds the positions of bodies
     whose centre of mass is not their origin."""
-    now, left = STATES[NOW], STATES[LEFT]
+    R = reading_of(table)
+    now, left, EXTRA = R.STATES[NOW], R.STATES[LEFT], R.EXTRA
     for i in range(now.shape[0]):
         size = max(abs(now[i, 0]), abs(now[i, 1])) + max(abs(EXTRA[i, COG_X]), abs(EXTRA[i, COG_Y]))
         if max(abs(now[i, 0] - left[i, 0]), abs(now[i, 1] - left[i, 1])) <= 1e-14 * size:
@@ -153,10 +161,9 @@ def nears(STATES: FloatArray, ENDS: FloatArray, HEARD: FloatArray, PAIRS: IntArr
 
 @kernel
 def approach(
-    STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, BODY: Rows[Body], ENDS: FloatArray, KEPT: FloatArray,
-    HEARD: FloatArray, PAIRS: IntArray, dt: float, gx: float, gy: float, half_damping: float,
-) -> int:  # fmt: skip
-    """Copy the present state to KEPT (N, 9). Write to ENDS, to the table END with angles and spins, the poses from
+    table: Table, HEARD: FloatArray, PAIRS: IntArray, dt: float, gx: float, gy: float, half_damping: float
+) -> int:
+    """Copy the present state to HELD[REHEARSED]. Write to ENDS, to the table END with angles and spins, the poses from
     which a step of pymunk leads to the end of free flight. pymunk moves bodies before it accelerates them, so that they
     start at
 
@@ -172,7 +179,8 @@ def approach(
         1 if one of PAIRS comes near (`nears`), else 0; NOT_FINITE or OVERFLOW if a number at the start or the end is
         not finite.
     """
-    now = STATES[NOW]
+    R = reading_of(table)
+    WALK, EXTRA, BODY, kept, now = R.WALK, R.EXTRA, R.BODY, R.HELD[REHEARSED], R.STATES[NOW]
     N = WALK.shape[1]
     pull = math.sqrt(gx * gx + gy * gy)
     down_x, down_y, deepest = 0.0, 0.0, -math.inf
@@ -182,11 +190,11 @@ def approach(
         row = WALK[BODY_ROW, i]
         if row >= 0 and BODY[row].inv_mass > 0.0:
             deepest = max(deepest, now[i, 0] * down_x + now[i, 1] * down_y)
-    end = ENDS[END * N :]
+    end = R.ENDS[END * N :]
     for i in range(N):
         x, y, angle, vx, vy, spin = now[i, 0], now[i, 1], now[i, 2], now[i, 3], now[i, 4], now[i, 5]
         for k in range(9):
-            KEPT[i, k] = now[i, k]
+            kept[i, k] = now[i, k]
         row = WALK[BODY_ROW, i]
         if row >= 0:
             if not finite(x, y, angle, vx, vy, spin):
@@ -209,22 +217,24 @@ def approach(
                 x, y = x - dx, y - dy
         end[6 * i], end[6 * i + 1], end[6 * i + 2] = x, y, angle
         end[6 * i + 3], end[6 * i + 4], end[6 * i + 5] = vx, vy, spin
-    return nears(STATES, ENDS, HEARD, PAIRS, dt, AHEAD)
+    return nears(R.STATES, R.ENDS, HEARD, PAIRS, dt, AHEAD)
 
 
 @kernel
-def changed(STATES: FloatArray, KNOWN: FloatArray, CHANGES: FloatArray) -> int:
-    """Add to CHANGES (N, 9) the differences of STATES from KNOWN (N, 9), and update KNOWN; 1 if there are any.
+def changed(table: Table, late: int) -> int:
+    """Add the differences of STATES from HELD[SEEN], which is updated, to HELD[EARLY], or if `late` to HELD[LATE]; 1 if
+    there are any.
 
     pymunk sets spins of bodies of infinite moment that gears hold to nan: nan counts as unchanged.
     """
-    now, found = STATES[NOW], 0
-    for i in range(KNOWN.shape[0]):
+    R = reading_of(table)
+    now, seen, changes, found = R.STATES[NOW], R.HELD[SEEN], R.HELD[LATE if late > 0 else EARLY], 0
+    for i in range(now.shape[0]):
         for c in range(9):
-            before = KNOWN[i, c]
+            before = seen[i, c]
             if now[i, c] != before:
                 if before == before:
-                    CHANGES[i, c] += now[i, c] - before
+                    changes[i, c] += now[i, c] - before
                     found = 1
-                KNOWN[i, c] = now[i, c]
+                seen[i, c] = now[i, c]
     return found

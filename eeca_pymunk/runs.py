@@ -23,7 +23,7 @@ from .saved import sides_of
 from .space.world import World
 from .states import get_state, set_state
 from .stepper import check_dt, check_steps
-from .transfer import FORCES, write_ends
+from .transfer import FORCES
 
 if TYPE_CHECKING:
     import pymunk
@@ -223,7 +223,7 @@ class RunningStepper(PackedStepper):
         if RUN.done == 0:
             return
         bits = int(RUN.all_bits)
-        write_ends(world.STATES, world.WALK, world.ENDS, bits)
+        world.write_ends(bits)
         self.time = float(RUN.time)
         if bits & FORCES:
             world.reset_forces()

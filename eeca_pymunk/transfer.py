@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 
 from .arrays import FloatArray, IntArray
-from .compiled import kernel, nonallocating
+from .compiled import Table, kernel, nonallocating
 from .compiled.records import Rows
 from .layout import (
     BODY_ROW,
@@ -35,6 +35,7 @@ from .layout import (
     STILL,
 )  # fmt: skip
 from .model.bodies import Body
+from .model.values import reading_of
 
 # Status of `take`, `give` and a step: bits (there are impulses; forces have to be reset; angles or spins have to be
 # written), or a negative code.
@@ -139,9 +140,11 @@ def take(
 
 
 @kernel
-def place_anew(STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray) -> None:
+def place_anew(table: Table) -> None:
     """Let all bodies count as placed by the program where they were read, as before the first step: STATES[LEFT] is
     what was read of bodies without a row, and unknown, nan, of others; functions have given no accelerations."""
+    R = reading_of(table)
+    STATES, WALK, EXTRA = R.STATES, R.WALK, R.EXTRA
     for i in range(WALK.shape[1]):
         for c in range(9):
             STATES[LEFT, i, c] = STATES[NOW, i, c] if WALK[BODY_ROW, i] < 0 else math.nan
@@ -159,7 +162,7 @@ def give(
         dt: time.  half_damping: see `take`.  status: the bits of the step so far.
 
     Returns:
-        `status` with the bits of `write_ends`; OVERFLOW, with STATES written, if a number is not finite.
+        `status` with the bits of `put_ends`; OVERFLOW, with STATES written, if a number is not finite.
     """
     after = STATES[LEFT]
     for i in range(WALK.shape[1]):
@@ -183,11 +186,11 @@ def give(
         after[i, 3], after[i, 4], after[i, 5] = vx, vy, spin
     if status == OVERFLOW:
         return OVERFLOW
-    return write_ends(STATES, WALK, ENDS, status)
+    return put_ends(STATES, WALK, ENDS, status)
 
 
 @kernel
-def write_ends(STATES: FloatArray, WALK: IntArray, ENDS: FloatArray, status: int) -> int:
+def put_ends(STATES: FloatArray, WALK: IntArray, ENDS: FloatArray, status: int) -> int:
     """Write STATES[LEFT] to ENDS, to the tables END and PULL.
 
     Returns:
@@ -220,11 +223,19 @@ def write_ends(STATES: FloatArray, WALK: IntArray, ENDS: FloatArray, status: int
 
 
 @kernel
-def write_still_ends(STATES: FloatArray, ENDS: FloatArray, status: int) -> None:
+def write_ends(table: Table, status: int) -> int:
+    """See `put_ends`."""
+    R = reading_of(table)
+    return put_ends(R.STATES, R.WALK, R.ENDS, status)
+
+
+@kernel
+def write_still_ends(table: Table, status: int) -> None:
     """Write the end of the step to the tables STILL (poses, with velocity 0) and SPEED (velocities), for a rest step.
     They have the columns of END."""
-    N = STATES.shape[1]
-    after = STATES[LEFT]
+    R = reading_of(table)
+    ENDS, N = R.ENDS, R.STATES.shape[1]
+    after = R.STATES[LEFT]
     still, speed = ENDS[STILL * N :], ENDS[SPEED * N :]
     if status & TURNS:
         for i in range(N):

@@ -11,9 +11,14 @@ from .layout import (
     BODY_ROW,
     COG_X,
     COG_Y,
+    EARLY,
     ECCENTRIC,
+    LATE,
     LEFT,
     NOW,
+    PUSH_TWIST,
+    PUSH_X,
+    PUSH_Y,
     SPECIAL,
     STATE_COLUMNS,
     STEERED,
@@ -168,7 +173,7 @@ def write_rows(table: Table) -> None:
 @nonallocating
 def begin_walk(R: Reading) -> None:
     """Write what is known of the bodies to WALK, EXTRA and STATES[LEFT]: where steps have left them, only of static
-    ones."""
+    ones; functions have changed nothing."""
     R.TOLD[DYNAMICS] = R.TOLD[ECCENTRICS] = R.TOLD[STEERERS] = R.TOLD[MOVERS] = 0
     for i in range(R.BODIES.shape[0]):
         body = R.BODIES[i]
@@ -176,7 +181,9 @@ def begin_walk(R: Reading) -> None:
         R.WALK[BODY_ROW, i] = body.row
         R.WALK[SPECIAL, i] = ECCENTRIC * eccentric + STEERED * body.steered
         R.EXTRA[i, COG_X], R.EXTRA[i, COG_Y] = body.centre_x, body.centre_y
+        R.EXTRA[i, PUSH_X], R.EXTRA[i, PUSH_Y], R.EXTRA[i, PUSH_TWIST] = 0.0, 0.0, 0.0
         for c in range(STATE_COLUMNS):
+            R.HELD[EARLY, i, c], R.HELD[LATE, i, c] = 0.0, 0.0
             R.STATES[LEFT, i, c] = R.STATES[NOW, i, c] if body.kind == STATIC else math.nan
         R.TOLD[DYNAMICS] += 1 if body.kind == DYNAMIC else 0
         R.TOLD[ECCENTRICS] += eccentric

@@ -14,7 +14,8 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk import transfer
-from eeca_pymunk.arrays import FloatArray, IntArray
+from eeca_pymunk.arrays import IntArray
+from eeca_pymunk.compiled import Table
 from eeca_pymunk.compiled.records import Rows
 from eeca_pymunk.errors import NotFiniteError
 from eeca_pymunk.model.contacts import Impulse
@@ -47,10 +48,7 @@ class Flight:
     def __init__(self, stepper: FreeFlight, world: World) -> None:
         self.stepper, self.world = stepper, world
 
-    def step(
-        self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
-        half_damping: float,
-    ) -> int:  # fmt: skip
+    def step(self, reading: Table, dt: float, gx: float, gy: float, half_damping: float) -> int:
         status = flown(self.world, dt, half_damping)
         return status if self.stepper.told is None or status < 0 else status | transfer.EVENTS
 

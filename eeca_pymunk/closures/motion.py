@@ -13,12 +13,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
-from ..compiled import table_of
+from ..compiled import Table, table_of
 from ..compiled.records import columns, put
 from ..geometry.corners import core_room
 from ..geometry.gap import gaps
 from ..model.parameters.detection import GAP_ROUND_OFF
 from ..model.scene import Scene, scene_with
+from ..model.values import reading_of
 from ..pairs.candidates import candidates
 from ..pairs.setup import near_lists, with_more_room
 from ..report import Contacts, Details, Outcome
@@ -177,13 +178,11 @@ class Disks:
     def scene(self, scene: Scene) -> None:
         self._scene, self.table = scene, table_of(scene)
 
-    def step(
-        self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
-        half_damping: float,
-    ) -> int:  # fmt: skip
+    def step(self, reading: Table, dt: float, gx: float, gy: float, half_damping: float) -> int:
         """From the states read to those to be written, see `transfer.py`; contacts do not change spins. `half_damping`:
         factor of half a step's damping."""
-        BODY = self.world.BODY
+        R, BODY = reading_of(reading), self.world.BODY
+        STATES, WALK, EXTRA, ENDS = R.STATES, R.WALK, R.EXTRA, R.ENDS
         status = take(STATES, WALK, EXTRA, BODY, gx, gy, half_damping)
         if status < 0:
             return status

@@ -35,7 +35,7 @@ TABLES = {
     """,
     "Reading": """
         TOLD:i8[1] BODIES:BodyValues[1] SHAPES:ShapeValues[1] OWNER:i8[1] POINT:f8[2] STATES:f8[3] WALK:i8[2]
-        EXTRA:f8[2] BODY:Body[1] SHAPE:Shape[1] LINK:Link[1] VERTEX:f8[2] ORDER:i8[1]
+        EXTRA:f8[2] ENDS:f8[1] HELD:f8[3] BODY:Body[1] SHAPE:Shape[1] LINK:Link[1] VERTEX:f8[2] ORDER:i8[1]
     """,
     "Joints": """
         JOINT:Joint[1] PARTNER:Body[1] COMPONENT:Component[1] JOINED:ComponentBody[1]
@@ -66,24 +66,24 @@ ENTRIES = {
     "geometry.sides:keep_sides": "{Scene} Side[1] i8[1]",
     "transfer:take": "f8[3] i8[2] f8[2] Body[1] f8 f8 f8",
     "transfer:give": "f8[3] i8[2] f8[2] Body[1] f8[1] f8 f8 i8",
-    "transfer:place_anew": "f8[3] i8[2] f8[2]",
-    "transfer:write_ends": "f8[3] i8[2] f8[1] i8",
-    "transfer:write_still_ends": "f8[3] f8[1] i8",
-    "rehearsing:approach": "f8[3] i8[2] f8[2] Body[1] f8[1] f8[2] f8[2] i8[2] f8 f8 f8 f8",
-    "rehearsing:copy_start": "f8[3] i8[2] Body[1] f8[2]",
-    "rehearsing:as_read": "f8[3] f8[2]",
-    "rehearsing:alter_end": "f8[3] i8[2] Body[1] f8[1] f8[2] f8[2] f8[1] i8",
+    "transfer:place_anew": "{Reading}",
+    "transfer:write_ends": "{Reading} i8",
+    "transfer:write_still_ends": "{Reading} i8",
+    "rehearsing:approach": "{Reading} f8[2] i8[2] f8 f8 f8 f8",
+    "rehearsing:copy_start": "{Reading}",
+    "rehearsing:as_read": "{Reading}",
+    "rehearsing:alter_end": "{Reading} i8",
     "sleepers:rests": "f8[3] i8[2] Body[1] f8[1] f8[1] i8[1] f8 f8 f8",
     "sleepers:approaches": "f8[3] i8[1] f8[1] f8[1] f8[2] i8[1] f8 f8",
     "sleepers:touches": "Impulse[1] i8[1] i8[1] i8[1] i8",
     "world_rows:write_rows": "{Reading}",
     "world_rows:read_space": "{Reading} i8",
-    "rehearsing:changed": "f8[3] f8[2] f8[2]",
+    "rehearsing:changed": "{Reading} i8",
     "impacts.new_scene:measure_scene": "Shape[1] Link[1] f8[2] i8[1] i8",
     "impacts.new_scene:begin_scene": "{Scene} i8 i8 i8 i8 i8",
     "impacts.new_scene:tie_components": "{Scene} {Joints}",
     "islands.accounting:flag_pairs": "{Scene}",
-    "impacts.step:step": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 i8",
+    "impacts.step:step": "{Scene} {Joints} {Reading} f8 f8 f8 f8 i8",
     "impacts.run:run": "{Scene} {Joints} {RunArrays} f8[3] i8[2] f8[2] f8[1]",
     "joints.workspace:plan_components": "{Joints} Body[1] i8[1] i8",
     "joints.straight:find_pinned": "Body[1] Body[1] Joint[1] i8[1] Shape[1] Link[1] i8[1]",

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import struct
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any, Generic, TypeVar
 
@@ -17,10 +17,11 @@ import numpy as np
 from ..arrays import LINE, AnyArray, IntArray, Memory, address_of, lengths
 from .backend import start
 from .entries import table_fields
-from .kernels import nonallocating
+from .kernels import Kernel, nonallocating
 from .tables import WORDS, Pointers, Table, words_of
 
 T = TypeVar("T")
+R = TypeVar("R")
 COUNT = -1
 
 
@@ -82,7 +83,11 @@ class Plan(Generic[T]):
 
 
 class Layout(Generic[T]):
-    """Memory for the arrays of one table after the other."""
+    """Memory for the arrays of one table after the other.
+
+    Attributes:
+        table: the last one.
+    """
 
     def __init__(self, plan: Plan[T]) -> None:
         self._plan, words = plan, plan.words.copy()
@@ -92,6 +97,8 @@ class Layout(Generic[T]):
         self._write = lay_out.bind(plan.rows, self._numbers, words)
         self._memory = Memory()
         self._pointers = Pointers(tuple, words) if start().entries else None
+        self.table: Table = self._pointers
+        self._calls: dict[Kernel[..., Any], Callable[..., Any]] = {}
 
     def lay(self, counts: Mapping[str, int], *elsewhere: AnyArray) -> Table:
         """The table of arrays with so many rows each, 1 of records, also of those elsewhere; the last table is lost."""
@@ -103,9 +110,18 @@ class Layout(Generic[T]):
         if memory.address != address:
             self._write(memory.address)
         if self._pointers is None:
-            return self._arrays(elsewhere)
-        self._pointers.make_by(partial(self._arrays, elsewhere))
-        return self._pointers
+            self._calls.clear()
+            self.table = self._arrays(elsewhere)
+        else:
+            self._pointers.make_by(partial(self._arrays, elsewhere))
+        return self.table
+
+    def bound(self, kernel: Kernel[..., R]) -> Callable[..., R]:
+        """A kernel with the last table as its first argument; in machine code it is made once for all tables."""
+        call = self._calls.get(kernel)
+        if call is None:
+            call = self._calls[kernel] = kernel.bind(self.table)
+        return call
 
     def _arrays(self, elsewhere: Sequence[AnyArray]) -> T:
         """The arrays of the last table."""

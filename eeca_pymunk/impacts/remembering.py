@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import AnyArray, FloatArray, IntArray
-from ..compiled import table_of
+from ..compiled import Table, table_of
 from ..compiled.records import Rows, as_integers, numbers, put
 from ..geometry.corners import find_corners
 from ..model.bodies import POSE, VELOCITY, Body
@@ -28,7 +28,7 @@ _BOOK = slice(_STEP.index("restitution"), _STEP.index("after") + 1)
 _LOCK, _STAMP = _STEP.index("lock"), _STEP.index("stamp")
 _UNMET, _SOLVES, _BLOCKS, _LOGGED = map(_COUNT.index, ("unmet", "solves", "blocks", "logged"))
 _IMPULSE = Impulse.TYPE.itemsize // 8
-UNBOUND: tuple[tuple[AnyArray | None, ...], Callable[..., int]] = (None,) * 4, int
+UNBOUND: tuple[Table, Callable[..., int]] = None, int
 _OF_PROCESS = (
     "table",
     "ties",
@@ -65,7 +65,7 @@ class Remembering:
     @scene.setter
     def scene(self, arrays: Scene) -> None:
         self.table = table_of(arrays, self.__dict__.get("table"))
-        self._bound: tuple[tuple[AnyArray | None, ...], Callable[..., int]] = UNBOUND
+        self._bound: tuple[Table, Callable[..., int]] = UNBOUND  # with the reading to which it is bound
         # These are read in every step. Fields of records take thirty times as long, entries of arrays three times.
         self._par: memoryview = numbers(arrays.PAR).data
         self._count: memoryview = numbers(arrays.COUNT).data

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import AnyArray, FloatArray, IntArray
-from ..compiled import replaced
+from ..compiled import Table, replaced
 from ..compiled.library import check
 from ..compiled.records import R, Rows, columns, from_bytes, put, rows
 from ..contacts.memory import forget
@@ -23,6 +23,7 @@ from ..model.parameters.events import MANY_BODIES, STEP_LOOKS, STEP_LOOKS_BODY
 from ..model.scene import Scene
 from ..model.shapes import Link, Shape
 from ..model.step import Missed
+from ..model.values import reading_of
 from ..pairs.setup import with_more_room
 from ..report import Details, of_events
 from ..transfer import FORCES
@@ -31,13 +32,14 @@ from .remembering import UNBOUND, Remembering
 from .run import ROOM_FOR_IMPACTS, run
 from .run_buffers import RunBuffers
 from .scene_memory import ORDER, RULE_COLUMNS, SceneMemory
-from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, step
+from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS
 
 if TYPE_CHECKING:
     import pymunk
 
 
 _NO_JOINTS = rows(Joint, 0)
+_NO_STILL: IntArray = np.zeros(0, np.int64)
 
 
 def _longer(table: Rows[R], used: int) -> Rows[R]:
@@ -62,7 +64,7 @@ class EventLoop(Remembering):
         joint: (j,) the joints; kept, not copied. Bodies are rows of BODY, or len(BODY) + row of PARTNER (x,), which
             joints cannot move. None for a scene without joints.
         together: whether all contacts of a step act together at its middle, instead of at their instants.
-        still: (x,) 1 for rows of PARTNER that never move; None: all.
+        still: (x,) 1 for rows of PARTNER that never move.
         memory: of the scene before, which is lost; None: new.
 
     Attributes:
@@ -77,7 +79,7 @@ class EventLoop(Remembering):
         n, memory = len(BODY), memory or SceneMemory()
         self.jointed, self.together = joint is not None, together
         self.joint, self.partner = _NO_JOINTS if joint is None else joint, BODY[:0] if PARTNER is None else PARTNER
-        self._still: IntArray = np.ones(len(self.partner), np.int64) if still is None else still
+        self._still = _NO_STILL if still is None else still
         self._mobility: FloatArray | None = None  # of bodies, if joints hold any
         PINNED = self._hold(BODY, SHAPE, LINK) if self.jointed else NO_PINNED
         budget = STEP_LOOKS + STEP_LOOKS_BODY * n * max(n, MANY_BODIES) // MANY_BODIES
@@ -131,20 +133,16 @@ class EventLoop(Remembering):
         self.joint, self.partner = joint, PARTNER
         self.joints = self.joints._replace(JOINT=joint, PARTNER=PARTNER)
 
-    def step(
-        self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
-        half_damping: float,
-    ) -> int:  # fmt: skip
+    def step(self, reading: Table, dt: float, gx: float, gy: float, half_damping: float) -> int:
         """Take a step, see `step.step`; a negative result is a code of `transfer.py`."""
-        states, call = self._bound
-        # Compared one by one, as this is done in every step.
-        if states[0] is not STATES or states[1] is not WALK or states[2] is not EXTRA or states[3] is not ENDS:
-            call = self._bind_to((STATES, WALK, EXTRA, ENDS))
+        known, call = self._bound
+        if known is not reading:
+            call = self._bind_to(reading)
         status = call(dt, gx, gy, half_damping, -1)
         while status <= ROOM_FOR_LISTS:
             self._grow(check("step", status))
-            bits = FORCES if STATES[READ, :, 6:].any() else 0
-            status = self._bind_to((STATES, WALK, EXTRA, ENDS))(dt, gx, gy, half_damping, bits)
+            bits = FORCES if reading_of(reading).STATES[READ, :, 6:].any() else 0
+            status = self._bind_to(reading)(dt, gx, gy, half_damping, bits)
         return status
 
     def follow(self, buffers: RunBuffers, states: tuple[AnyArray, ...]) -> int:
@@ -164,11 +162,10 @@ class EventLoop(Remembering):
         """The loop over steps as machine code, bound to these arrays and to those of the scene."""
         return run.bind(self.table, self.ties, buffers.table, *states)
 
-    def _bind_to(self, states: tuple[AnyArray, ...]) -> Callable[..., int]:
-        """The step as machine code, bound to these arrays and to those of the scene."""
-        call = step.bind(self.table, self.ties, *states)
-        self._bound = states, call
-        return call
+    def _bind_to(self, reading: Table) -> Callable[..., int]:
+        """The step as machine code, bound to this reading and to the arrays of the scene."""
+        self._bound = reading, self._memory.bound(self.table, self.ties, reading)
+        return self._bound[1]
 
     def _grow(self, wish: int) -> None:
         """Provide the memory that a step needs, `wish` being its status; the step can then be resumed."""

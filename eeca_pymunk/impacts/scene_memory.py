@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import operator
+from collections.abc import Callable
 from functools import cache
 
 import numpy as np
@@ -19,6 +21,7 @@ from ..model.shapes import Link, Shape, Side
 from ..pairs.setup import NO_GRID, filled, pool_sizes
 from .memory import OF_SCENE
 from .new_scene import MEASURES, begin_scene, measure_scene
+from .step import step
 
 RULE_COLUMNS = 6
 ORDER = 4  # of the steps of components without dissipation, drives and contacts
@@ -54,6 +57,7 @@ class SceneMemory:
         self._sizes: IntArray = np.zeros(MEASURES, np.int64)
         self.joints, self.log = JointMemory(), 0
         self._unjointed: tuple[Table, int] = None, 0
+        self._step: tuple[tuple[Table, ...], Callable[..., int]] = (None,) * 3, int
 
     def scene(
         self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, PINNED: Rows[Pinned],
@@ -80,6 +84,14 @@ class SceneMemory:
         table = self._layout.lay(counts, BODY, SHAPE, LINK, VERTEX, PINNED)
         begin_scene(table, limit, disks, together, budget, lossy)
         return filled(table, SHAPE, moving)
+
+    def bound(self, *tables: Table) -> Callable[..., int]:
+        """The step bound to the tables of scene, joints and reading, which stay where they are from scene to scene."""
+        known, call = self._step
+        if any(map(operator.is_not, tables, known)):
+            call = step.bind(*tables)
+            self._step = tables, call
+        return call
 
     def records(self) -> tuple[memoryview, memoryview, memoryview]:
         """PAR as numbers, COUNT and LOG as integers, of the last scene."""

@@ -11,6 +11,7 @@ from ..model.joints import Joints, joints_of
 from ..model.parameters.joints import MEET_INSTANT
 from ..model.scene import Scene, scene_of
 from ..model.step import DONE, LOG_FULL, POOL_FULL, PUSHES_FULL
+from ..model.values import reading_of
 from ..prediction.scheduling import predict_due
 from ..transfer import EVENTS as SOME
 from ..transfer import give, take
@@ -100,13 +101,12 @@ def resume(
 
 @kernel
 def step(
-    TABLE: Table, JOINTS: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float,
-    gx: float, gy: float, half_damping: float, bits: int,
-) -> int:  # fmt: skip
+    TABLE: Table, JOINTS: Table, READING: Table, dt: float, gx: float, gy: float, half_damping: float, bits: int
+) -> int:
     """Take one step, from the states read from pymunk to those to be written, see `transfer.py`.
 
     Args:
-        TABLE: `table_of` a Scene.  JOINTS: `table_of` its Joints.
+        TABLE: `table_of` a Scene.  JOINTS: that of its Joints.  READING: that of the Reading with its BODY.
         dt: time, > 0.  gx, gy: gravity, length/time².  half_damping: factor by which half the step's damping multiplies
             velocities.
         bits: negative for a new step; the bits so far of one that continues after more memory was provided.
@@ -114,9 +114,9 @@ def step(
     Returns:
         the bits EVENTS, FORCES, TURNS, a negative code of `transfer.py`, or a code for more memory.
     """
-    A, J = scene_of(TABLE), joints_of(JOINTS)
+    A, J, R = scene_of(TABLE), joints_of(JOINTS), reading_of(READING)
     if bits < 0:
-        bits = start(A, J, STATES, WALK, EXTRA, dt, gx, gy, half_damping)
+        bits = start(A, J, R.STATES, R.WALK, R.EXTRA, dt, gx, gy, half_damping)
         if bits < 0:
             return bits
-    return resume(A, J, STATES, WALK, EXTRA, ENDS, bits)
+    return resume(A, J, R.STATES, R.WALK, R.EXTRA, R.ENDS, bits)

@@ -54,9 +54,9 @@ class Reading(NamedTuple):
     """A space as pymunk has it, and the rows that are made of it.
 
     BODIES (N,), SHAPES (k,): values, in pymunk's order; OWNER (k,): `owner` of the shapes; POINT (v, 2): the vertices
-    of all shapes, overwritten. STATES, WALK, EXTRA: see `..layout`. Out: BODY (moving bodies + 1,), SHAPE, LINK (k,),
-    VERTEX (v, 4), whose rows in use come first; ORDER (k + N + 2,), the index in SHAPES of every row of SHAPE, and
-    scratch; TOLD: numbers that Python asks for.
+    of all shapes, overwritten. STATES, WALK, EXTRA, ENDS, HELD: see `..layout`. Out: BODY (moving bodies + 1,), SHAPE,
+    LINK (k,), VERTEX (v, 4), whose rows in use come first; ORDER (k + N + 2,), the index in SHAPES of every row of
+    SHAPE, and scratch; TOLD: numbers that Python asks for.
     """
 
     TOLD: IntArray
@@ -67,6 +67,8 @@ class Reading(NamedTuple):
     STATES: FloatArray
     WALK: IntArray
     EXTRA: FloatArray
+    ENDS: FloatArray
+    HELD: FloatArray
     BODY: Rows[Body]
     SHAPE: Rows[Shape]
     LINK: Rows[Link]

@@ -11,22 +11,28 @@ import numpy as np
 import pymunk
 from pymunk import batch
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray, IntArray, Memory
+from ..compiled.kernels import Kernel
 from ..compiled.records import Rows
 from ..layout import (
     ANEW,
+    EARLY,
     END,
     END_COLUMNS,
     EXTRA_COLUMNS,
     FOUND,
+    HELD,
     KNOWN,
+    LATE,
     LEFT,
     NOW,
     PULL,
     PUSH_X,
     SPEED,
+    START,
     STATE_COLUMNS,
     STILL,
+    UNALTERED,
 )  # fmt: skip
 from ..model.bodies import Body
 from ..model.values import STATIC
@@ -39,6 +45,8 @@ _F = batch.BodyFields
 _FORCES = _F.FORCE | _F.TORQUE
 # Fields by the bit TURNS of a step's status: without or with angles and spins.
 _WHOLE = {0: _F.POSITION | _F.VELOCITY, TURNS: _F.POSITION | _F.ANGLE | _F.VELOCITY | _F.ANGULAR_VELOCITY}
+# Where WALK, EXTRA and HELD begin, in N.
+_WALK, _EXTRA, _HELD = 2 * STATE_COLUMNS, 2 * STATE_COLUMNS + 4, 2 * STATE_COLUMNS + 4 + EXTRA_COLUMNS
 _SPEEDS = {0: _F.VELOCITY, TURNS: _F.VELOCITY | _F.ANGULAR_VELOCITY}
 
 
@@ -63,7 +71,8 @@ class Crossing:
 
     Attributes:
         bodies: in pymunk's order, N with the static ones.
-        BODY: (n,).  STATES, WALK, EXTRA, ENDS: the arrays exchanged with pymunk, see `layout.py`.
+        BODY: (n,).  STATES, WALK, EXTRA, ENDS, HELD: the arrays exchanged with pymunk, see `layout.py`.
+        bound: a kernel of a `Reading`, bound to the one of this space.
         gather: reads the state of all bodies into STATES[NOW].
         eccentric: whether the centre of mass of any body is not its origin. pymunk places such a body by its present
             angle: its pose is written a second time, by the new angle.
@@ -72,6 +81,7 @@ class Crossing:
     bodies: Bodies
     BODY: Rows[Body]
     eccentric: bool
+    bound: Callable[[Kernel[..., Any]], Callable[..., Any]]
     gather: Callable[[], None]
     _scatter: _Writers
     _scatter_still: _Writers
@@ -79,17 +89,24 @@ class Crossing:
 
     def __init__(self, space: pymunk.Space, past: Crossing | None) -> None:
         """Room for the bodies of a space, and their state now in STATES[NOW]. `past`: of the same space before, which
-        can no more be used to read and write."""
+        can no more be used to read and write; it keeps copies of what these arrays overwrite."""
         self.space = space
         N = len((*space.bodies, space.static_body))  # which exists from its first access on
-        # Room for one body more: pymunk replaces memory that is too small by its own. After additions the ids differ at
-        # once, and new memory is made.
-        floats, ids = np.zeros(max(2 * N, N + 1) * STATE_COLUMNS), np.zeros(max(4 * N, N + 1), np.int64)
-        self.STATES: FloatArray = floats[: 2 * N * STATE_COLUMNS].reshape(2, N, STATE_COLUMNS)
-        self.WALK: IntArray = ids[: 4 * N].reshape(4, N)
-        self.EXTRA: FloatArray = np.zeros((N, EXTRA_COLUMNS))
-        self.ENDS: FloatArray = np.zeros(END_COLUMNS * N)
-        self.gather = private_batch.reader(space, STATE_FIELDS, floats, ids, None if past is None else past.gather)
+        self._memory = memory = Memory() if past is None else past._memory
+        if past is not None:
+            past.STATES, past.WALK = past.STATES.copy(), past.WALK.copy()
+        ends, row = END_COLUMNS * N + 1, 8 * N
+        walk, extra, held = _WALK * row, _EXTRA * row, _HELD * row
+        memory.provide(0, held + HELD * STATE_COLUMNS * row + 8 * ends)
+        # STATES and WALK have room for one body more: pymunk replaces memory that is too small by its own. After
+        # additions the ids differ at once, and other arrays are made.
+        self.STATES: FloatArray = memory.array((2, N, STATE_COLUMNS), float, 0)
+        self.WALK: IntArray = memory.array((4, N), np.int64, walk)
+        self.EXTRA: FloatArray = memory.array((N, EXTRA_COLUMNS), float, extra)
+        self.HELD: FloatArray = memory.array((HELD, N, STATE_COLUMNS), float, held)
+        self.ENDS: FloatArray = memory.array((ends,), float, held + HELD * STATE_COLUMNS * row)
+        last = None if past is None else past.gather
+        self.gather = private_batch.reader(space, STATE_FIELDS, self.STATES, self.WALK, last)
         self.gather()
         self.WALK[KNOWN] = self.WALK[FOUND]
         self._scatter = _Writers(self, _WHOLE, END, None if past is None else past._scatter)
@@ -108,35 +125,29 @@ class Crossing:
         ends, reached = self.ENDS[start * len(self.bodies) :], self.bodies.reached
         return private_batch.writer(self.space, fields, ends, reached, last)
 
-    @cached_property
-    def START(self) -> FloatArray:
+    @property
+    def start(self) -> FloatArray:
         """(N, 9) the state at the start of a step that calls functions, copied by `check_start`."""
-        return np.zeros((len(self.bodies), STATE_COLUMNS))
+        state: FloatArray = self.HELD[START]
+        return state
 
-    @cached_property
-    def check_start(self) -> Callable[[], int]:
+    def check_start(self) -> int:
         """See `rehearsing.copy_start`."""
-        return copy_start.bind(self.STATES, self.WALK, self.BODY, self.START)
+        status: int = self.bound(copy_start)()
+        return status
 
-    @cached_property
-    def CHANGES(self) -> FloatArray:
-        """(2, N, 9) changes by functions within a step: before the bodies move, and afterwards."""
-        return np.zeros((2, *self.START.shape))
-
-    @cached_property
-    def _altered(self) -> tuple[FloatArray, FloatArray, Callable[[int], int]]:
-        given, lost, after = np.zeros_like(self.START), np.zeros(1), self.CHANGES[1]
-        return given, lost, alter_end.bind(self.STATES, self.WALK, self.BODY, self.ENDS, after, given, lost)
+    def forget_changes(self) -> None:
+        """Forget the changes by functions within the step."""
+        self.HELD[EARLY] = self.HELD[LATE] = 0.0
 
     def alter_end(self, stops: bool) -> tuple[int, float]:
         """See `rehearsing.alter_end`; returns its status, and the energy that is lost."""
-        _, lost, call = self._altered
-        return call(int(stops)), float(lost[0])
+        return self.bound(alter_end)(int(stops)), float(self.ENDS[-1])
 
     def keep_unaltered(self) -> None:
         """Take the end of the step before `alter_end` as STATES[LEFT]: bodies that functions have changed since then
         count as edited in the next step."""
-        self.STATES[LEFT] = self._altered[0]
+        self.STATES[LEFT] = self.HELD[UNALTERED]
 
     def is_current(self) -> bool:
         """Whether `gather` has read these bodies, and no static one was moved."""
@@ -147,10 +158,9 @@ class Crossing:
         still = self.bodies.static
         return not np.array_equal(self.STATES[NOW, still, :3], self.STATES[LEFT, still, :3])
 
-    @cached_property
-    def start_afresh(self) -> Callable[[], None]:
+    def start_afresh(self) -> None:
         """See `transfer.place_anew`."""
-        return place_anew.bind(self.STATES, self.WALK, self.EXTRA)
+        self.bound(place_anew)()
 
     @property
     def state(self) -> FloatArray:
@@ -176,15 +186,12 @@ class Crossing:
 
     def write_whole(self) -> int:
         """Write the end of the step to ENDS, with forces and angles in any case; returns its status bits."""
-        return self._write_ends(FORCES | TURNS)
+        return self.write_ends(FORCES | TURNS)
 
-    @cached_property
-    def _write_ends(self) -> Callable[[int], int]:
-        return write_ends.bind(self.STATES, self.WALK, self.ENDS)
-
-    @cached_property
-    def _write_still_ends(self) -> Callable[[int], None]:
-        return write_still_ends.bind(self.STATES, self.ENDS)
+    def write_ends(self, status: int) -> int:
+        """Write the end of the step to ENDS; returns the status bits, see `transfer.put_ends`."""
+        bits: int = self.bound(write_ends)(status)
+        return bits
 
     def ended(self) -> FloatArray:
         """(N, 9) the end of the step; forces are reset as pymunk does."""
@@ -205,12 +212,11 @@ class Crossing:
 
     def with_turns(self, status: int) -> int:
         """Write the end of the step to ENDS with angles and spins, if they were left out; returns its status bits."""
-        return status if status & TURNS else self._write_ends(status | TURNS)
+        return status if status & TURNS else self.write_ends(status | TURNS)
 
-    @cached_property
-    def left_as_read(self) -> Callable[[], None]:
-        """Function that accepts pymunk's rounding of positions as unedited, see `rehearsing.as_read`."""
-        return as_read.bind(self.STATES, self.EXTRA)
+    def left_as_read(self) -> None:
+        """Accept pymunk's rounding of positions as unedited, see `rehearsing.as_read`."""
+        self.bound(as_read)()
 
     def void_predictions(self) -> None:
         """Void all predictions: in the next step all bodies count as placed by the program, and may overlap others."""
@@ -225,7 +231,7 @@ class Crossing:
 
     def scatter_still(self, status: int) -> None:
         """Write the poses, and velocity 0; `scatter_speed` must follow."""
-        self._write_still_ends(status)
+        self.bound(write_still_ends)(status)
         self._scatter_still[status & TURNS]()
         if self.eccentric:
             self._scatter_still[status & TURNS]()

@@ -16,7 +16,7 @@ import pymunk
 from ..arrays import FloatArray, IntArray
 from ..compiled.layouts import COUNT, Layout, Plan
 from ..compiled.records import Rows, as_integers, from_bytes
-from ..layout import EXTRA_COLUMNS, STATE_COLUMNS
+from ..layout import EXTRA_COLUMNS, HELD, STATE_COLUMNS
 from ..model.bodies import Body
 from ..model.shapes import Link, Shape
 from ..model.values import CORNERS, STATIC, TOLD, Reading, ShapeValues
@@ -121,10 +121,10 @@ def shape_counts(bodies: Bodies, records: Records) -> dict[Any, int]:
 def _arrays() -> Plan[Reading]:
     return Plan(
         Reading, ("TOLD", "BODY", "SHAPE", "LINK", "VERTEX", "ORDER"), 6,
-        ("BODIES", "SHAPES", "OWNER", "POINT", "STATES", "WALK", "EXTRA"), {},
+        ("BODIES", "SHAPES", "OWNER", "POINT", "STATES", "WALK", "EXTRA", "ENDS", "HELD"), {},
         {
             "VERTEX": (COUNT, 4), "POINT": (COUNT, 2), "STATES": (2, COUNT, STATE_COLUMNS), "WALK": (4, COUNT),
-            "EXTRA": (COUNT, EXTRA_COLUMNS),
+            "EXTRA": (COUNT, EXTRA_COLUMNS), "HELD": (HELD, COUNT, STATE_COLUMNS),
         },
     )  # fmt: skip
 
@@ -139,6 +139,7 @@ class Packed:
     Attributes:
         shapes: the pymunk shapes, by row of SHAPE.  owner: (k,) places of their bodies in pymunk's order.
         BODY, SHAPE, LINK, VERTEX: see `..model`.  told: see `Reading`.  status: see `read_space`.
+        table: all arrays.  bound: see `Layout`.
     """
 
     _layout: Layout[Reading]
@@ -159,11 +160,14 @@ class Packed:
         counts = {
             "TOLD": TOLD, "BODY": moving + 1, "SHAPE": k, "LINK": k, "VERTEX": v, "ORDER": k + N + 2, "BODIES": N,
             "SHAPES": k, "OWNER": k, "POINT": v, "STATES": N, "WALK": N, "EXTRA": N,
+            "ENDS": len(crossing.ENDS), "HELD": N,
         }  # fmt: skip
-        self._table = layout.lay(
-            counts, bodies.VALUES, self._shapes, owner, self._points, crossing.STATES, crossing.WALK, crossing.EXTRA
-        )
-        self.status = read_space(self._table, bodies.arranged)
+        self.table = layout.lay(
+            counts, bodies.VALUES, self._shapes, owner, self._points, crossing.STATES, crossing.WALK, crossing.EXTRA,
+            crossing.ENDS, crossing.HELD,
+        )  # fmt: skip
+        self.bound = layout.bound
+        self.status = layout.bound(read_space)(bodies.arranged)
         self.told: list[int] = layout.integers("TOLD").tolist()
         self.BODY: Rows[Body] = layout.array("BODY")
         self.SHAPE: Rows[Shape] = layout.array("SHAPE")
@@ -192,7 +196,7 @@ class Packed:
         if moved:
             self._layout.array("VERTEX").fill(0.0)
         BODY.fill(0)
-        write_rows(self._table)
+        self.bound(write_rows)()
         return not moved or self.LINK["vertices"].tobytes() == vertices  # of static shapes, two may become one
 
     @cached_property

@@ -9,14 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pymunk
 
 from ..arrays import FloatArray, IntArray
-from ..layout import NOW
+from ..layout import EARLY, NOW, REHEARSED, SEEN
 from ..rehearsing import HEARD_COLUMNS, approach, changed
 from ..transfer import TURNS
 from .decisions import Decisions, Rules
@@ -50,7 +49,6 @@ class Rehearsal:
 
     def __init__(self, world: World) -> None:
         self.world, self.space = world, world.space
-        self._start, self._known = np.zeros((2, *world.START.shape))
         self._approach = self._bound(None)
         self._lengths = 0.0, 0.0, 0.0, 1.0  # dt, gravity, factor of half a step's damping
         # Whether there are changes by begin and pre_solve, and changes by post_solve and separate; the last stage.
@@ -65,17 +63,13 @@ class Rehearsal:
         self._hearing: Hearing | None = None
         self._recent: float = 0.0  # number of steps for which decisions still apply
 
-    @cached_property
-    def _differ(self) -> list[Callable[[], int]]:
-        return [changed.bind(self.world.STATES, self._known, table) for table in self.world.CHANGES]
-
     def forget(self, reshaped: bool) -> None:
         """Forget earlier steps, and, if shapes have other sizes or places, what handlers may hear."""
         if reshaped:
             self._hearing = None
         self._unheard, self._later = False, 0
         self._changed, self._recent, self._ignores = [False, False], 0, True
-        self.world.CHANGES.fill(0.0)
+        self.world.forget_changes()
 
     def is_silent(self) -> bool:
         """Whether nothing holds that functions have decided, and some steps in a row, all EECA's, called none."""
@@ -94,14 +88,14 @@ class Rehearsal:
         """Before a function is called: read the bodies, if pymunk has reached another stage."""
         if self._stage != stage:
             self.world.gather()
-            self._known[:] = self.world.STATES[NOW]
+            self.world.HELD[SEEN] = self.world.STATES[NOW]
             self._stage = stage
 
     def after_call(self, stage: int) -> None:
         """After a function was called: record its changes."""
         late = stage > 0
         self.world.gather()
-        if self._differ[late]():
+        if self.world.bound(changed)(late):
             self._changed[late] = True
 
     def run(self, dt: float, half_damping: float, sync: Sync | None = None) -> int:
@@ -122,7 +116,7 @@ class Rehearsal:
             return status
         self.failure, self.decided, self._stage, self._sync = None, False, -1, sync
         if True in self._changed:
-            world.CHANGES.fill(0.0)
+            world.forget_changes()
             self._changed = [False, False]
         if self._later > 0:
             self._later -= 1
@@ -149,9 +143,9 @@ class Rehearsal:
         if self.failure is not None:
             raise self.failure
         if self._stage >= 0:  # else nothing was read meanwhile
-            world.STATES[NOW] = self._start
+            world.STATES[NOW] = world.HELD[REHEARSED]
         if self._changed[0]:
-            world.STATES[NOW] += world.CHANGES[0]
+            world.STATES[NOW] += world.HELD[EARLY]
         return 0
 
     def _step(self, dt: float) -> None:
@@ -166,9 +160,7 @@ class Rehearsal:
     def _bound(self, hearing: Hearing | None) -> Callable[[float, float, float, float], int]:
         """See `rehearsing.approach`."""
         world, heard = self.world, None if hearing is None else hearing.arrays
-        return approach.bind(
-            world.STATES, world.WALK, world.EXTRA, world.BODY, world.ENDS, self._start, *(heard or _NONE)
-        )  # fmt: skip
+        return approach.bind(world.reading, *(heard or _NONE))
 
     def _is_unheard(self, near: bool) -> bool:
         """Whether pymunk's step would call nothing; `near`: whether a pair may meet in it, or soon after."""
@@ -188,7 +180,7 @@ class Rehearsal:
         world, present = self.world, self.world.bodies.gather()
         if present is None:
             return
-        world.STATES[NOW] = self._start
+        world.STATES[NOW] = world.HELD[REHEARSED]
         self._approach(*self._lengths)
         world.scatter(TURNS)
         try:

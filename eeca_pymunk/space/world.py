@@ -45,7 +45,7 @@ class World(Crossing):
         owner: (k,) index in `bodies.items` of the body of each shape.
         BODY, SHAPE, LINK, VERTEX: see `..model`.  disks, dynamic: numbers of the first rows of BODY that are single
             disks, and dynamic bodies; then come kinematic bodies, and last the ground.
-        STATES, WALK, EXTRA, ENDS: the arrays exchanged with pymunk, see `layout.py`.
+        STATES, WALK, EXTRA, ENDS, HELD: the arrays exchanged with pymunk, see `layout.py`.  reading: their table.
         gravity: length/time².  damping: pymunk's, 1 is none.
         hooks: functions of bodies and constraints.  collisions: whether the space has collision handlers.
         hooked: whether a step calls functions of the program, or damping is 0.  plain: neither hooked nor with joints.
@@ -83,7 +83,7 @@ class World(Crossing):
         self.packed = packed = Packed(bodies, self, self.records, None if past is None else past.packed)
         if packed.status < 0:
             bodies.check_finite(self.state)
-        self.shapes, self.owner = packed.shapes, packed.owner
+        self.shapes, self.owner, self.reading, self.bound = packed.shapes, packed.owner, packed.table, packed.bound
         self.BODY, self.SHAPE, self.LINK, self.VERTEX = packed.BODY, packed.SHAPE, packed.LINK, packed.VERTEX
         if self.frictionless:
             self.SHAPE["friction"] = 0.0
