@@ -34,7 +34,7 @@ class TimeOfImpact:
 def event_loop(world: World, limit: int, together: bool = False) -> EventLoop:
     """The event loop of a world, see `EventLoop`."""
     joints, memory = world.joints, world.memory
-    rows = world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, limit
+    rows = world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.measured(), world.disks, limit
     if joints is None:
         return EventLoop(*rows, together=together, memory=memory)
     partners = joints.partners

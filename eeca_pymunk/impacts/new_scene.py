@@ -6,35 +6,34 @@ import math
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
 from ..compiled import Table, kernel, nonallocating
-from ..compiled.records import Rows
 from ..geometry.corners import find_corners, moving_thin
 from ..model.joints import joints_of
 from ..model.parameters.impulses import AUGMENTATION
 from ..model.scene import scene_of
-from ..model.shapes import Link, Shape
-
-MEASURES = 4
+from ..model.values import LOSSY, MOST_VERTICES, MOVING, THIN, reading_of
+from ..pairs.margins import begin_lists
 
 
 @nonallocating
-def measure_scene(SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, SIZES: IntArray, ground: int) -> None:
-    """Write to SIZES (MEASURES,): how many shapes move, those of bodies before the row `ground`; the most vertices of a
-    shape, at least 2; how many thin shapes move, 0 if no thin shapes may meet; 1 if any elasticity is below 1."""
-    SIZES[0], SIZES[1], SIZES[3] = 0, 2, 0
+def measure_scene(reading: Table) -> None:
+    """Write to TOLD: how many shapes move; the most vertices of a shape, at least 2; how many thin shapes move, 0 if no
+    thin shapes may meet; 1 if any elasticity is below 1."""
+    R = reading_of(reading)
+    TOLD, LINK = R.TOLD, R.LINK
+    TOLD[MOVING], TOLD[MOST_VERTICES], TOLD[LOSSY] = 0, 2, 0
     for s in range(LINK.shape[0]):
-        SIZES[0] += 1 if LINK[s].owner < ground else 0
-        SIZES[1] = max(SIZES[1], LINK[s].vertices)
-        if SHAPE[s].elasticity < 1.0:
-            SIZES[3] = 1
-    SIZES[2] = moving_thin(LINK, VERTEX, SIZES[0])
+        TOLD[MOVING] += 1 if LINK[s].owner < R.BODY.shape[0] - 1 else 0
+        TOLD[MOST_VERTICES] = max(TOLD[MOST_VERTICES], LINK[s].vertices)
+        if R.SHAPE[s].elasticity < 1.0:
+            TOLD[LOSSY] = 1
+    TOLD[THIN] = moving_thin(LINK, R.VERTEX, TOLD[MOVING])
 
 
 @kernel
-def begin_scene(table: Table, limit: int, disks: int, together: int, budget: int, lossy: int) -> None:
+def begin_scene(table: Table, limit: int, disks: int, together: int, budget: int, lossy: int) -> int:
     """Write to the arrays of a new scene, which contain zeros, what is not 0 in it: of bodies, of CORNER, of KEYS, the
-    number of moving shapes, and these fields of COUNT."""
+    number of moving shapes, and these fields of COUNT. Returns what `begin_lists` does."""
     A = scene_of(table)
     A.COUNT.limit, A.COUNT.disks, A.COUNT.together = limit, disks, together
     A.COUNT.budget, A.COUNT.lossy = budget, lossy
@@ -56,6 +55,7 @@ def begin_scene(table: Table, limit: int, disks: int, together: int, budget: int
         first += A.STATE[i].shapes
     if A.CORNER.shape[0] > 0:
         find_corners(A.LINK, A.VERTEX, A.CORNER)
+    return begin_lists(table)
 
 
 @kernel

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -59,6 +59,7 @@ class EventLoop(Remembering):
 
     Args:
         BODY, SHAPE, LINK, VERTEX: see `..model`; BODY has the present poses.
+        measured: what `measure_scene` tells of these.
         disks: the first so many rows of BODY are single disks.
         limit: impacts that a body may have in a step.
         joint: (j,) the joints; kept, not copied. Bodies are rows of BODY, or len(BODY) + row of PARTNER (x,), which
@@ -72,9 +73,9 @@ class EventLoop(Remembering):
     """
 
     def __init__(
-        self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, disks: int, limit: int,
-        joint: Rows[Joint] | None = None, PARTNER: Rows[Body] | None = None, together: bool = False,
-        still: IntArray | None = None, memory: SceneMemory | None = None,
+        self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, measured: Sequence[int],
+        disks: int, limit: int, joint: Rows[Joint] | None = None, PARTNER: Rows[Body] | None = None,
+        together: bool = False, still: IntArray | None = None, memory: SceneMemory | None = None,
     ) -> None:  # fmt: skip
         n, memory = len(BODY), memory or SceneMemory()
         self.jointed, self.together = joint is not None, together
@@ -83,7 +84,7 @@ class EventLoop(Remembering):
         self._mobility: FloatArray | None = None  # of bodies, if joints hold any
         PINNED = self._hold(BODY, SHAPE, LINK) if self.jointed else NO_PINNED
         budget = STEP_LOOKS + STEP_LOOKS_BODY * n * max(n, MANY_BODIES) // MANY_BODIES
-        self.table = memory.scene(BODY, SHAPE, LINK, VERTEX, PINNED, limit, disks, together, budget)
+        self.table = memory.scene(BODY, SHAPE, LINK, VERTEX, PINNED, limit, disks, together, budget, measured)
         (self._par, self._count, self.log), self._bound = memory.records(), UNBOUND
         self._laid, self._memory, self.thin = self.table, memory, memory.thin > 0
         self._rules: dict[tuple[int, int], tuple[float, float, float, float]] = {}  # those of the table

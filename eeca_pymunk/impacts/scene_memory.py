@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import Table
 from ..compiled.layouts import COUNT, Layout, Plan
+from ..compiled.library import check
 from ..compiled.records import Rows, rows
 from ..geometry.corners import side_rows
 from ..joints.workspace import JointMemory
@@ -20,7 +21,7 @@ from ..model.scene import Scene
 from ..model.shapes import Link, Shape, Side
 from ..pairs.setup import NO_GRID, filled, pool_sizes
 from .memory import OF_SCENE
-from .new_scene import MEASURES, begin_scene, measure_scene
+from .new_scene import begin_scene
 from .step import step
 
 RULE_COLUMNS = 6
@@ -54,20 +55,18 @@ class SceneMemory:
 
     def __init__(self) -> None:
         self._layout = Layout(_arrays())
-        self._sizes: IntArray = np.zeros(MEASURES, np.int64)
         self.joints, self.log = JointMemory(), 0
         self._unjointed: tuple[Table, int] = None, 0
         self._step: tuple[tuple[Table, ...], Callable[..., int]] = (None,) * 3, int
 
     def scene(
         self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, PINNED: Rows[Pinned],
-        limit: int, disks: int, together: bool, budget: int,
+        limit: int, disks: int, together: bool, budget: int, measured: Sequence[int],
     ) -> Table:  # fmt: skip
-        """The table of a scene that has taken no step; the arrays given are kept, not copied. The numbers are fields of
-        COUNT."""
+        """The table of a scene that has taken no step; the arrays given are kept, not copied. measured: see
+        `measure_scene`; the other numbers are fields of COUNT."""
         n, k = len(BODY), len(LINK)
-        measure_scene(SHAPE, LINK, VERTEX, self._sizes, n - 1)
-        moving, corners, self.thin, lossy = self._sizes.tolist()
+        moving, corners, self.thin, lossy = measured
         room = _CONTACTS
         while lossy and room < min(_OF_A_BODY * n, _MANY):
             room *= 2
@@ -82,8 +81,8 @@ class SceneMemory:
             "KEYS": 4 * room, "FORCES": 4 * room, "PUSHED_BY": room, "PUSHED": room, "MISSED": _MISSED,
         }  # fmt: skip
         table = self._layout.lay(counts, BODY, SHAPE, LINK, VERTEX, PINNED)
-        begin_scene(table, limit, disks, together, budget, lossy)
-        return filled(table, SHAPE, moving)
+        found = check("begin_scene", self._layout.bound(begin_scene)(limit, disks, together, budget, lossy))
+        return filled(table, SHAPE, moving, found)
 
     def bound(self, *tables: Table) -> Callable[..., int]:
         """The step bound to the tables of scene, joints and reading, which stay where they are from scene to scene."""

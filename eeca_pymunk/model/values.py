@@ -80,4 +80,7 @@ reading_of = Opener(Reading)
 # Places in TOLD: numbers of single disks; of dynamic bodies; of solid shapes of moving bodies; of rows of VERTEX in
 # use; of bodies whose centre of mass is not the origin; with velocity functions; with position functions.
 DISKS, DYNAMICS, CARRIED, CORNERS, ECCENTRICS, STEERERS, MOVERS = 0, 1, 2, 3, 4, 5, 6
-TOLD = 7
+# And by `..impacts.new_scene.measure_scene`.
+MEASURED = MOVING = 7
+MOST_VERTICES, THIN, LOSSY = 8, 9, 10
+TOLD = 11

@@ -18,24 +18,25 @@ from .grid import make_lists
 from .walls import box_wall, size_walls, wall_grid
 
 LEAST, MOST = 0.1, 20.0  # margins, in radii
-DONE = -1
+DONE, FULL = -1, -2
 
 
 @nonallocating
-def begin_lists(table: Table, few: bool) -> int:
-    """Write the boxes of static shapes; if shapes are so `few` that each is in all lists, make these lists too.
+def begin_lists(table: Table) -> int:
+    """Write the boxes of static shapes; if shapes are so few that each is in all lists, make these lists too.
 
     Returns:
-        if `few`: DONE, or 0 if the pool is full; else the length that CSR must have, 0 if static shapes need no grid.
+        if shapes are few: DONE, or FULL if the pool is full; else the length that CSR must have, 0 if static shapes
+        need no grid.
     """
     A = scene_of(table)
     for w in range(A.BOX.shape[0]):
         box_wall(A, w)
-    if few:
+    if A.GRID.moving <= ALL_PAIRS and A.BOX.shape[0] <= ALL_WALLS:
         for s in range(A.GRID.moving):
             A.MARK[s].margin = A.MARK[s].usual = math.inf
         set_cell(A)
-        return DONE if make_lists(A, 0.0) else 0
+        return DONE if make_lists(A, 0.0) else FULL
     if A.BOX.shape[0] <= ALL_WALLS:
         return 0
     entries = size_walls(A.BOX, A.GRID)

@@ -7,7 +7,7 @@ import numpy as np
 from ..arrays import IntArray, side_by_side
 from ..compiled import Table, replaced, table_of
 from ..compiled.records import Rows
-from ..model.parameters.detection import ALL_PAIRS, ALL_WALLS, NEIGHBOURS
+from ..model.parameters.detection import NEIGHBOURS
 from ..model.scene import Scene, scene_of
 from ..model.shapes import Cell, Grid, List, Mark, Shape
 from .grid import build
@@ -33,7 +33,8 @@ def near_lists(scene: Scene, moving: int, like: Table | None = None) -> Scene:
     )  # fmt: skip
     GRID[0].moving = moving
     scene = scene._replace(**dict(zip(NEAR, (MARK, CELL, LIST, POOL, FLAG, HEAD, GRID[0], BOX, NO_GRID), strict=True)))
-    return scene_of(filled(table_of(scene, like), scene.SHAPE, moving))
+    table = table_of(scene, like)
+    return scene_of(filled(table, scene.SHAPE, moving, begin_lists(table)))
 
 
 def refilled(table: Table) -> Table:
@@ -47,15 +48,13 @@ def refilled(table: Table) -> Table:
             array = np.asarray(getattr(scene, name))
             np.ndarray(array.nbytes, np.uint8, array).fill(0)
     scene.GRID.moving = moving
-    return filled(table, scene.SHAPE, moving, scene.CSR)
+    return filled(table, scene.SHAPE, moving, begin_lists(table), scene.CSR)
 
 
-def filled(table: Table, SHAPE: Rows[Shape], moving: int, CSR: IntArray = NO_GRID) -> Table:
+def filled(table: Table, SHAPE: Rows[Shape], moving: int, found: int, CSR: IntArray = NO_GRID) -> Table:
     """The table of a scene with these shapes, the first ones of which move, and with arrays NEAR as in a new one, with
-    its first lists. CSR: that of the table, to be written if it fits."""
-    few = moving <= ALL_PAIRS and len(SHAPE) - moving <= ALL_WALLS
-    found = begin_lists(table, few)
-    if few:
+    its first lists. found: the result of `begin_lists`.  CSR: that of the table, to be written if it fits."""
+    if found < 0:
         return table if found == DONE else _with_more_room(table)
     if found > 0 and (CSR is NO_GRID or len(CSR) != found):
         table = replaced(table, Scene, "CSR", np.zeros(found, np.int64))

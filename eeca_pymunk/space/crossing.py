@@ -12,6 +12,7 @@ import pymunk
 from pymunk import batch
 
 from ..arrays import FloatArray, IntArray, Memory
+from ..compiled import Table
 from ..compiled.kernels import Kernel
 from ..compiled.records import Rows
 from ..layout import (
@@ -42,27 +43,30 @@ from .bodies import STATE_FIELDS, Bodies
 from .private import batch as private_batch
 
 _F = batch.BodyFields
-_FORCES = _F.FORCE | _F.TORQUE
-# Fields by the bit TURNS of a step's status: without or with angles and spins.
-_WHOLE = {0: _F.POSITION | _F.VELOCITY, TURNS: _F.POSITION | _F.ANGLE | _F.VELOCITY | _F.ANGULAR_VELOCITY}
+_SPEED, _SPINS = _F.VELOCITY, _F.VELOCITY | _F.ANGULAR_VELOCITY
+_WHOLE = {0: _F.POSITION | _SPEED, TURNS: _F.POSITION | _F.ANGLE | _SPINS}
+# Fields of each table of ENDS, by where it begins, plus TURNS if it has angles and spins.
+_FIELDS = {END + turns: fields for turns, fields in _WHOLE.items()}
+_FIELDS |= {STILL + turns: fields for turns, fields in _WHOLE.items()}
+_FIELDS |= {SPEED: _SPEED, SPEED + TURNS: _SPINS, PULL: _F.FORCE | _F.TORQUE}
 # Where WALK, EXTRA and HELD begin, in N.
 _WALK, _EXTRA, _HELD = 2 * STATE_COLUMNS, 2 * STATE_COLUMNS + 4, 2 * STATE_COLUMNS + 4 + EXTRA_COLUMNS
-_SPEEDS = {0: _F.VELOCITY, TURNS: _F.VELOCITY | _F.ANGULAR_VELOCITY}
+_KERNELS = copy_start, write_ends, write_still_ends, alter_end, as_read, place_anew
 
 
 class _Writers(dict[int, Callable[[], None]]):
-    """Functions that write a table of ENDS that begins at `start` N, by the bit TURNS; made at the first use, from
-    those of `past`, which are lost."""
+    """Functions that write the tables of ENDS, by the keys of _FIELDS; made at the first use, from those of `past`,
+    which are lost."""
 
-    def __init__(
-        self, of: Crossing, fields: dict[int, batch.BodyFields], start: int, past: _Writers | None
-    ) -> None:  # fmt: skip
-        self._of, self._fields, self._start = weakref.proxy(of), fields, start
+    def __init__(self, of: Crossing, past: _Writers | None) -> None:
+        self._of = weakref.proxy(of)
         self._past: dict[int, Callable[[], None]] = {} if past is None else {**past._past, **past}
 
-    def __missing__(self, turns: int) -> Callable[[], None]:
-        write: Callable[[], None] = self._of.writer(self._fields[turns], self._start, self._past.get(turns))
-        self[turns] = write
+    def __missing__(self, place: int) -> Callable[[], None]:
+        of, turns = self._of, TURNS if place - TURNS in _FIELDS else 0
+        ends = of.ENDS[(place - turns) * len(of.bodies) :]
+        write = private_batch.writer(of.space, _FIELDS[place], ends, of.bodies.reached, self._past.get(place))
+        self[place] = write
         return write
 
 
@@ -72,7 +76,9 @@ class Crossing:
     Attributes:
         bodies: in pymunk's order, N with the static ones.
         BODY: (n,).  STATES, WALK, EXTRA, ENDS, HELD: the arrays exchanged with pymunk, see `layout.py`.
-        bound: a kernel of a `Reading`, bound to the one of this space.
+        reading: their table.  bound: a kernel bound to it, see `Layout`.
+        check_start, write_ends, left_as_read, start_afresh: functions, see `rehearsing.copy_start`,
+            `transfer.write_ends`, `rehearsing.as_read` and `transfer.place_anew`.
         gather: reads the state of all bodies into STATES[NOW].
         eccentric: whether the centre of mass of any body is not its origin. pymunk places such a body by its present
             angle: its pose is written a second time, by the new angle.
@@ -81,11 +87,7 @@ class Crossing:
     bodies: Bodies
     BODY: Rows[Body]
     eccentric: bool
-    bound: Callable[[Kernel[..., Any]], Callable[..., Any]]
     gather: Callable[[], None]
-    _scatter: _Writers
-    _scatter_still: _Writers
-    _scatter_speed: _Writers
 
     def __init__(self, space: pymunk.Space, past: Crossing | None) -> None:
         """Room for the bodies of a space, and their state now in STATES[NOW]. `past`: of the same space before, which
@@ -109,21 +111,17 @@ class Crossing:
         self.gather = private_batch.reader(space, STATE_FIELDS, self.STATES, self.WALK, last)
         self.gather()
         self.WALK[KNOWN] = self.WALK[FOUND]
-        self._scatter = _Writers(self, _WHOLE, END, None if past is None else past._scatter)
-        self._scatter_still = _Writers(self, _WHOLE, STILL, None if past is None else past._scatter_still)
-        self._last_reset: Any = None if past is None else past.__dict__.get("reset_forces", past._last_reset)
-        self._scatter_speed = _Writers(self, _SPEEDS, SPEED, None if past is None else past._scatter_speed)
+        self._write = _Writers(self, None if past is None else past._write)
 
-    @cached_property
-    def reset_forces(self) -> Callable[[], None]:
-        """Function that writes the forces at the end of the step."""
-        return self.writer(_FORCES, PULL, self._last_reset)
+    def bind(self, reading: Table, bound: Callable[[Kernel[..., Any]], Callable[..., Any]]) -> None:
+        """Use the kernels of the `Reading` with these arrays."""
+        self.reading, self.bound = reading, bound
+        self.check_start, self.write_ends, self._write_still_ends, self._alter_end, *more = map(bound, _KERNELS)
+        self.left_as_read, self.start_afresh = more
 
-    def writer(self, fields: batch.BodyFields, start: int, last: Any = None) -> Callable[[], None]:
-        """Function that writes the fields from the table that begins at `start` N in ENDS; `last`: one that did so
-        before, see `private_batch.writer`."""
-        ends, reached = self.ENDS[start * len(self.bodies) :], self.bodies.reached
-        return private_batch.writer(self.space, fields, ends, reached, last)
+    def reset_forces(self) -> None:
+        """Write the forces at the end of the step."""
+        self._write[PULL]()
 
     @property
     def start(self) -> FloatArray:
@@ -131,18 +129,13 @@ class Crossing:
         state: FloatArray = self.HELD[START]
         return state
 
-    def check_start(self) -> int:
-        """See `rehearsing.copy_start`."""
-        status: int = self.bound(copy_start)()
-        return status
-
     def forget_changes(self) -> None:
         """Forget the changes by functions within the step."""
         self.HELD[EARLY] = self.HELD[LATE] = 0.0
 
     def alter_end(self, stops: bool) -> tuple[int, float]:
         """See `rehearsing.alter_end`; returns its status, and the energy that is lost."""
-        return self.bound(alter_end)(int(stops)), float(self.ENDS[-1])
+        return self._alter_end(int(stops)), float(self.ENDS[-1])
 
     def keep_unaltered(self) -> None:
         """Take the end of the step before `alter_end` as STATES[LEFT]: bodies that functions have changed since then
@@ -157,10 +150,6 @@ class Crossing:
         """Whether a static one of these bodies was moved, as `gather` has read them."""
         still = self.bodies.static
         return not np.array_equal(self.STATES[NOW, still, :3], self.STATES[LEFT, still, :3])
-
-    def start_afresh(self) -> None:
-        """See `transfer.place_anew`."""
-        self.bound(place_anew)()
 
     @property
     def state(self) -> FloatArray:
@@ -188,11 +177,6 @@ class Crossing:
         """Write the end of the step to ENDS, with forces and angles in any case; returns its status bits."""
         return self.write_ends(FORCES | TURNS)
 
-    def write_ends(self, status: int) -> int:
-        """Write the end of the step to ENDS; returns the status bits, see `transfer.put_ends`."""
-        bits: int = self.bound(write_ends)(status)
-        return bits
-
     def ended(self) -> FloatArray:
         """(N, 9) the end of the step; forces are reset as pymunk does."""
         state = self.state.copy()
@@ -214,10 +198,6 @@ class Crossing:
         """Write the end of the step to ENDS with angles and spins, if they were left out; returns its status bits."""
         return status if status & TURNS else self.write_ends(status | TURNS)
 
-    def left_as_read(self) -> None:
-        """Accept pymunk's rounding of positions as unedited, see `rehearsing.as_read`."""
-        self.bound(as_read)()
-
     def void_predictions(self) -> None:
         """Void all predictions: in the next step all bodies count as placed by the program, and may overlap others."""
         due = self.BODY["due"]
@@ -225,17 +205,17 @@ class Crossing:
 
     def scatter(self, status: int) -> None:
         """Write poses and velocities at the end of the step to the space, angles and spins if the bit TURNS is set."""
-        self._scatter[status & TURNS]()
+        self._write[END + (status & TURNS)]()
         if self.eccentric:
-            self._scatter[status & TURNS]()
+            self._write[END + (status & TURNS)]()
 
     def scatter_still(self, status: int) -> None:
         """Write the poses, and velocity 0; `scatter_speed` must follow."""
-        self.bound(write_still_ends)(status)
-        self._scatter_still[status & TURNS]()
+        self._write_still_ends(status)
+        self._write[STILL + (status & TURNS)]()
         if self.eccentric:
-            self._scatter_still[status & TURNS]()
+            self._write[STILL + (status & TURNS)]()
 
     def scatter_speed(self, status: int) -> None:
         """Write the velocities."""
-        self._scatter_speed[status & TURNS]()
+        self._write[SPEED + (status & TURNS)]()

@@ -168,7 +168,7 @@ class Packed:
         )  # fmt: skip
         self.bound = layout.bound
         self.status = layout.bound(read_space)(bodies.arranged)
-        self.told: list[int] = layout.integers("TOLD").tolist()
+        self.told = self.tell()
         self.BODY: Rows[Body] = layout.array("BODY")
         self.SHAPE: Rows[Shape] = layout.array("SHAPE")
         self.LINK: Rows[Link] = layout.array("LINK")
@@ -176,6 +176,11 @@ class Packed:
         order = layout.integers("ORDER")[:k].tolist()
         self.shapes = tuple([solid[i] for i in order])
         self.owner: IntArray = owner[order]
+
+    def tell(self) -> list[int]:
+        """The present `told`."""
+        told: list[int] = self._layout.integers("TOLD").tolist()
+        return told
 
     def write_again(
         self, records: Records, edited: Mapping[pymunk.Shape, Record], moved: bool

@@ -10,8 +10,10 @@ from typing import Any
 import pymunk
 
 from ..arrays import BoolArray
+from ..impacts.new_scene import measure_scene
 from ..impacts.scene_memory import SceneMemory
 from ..layout import BODY_ROW, KNOWN
+from ..model.values import MEASURED
 from ..report import Details, nothing
 from ..transfer import take
 from .bodies import Bodies
@@ -45,7 +47,7 @@ class World(Crossing):
         owner: (k,) index in `bodies.items` of the body of each shape.
         BODY, SHAPE, LINK, VERTEX: see `..model`.  disks, dynamic: numbers of the first rows of BODY that are single
             disks, and dynamic bodies; then come kinematic bodies, and last the ground.
-        STATES, WALK, EXTRA, ENDS, HELD: the arrays exchanged with pymunk, see `layout.py`.  reading: their table.
+        STATES, WALK, EXTRA, ENDS, HELD: the arrays exchanged with pymunk, see `layout.py`.
         gravity: length/time².  damping: pymunk's, 1 is none.
         hooks: functions of bodies and constraints.  collisions: whether the space has collision handlers.
         hooked: whether a step calls functions of the program, or damping is 0.  plain: neither hooked nor with joints.
@@ -83,12 +85,13 @@ class World(Crossing):
         self.packed = packed = Packed(bodies, self, self.records, None if past is None else past.packed)
         if packed.status < 0:
             bodies.check_finite(self.state)
-        self.shapes, self.owner, self.reading, self.bound = packed.shapes, packed.owner, packed.table, packed.bound
+        self.bind(packed.table, packed.bound)
+        self.shapes, self.owner = packed.shapes, packed.owner
         self.BODY, self.SHAPE, self.LINK, self.VERTEX = packed.BODY, packed.SHAPE, packed.LINK, packed.VERTEX
         if self.frictionless:
             self.SHAPE["friction"] = 0.0
             self.BODY["friction"] = 0.0
-        self.disks, self.dynamic, self._carried, _, eccentric, *self._functions = packed.told
+        self.disks, self.dynamic, self._carried, _, eccentric, *self._functions = packed.told[:MEASURED]
         self.eccentric = eccentric > 0
         self.patches = 0
         self.parted: set[tuple[int, int]] = set()
@@ -141,6 +144,11 @@ class World(Crossing):
     def places(self) -> dict[pymunk.Shape, int]:
         """The row of SHAPE of each solid shape."""
         return {shape: k for k, shape in enumerate(self.shapes)}
+
+    def measured(self) -> list[int]:
+        """See `impacts.new_scene.measure_scene`, of the present rows."""
+        self.bound(measure_scene)()
+        return self.packed.tell()[MEASURED:]
 
     @property
     def centred(self) -> BoolArray:

@@ -13,6 +13,7 @@ from eeca_pymunk.contacts.correction import budget_of, lifting
 from eeca_pymunk.contacts.interval import make_contacts, step_island
 from eeca_pymunk.contacts.memory import forget
 from eeca_pymunk.contacts.works import carried, moved
+from eeca_pymunk.geometry.corners import moving_thin
 from eeca_pymunk.impacts.scene import EventLoop
 from eeca_pymunk.model.bodies import POSE, VELOCITY
 from eeca_pymunk.model.contacts import Force, Problem
@@ -60,7 +61,10 @@ class Pile:
         ).reshape(-1, 4)  # fmt: skip
         self.m = 0
         # The scene of these bodies: its shapes, its memory of forces.
-        self.scene = EventLoop(world.body, world.shape, world.link, world.vertex, world.disks, 0).scene
+        thin = moving_thin(world.link, world.vertex, moving := int((owner < len(world.body) - 1).sum()))
+        measured = moving, max(2, int(world.link["vertices"].max())), thin, int((world.shape["elasticity"] < 1.0).any())
+        rows_of = world.body, world.shape, world.link, world.vertex
+        self.scene = EventLoop(*rows_of, measured, world.disks, 0).scene
         self.room(64)
 
     def room(self, size: int) -> None:
