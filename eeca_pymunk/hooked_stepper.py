@@ -159,13 +159,13 @@ class HookedStepper(PackedSpace):
             if slept and not body.is_sleeping:
                 body.velocity, body.angular_velocity = (0.0, 0.0), 0.0
         world.bodies.scatter(world.state)
-        world.HELD, world.EXTRA = world.HELD.copy(), world.EXTRA.copy()
+        world.HELD, world.EXTRA, rehearsal = world.HELD.copy(), world.EXTRA.copy(), world.rehearsal
         now = self._update_world(anew=True)
         now.gather()
         now.check_start()
         rows = [world.bodies.row[body] for body in now.bodies.items]
         now.EXTRA[:], now.HELD[:] = world.EXTRA[rows], world.HELD[:, rows]
-        now.rehearsal.go_on(world.rehearsal)
+        now.rehearsal.go_on(rehearsal)
         now.hooks.late = world.hooks.late
         return now
 

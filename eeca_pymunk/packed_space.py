@@ -182,6 +182,8 @@ class PackedSpace(Stepper):
         if self._sleep is not None and slept is not None:
             self._sleep.recall(dict(zip(slept[0], slept[1].tolist(), strict=True)), slept[3])
         self.prepare(world, past)
+        if past is not None:
+            past.end()
         if self._sleep is not None and (book := self.outcome()[0]) is not None:
             self._idle_book = [0.0] * len(book)
         return self._adopt(world)

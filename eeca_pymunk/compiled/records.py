@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from operator import itemgetter
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Generic, TypeVar, get_origin, get_type_hints, overload
 
@@ -138,9 +138,11 @@ def as_integers(of: Rows[Any]) -> IntArray:
     return np.ndarray(of.nbytes // 8, np.int64, of)
 
 
-def records(of: Rows[Any]) -> IntArray:
-    """(rows, fields) records as integers: a view."""
-    return np.ndarray((len(of), of.dtype.itemsize // 8), np.int64, of)
+def moved(kind: type[R], memory: bytearray, rows: Iterable[int]) -> bytearray:
+    """The memory of these rows of the records in `memory`; of zeros for rows below 0."""
+    size = kind.TYPE.itemsize
+    zeros = bytes(size)
+    return bytearray().join([memory[row * size : row * size + size] if row >= 0 else zeros for row in rows])
 
 
 def numbers(of: Record) -> AnyArray:

@@ -10,7 +10,7 @@ import numpy as np
 import pymunk
 
 from ..arrays import FloatArray, IntArray
-from ..compiled.records import over, records
+from ..compiled.records import moved, over
 from ..model.joints import EDITED, Joint
 from ..reentry import FunctionsCalled
 from .constraint_impulses import Impulses
@@ -48,17 +48,13 @@ class JointRows(Listing):
         if past is not None:
             past.refresh()
         super().__init__(space, past)
-        self._memory = bytearray(len(self.items) * Joint.TYPE.itemsize)
+        before = [-1] * len(self.items) if past is None else [past.row.get(item, -1) for item in self.items]
+        self._memory = moved(Joint, bytearray() if past is None else past._memory, before)
         self.joint = over(Joint, self._memory)
         self._impulses = Impulses(space, self.joint)
         others = [body for body in self.bodies if body not in row]
         self.partners: Partners = Partners(tuple(others), space, None if past is None else past.partners)
         self._row_of = {**row, **{body: n + i for i, body in enumerate(others)}}
-        if past is not None and self.items == past.items:
-            self._memory[:] = past._memory
-        elif past is not None:
-            here = [j for j, item in enumerate(self.items) if item in past.row]
-            records(self.joint)[here] = records(past.joint)[[past.row[self.items[j]] for j in here]]
         self.joint["body"] = np.array([self._row_of[body] for body in self.bodies], np.int64)[self.ends]
         for j in self.fresh:
             self.values[j].put(self._memory, j, *self.joint["body"][j].tolist())

@@ -18,7 +18,7 @@ import pymunk
 from pymunk import batch
 
 from ..arrays import FloatArray, IntArray
-from ..compiled.records import over, records
+from ..compiled.records import moved, over
 from ..errors import NotFiniteError
 from ..model.bodies import Body
 from .edits import clock
@@ -41,17 +41,13 @@ class Partners:
 
     def __init__(self, items: Sequence[pymunk.Body], space: pymunk.Space, past: Partners | None = None) -> None:
         self.items = tuple(items)
-        self._memory = bytearray(len(self.items) * Body.TYPE.itemsize)
+        before = {} if past is None else {body: i for i, body in enumerate(past.items)}
+        there = [before.get(body, -1) for body in self.items]
+        # Those that are new are written below.
+        self._memory = moved(Body, bytearray() if past is None else past._memory, there)
         self.PARTNER = over(Body, self._memory)
-        self._known: list[tuple[float, ...] | None] = [None] * len(self.items)
-        if past is not None:
-            before = {body: i for i, body in enumerate(past.items)}
-            there = [before.get(body, -1) for body in self.items]
-            self._known = [past._known[i] if i >= 0 else None for i in there]
-            if self.items == past.items:
-                self._memory[:] = past._memory
-            elif before:
-                records(self.PARTNER)[:] = records(past.PARTNER)[there]  # those that are new are written below
+        known = [] if past is None else past._known
+        self._known: list[tuple[float, ...] | None] = [known[i] if i >= 0 else None for i in there]
         self.still: IntArray = np.array([body.body_type == pymunk.Body.STATIC for body in self.items], np.int64)
         # Moved static bodies of the space are found where the states of all its bodies are read.
         self.outside = [i for i, body in enumerate(self.items) if body.space is not space]

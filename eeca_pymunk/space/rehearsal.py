@@ -63,6 +63,10 @@ class Rehearsal:
         self._hearing: Hearing | None = None
         self._recent: float = 0.0  # number of steps for which decisions still apply
 
+    def end(self) -> None:
+        """Forget the wrappers, which refer to this."""
+        self._wrapped, self._functions = [], []
+
     def forget(self, reshaped: bool) -> None:
         """Forget earlier steps, and, if shapes have other sizes or places, what handlers may hear."""
         if reshaped:

@@ -140,6 +140,11 @@ class World(Crossing):
         """Arrays and wrappers for steps with collision handlers."""
         return Rehearsal(self)
 
+    def end(self) -> None:
+        """Break cycles of references, so that memory is freed at once."""
+        if (rehearsal := self.__dict__.pop("rehearsal", None)) is not None:
+            rehearsal.end()
+
     @cached_property
     def places(self) -> dict[pymunk.Shape, int]:
         """The row of SHAPE of each solid shape."""
