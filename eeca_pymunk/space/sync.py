@@ -165,8 +165,7 @@ class Sync:
 
     def call_back(self) -> None:
         """Do waiting additions and removals, and call post-step callbacks."""
-        if self.waits():
-            private.finish_step(self.space)
+        private.finish_step(self.space)
 
     def note(self) -> None:
         """Record that the steps pymunk has taken until now were part of EECA steps."""
