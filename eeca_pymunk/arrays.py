@@ -81,6 +81,7 @@ class Memory:
         first = -address_of(room) % unit
         self.bytes: FlagArray = room[first : first + size]
         self.address = address_of(room) + first
+        self.raw = self.bytes.data
         self.floats = self.bytes.view(np.float64).data
         self.integers = self.bytes.view(np.int64).data
 

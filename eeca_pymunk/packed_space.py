@@ -177,7 +177,7 @@ class PackedSpace(Stepper):
             warnings.warn(f"{type(self).__name__} steps on without the friction of this space", stacklevel=4)
         self.reads += 1
         self._sync = Sync(world, None if past is None else self._sync)
-        self._sleep = Sleep(world, self._sleep) if self.space.sleep_time_threshold < math.inf else None
+        self._sleep = Sleep(world, self._sleep) if world.sleeps else None
         slept, self._slept = self._slept, None
         if self._sleep is not None and slept is not None:
             self._sleep.recall(dict(zip(slept[0], slept[1].tolist(), strict=True)), slept[3])

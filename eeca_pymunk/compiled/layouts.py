@@ -98,7 +98,7 @@ class Layout(Generic[T]):
         self._memory = Memory()
         self._pointers = Pointers(tuple, words) if start().entries else None
         self.table: Table = self._pointers
-        self._calls: dict[Kernel[..., Any], Callable[..., Any]] = {}
+        self._calls: dict[tuple[Kernel[..., Any], ...], list[Callable[..., Any]]] = {}
 
     def lay(self, counts: Mapping[str, int], *elsewhere: AnyArray) -> Table:
         """The table of arrays with so many rows each, 1 of records, also of those elsewhere; the last table is lost."""
@@ -116,12 +116,12 @@ class Layout(Generic[T]):
             self._pointers.make_by(partial(self._arrays, elsewhere))
         return self.table
 
-    def bound(self, kernel: Kernel[..., R]) -> Callable[..., R]:
-        """A kernel with the last table as its first argument; in machine code it is made once for all tables."""
-        call = self._calls.get(kernel)
-        if call is None:
-            call = self._calls[kernel] = kernel.bind(self.table)
-        return call
+    def bound(self, *kernels: Kernel[..., R]) -> list[Callable[..., R]]:
+        """Kernels with the last table as their first argument; in machine code they are made once for all tables."""
+        calls = self._calls.get(kernels)
+        if calls is None:
+            calls = self._calls[kernels] = [one.bind(self.table) for one in kernels]
+        return calls
 
     def _arrays(self, elsewhere: Sequence[AnyArray]) -> T:
         """The arrays of the last table."""
@@ -136,6 +136,11 @@ class Layout(Generic[T]):
         shape = tuple([count if length == COUNT else length for length in plan.dimensions[name]])
         array = self._memory.array(shape or (1,), plan.dtypes[name], at)
         return array if shape else array[0]
+
+    def write(self, name: str, content: bytes | bytearray) -> None:
+        """Write all of an array of this memory in the last table."""
+        first = self._table[self._plan.first_word[name]] - self._memory.address
+        self._memory.raw[first : first + len(content)] = content
 
     def floats(self, name: str) -> memoryview:
         """The numbers of an array of this memory in the last table."""

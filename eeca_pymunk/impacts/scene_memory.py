@@ -81,7 +81,8 @@ class SceneMemory:
             "KEYS": 4 * room, "FORCES": 4 * room, "PUSHED_BY": room, "PUSHED": room, "MISSED": _MISSED,
         }  # fmt: skip
         table = self._layout.lay(counts, BODY, SHAPE, LINK, VERTEX, PINNED)
-        found = check("begin_scene", self._layout.bound(begin_scene)(limit, disks, together, budget, lossy))
+        (begin,) = self._layout.bound(begin_scene)
+        found = check("begin_scene", begin(limit, disks, together, budget, lossy))
         return filled(table, SHAPE, moving, found)
 
     def bound(self, *tables: Table) -> Callable[..., int]:

@@ -13,7 +13,6 @@ from pymunk import batch
 
 from ..arrays import FloatArray, IntArray, Memory
 from ..compiled import Table
-from ..compiled.kernels import Kernel
 from ..compiled.records import Rows
 from ..layout import (
     ANEW,
@@ -76,7 +75,7 @@ class Crossing:
     Attributes:
         bodies: in pymunk's order, N with the static ones.
         BODY: (n,).  STATES, WALK, EXTRA, ENDS, HELD: the arrays exchanged with pymunk, see `layout.py`.
-        reading: their table.  bound: a kernel bound to it, see `Layout`.
+        reading: their table.  bound: kernels bound to it, see `Layout`.
         check_start, write_ends, left_as_read, start_afresh: functions, see `rehearsing.copy_start`,
             `transfer.write_ends`, `rehearsing.as_read` and `transfer.place_anew`.
         gather: reads the state of all bodies into STATES[NOW].
@@ -113,10 +112,10 @@ class Crossing:
         self.WALK[KNOWN] = self.WALK[FOUND]
         self._write = _Writers(self, None if past is None else past._write)
 
-    def bind(self, reading: Table, bound: Callable[[Kernel[..., Any]], Callable[..., Any]]) -> None:
+    def bind(self, reading: Table, bound: Callable[..., list[Callable[..., Any]]]) -> None:
         """Use the kernels of the `Reading` with these arrays."""
         self.reading, self.bound = reading, bound
-        self.check_start, self.write_ends, self._write_still_ends, self._alter_end, *more = map(bound, _KERNELS)
+        self.check_start, self.write_ends, self._write_still_ends, self._alter_end, *more = bound(*_KERNELS)
         self.left_as_read, self.start_afresh = more
 
     def reset_forces(self) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 from array import array
 from collections.abc import Collection, Mapping
-from functools import cache, cached_property
+from functools import cache
 from itertools import chain
 from math import isfinite
 from typing import Any, NamedTuple, TypeAlias
@@ -15,11 +15,11 @@ import pymunk
 
 from ..arrays import FloatArray, IntArray
 from ..compiled.layouts import COUNT, Layout, Plan
-from ..compiled.records import Rows, as_integers, from_bytes
+from ..compiled.records import Rows
 from ..layout import EXTRA_COLUMNS, HELD, STATE_COLUMNS
 from ..model.bodies import Body
 from ..model.shapes import Link, Shape
-from ..model.values import CORNERS, STATIC, TOLD, Reading, ShapeValues
+from ..model.values import CORNERS, STATIC, TOLD, Reading
 from ..world_rows import read_space, write_rows
 from .bodies import Bodies
 from .checks import check_shape, shape_body
@@ -29,6 +29,7 @@ from .private import shapes as private_shapes
 
 _WORD = (1 << 64) - 1  # the lowest 64 bits of a filter's numbers, which equality and `&` need
 _VALUES = struct.Struct("2q3Q5dq")
+_POINT = 16  # bytes of a row of POINT
 
 
 class Record(NamedTuple):
@@ -120,8 +121,8 @@ def shape_counts(bodies: Bodies, records: Records) -> dict[Any, int]:
 @cache
 def _arrays() -> Plan[Reading]:
     return Plan(
-        Reading, ("TOLD", "BODY", "SHAPE", "LINK", "VERTEX", "ORDER"), 6,
-        ("BODIES", "SHAPES", "OWNER", "POINT", "STATES", "WALK", "EXTRA", "ENDS", "HELD"), {},
+        Reading, ("TOLD", "BODY", "SHAPE", "LINK", "VERTEX", "ORDER", "SHAPES", "OWNER", "POINT"), 6,
+        ("BODIES", "STATES", "WALK", "EXTRA", "ENDS", "HELD"), {},
         {
             "VERTEX": (COUNT, 4), "POINT": (COUNT, 2), "STATES": (2, COUNT, STATE_COLUMNS), "WALK": (4, COUNT),
             "EXTRA": (COUNT, EXTRA_COLUMNS), "HELD": (HELD, COUNT, STATE_COLUMNS),
@@ -150,12 +151,9 @@ class Packed:
         k, N = len(solid), len(bodies)
         # Places of shapes, and what `_write` overwrites, as they were before.
         self._unwritten: tuple[dict[pymunk.Shape, int], bytearray, bytes] | None = None
-        self._shapes = from_bytes(ShapeValues, [record.packed for record in known])
-        points: FloatArray = np.frombuffer(bytearray().join([record.points for record in known]))
-        self._points = points.reshape(-1, 2)
-        row = bodies.row
-        owner: IntArray = np.array([row[record.body] for record in known], np.int64)
-        moving, v = N - bodies.VALUES["kind"].tolist().count(STATIC), len(self._points)
+        row, points = bodies.row, b"".join([record.points for record in known])
+        owner = [row[record.body] for record in known]
+        moving, v = N - bodies.VALUES["kind"].tolist().count(STATIC), len(points) // _POINT
         self._layout = layout = Layout(_arrays()) if past is None else past._layout
         counts = {
             "TOLD": TOLD, "BODY": moving + 1, "SHAPE": k, "LINK": k, "VERTEX": v, "ORDER": k + N + 2, "BODIES": N,
@@ -163,11 +161,14 @@ class Packed:
             "ENDS": len(crossing.ENDS), "HELD": N,
         }  # fmt: skip
         self.table = layout.lay(
-            counts, bodies.VALUES, self._shapes, owner, self._points, crossing.STATES, crossing.WALK, crossing.EXTRA,
-            crossing.ENDS, crossing.HELD,
-        )  # fmt: skip
+            counts, bodies.VALUES, crossing.STATES, crossing.WALK, crossing.EXTRA, crossing.ENDS, crossing.HELD
+        )
+        layout.write("SHAPES", b"".join([record.packed for record in known]))
+        layout.write("OWNER", array("q", owner).tobytes())
+        layout.write("POINT", points)
         self.bound = layout.bound
-        self.status = layout.bound(read_space)(bodies.arranged)
+        self._write, read = layout.bound(write_rows, read_space)
+        self.status = read(bodies.arranged)
         self.told = self.tell()
         self.BODY: Rows[Body] = layout.array("BODY")
         self.SHAPE: Rows[Shape] = layout.array("SHAPE")
@@ -175,7 +176,7 @@ class Packed:
         self.VERTEX: FloatArray = layout.array("VERTEX")[: self.told[CORNERS]]
         order = layout.integers("ORDER")[:k].tolist()
         self.shapes = tuple([solid[i] for i in order])
-        self.owner: IntArray = owner[order]
+        self.owner: IntArray = np.array([owner[i] for i in order], np.int64)
 
     def tell(self) -> list[int]:
         """The present `told`."""
@@ -196,16 +197,11 @@ class Packed:
         place, before, points = self._unwritten
         for shape, record in edited.items():
             before[place[shape] : place[shape] + _VALUES.size] = record.packed
-        given, vertex, BODY = self._views
-        given[:], vertex[:] = before, points
+        layout = self._layout
+        layout.write("SHAPES", before)
+        layout.write("POINT", points)
         if moved:
-            self._layout.array("VERTEX").fill(0.0)
-        BODY.fill(0)
-        self.bound(write_rows)()
+            layout.array("VERTEX").fill(0.0)
+        layout.write("BODY", bytes(self.BODY.nbytes))
+        self._write()
         return not moved or self.LINK["vertices"].tobytes() == vertices  # of static shapes, two may become one
-
-    @cached_property
-    def _views(self) -> tuple[memoryview, memoryview, IntArray]:
-        """The values of shapes, and points, as bytes; BODY as integers."""
-        shapes, points = (np.ndarray(one.nbytes, np.uint8, one).data for one in (self._shapes, self._points))
-        return shapes, points, as_integers(self.BODY)

@@ -50,6 +50,7 @@ class Rehearsal:
     def __init__(self, world: World) -> None:
         self.world, self.space = world, world.space
         self._approach = self._bound(None)
+        (self._differ,) = world.bound(changed)
         self._lengths = 0.0, 0.0, 0.0, 1.0  # dt, gravity, factor of half a step's damping
         # Whether there are changes by begin and pre_solve, and changes by post_solve and separate; the last stage.
         self._changed, self._stage = [False, False], -1
@@ -99,7 +100,7 @@ class Rehearsal:
         """After a function was called: record its changes."""
         late = stage > 0
         self.world.gather()
-        if self.world.bound(changed)(late):
+        if self._differ(late):
             self._changed[late] = True
 
     def run(self, dt: float, half_damping: float, sync: Sync | None = None) -> int:

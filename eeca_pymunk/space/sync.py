@@ -12,7 +12,6 @@ rehearsal was left out, the rehearsal.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from functools import partial
@@ -103,7 +102,7 @@ class Sync:
         """`past`: that of the world of this space before; pymunk itself indexes shapes that were added since."""
         self.space, bodies = world.space, world.bodies
         self._asleep = bodies.reached is not None
-        self._pulls = self.space.sleep_time_threshold < math.inf
+        self._pulls = world.sleeps
         sleepers = [bodies.items[i] for i in bodies.asleep.nonzero()[0]] if self._asleep else []
         self._stop = private_sleep.stop_woken(sleepers)
         self._world = world

@@ -55,7 +55,7 @@ class World(Crossing):
         frictionless: whether friction, also that of handlers, is left out.  lacks_friction: and there is some.
         joints: the constraints of the space, None if it has none.
         undecided: whether it was read after steps that called no handlers, and nothing was edited in place meanwhile.
-        read_at: `edits.clock` when shapes and bodies were read.
+        sleeps: whether bodies could sleep when it was read.  read_at: `edits.clock` when shapes and bodies were read.
         patches: number of patches so far.  packed: the arrays of the rows, and the kernel that writes them.
         objects_read: number of bodies, shapes and constraints read from pymunk for this world; others were known.
         memory: of the event loop of this world.
@@ -68,12 +68,12 @@ class World(Crossing):
     def __init__(self, space: pymunk.Space, ignore: Sequence[str] = (), past: World | None = None) -> None:
         self.space, self._edits = space, counts(space) if past is None else past._edits
         self._known, self._contents = self._edits.in_place, self._count()
-        sleeps = space.sleep_time_threshold < math.inf
+        self.sleeps = space.sleep_time_threshold < math.inf
         stale = None if past is None else past.stale(self._contents)
         known = None if stale is None else past
         self.read_at = clock()
         super().__init__(space, past)
-        bodies = Bodies(space, sleeps, None if known is None else known.bodies, stale or (), self.WALK[KNOWN])
+        bodies = Bodies(space, self.sleeps, None if known is None else known.bodies, stale or (), self.WALK[KNOWN])
         self.bodies = bodies
         self.records: Records
         self.records, count = records_of(space, bodies, {} if known is None else known.records, stale or ())
@@ -152,7 +152,8 @@ class World(Crossing):
 
     def measured(self) -> list[int]:
         """See `impacts.new_scene.measure_scene`, of the present rows."""
-        self.bound(measure_scene)()
+        (measure,) = self.bound(measure_scene)
+        measure()
         return self.packed.tell()[MEASURED:]
 
     @property
