@@ -67,6 +67,7 @@ class Plan(Generic[T]):
         self.kind, self.own, self.elsewhere, self.constant = kind, tuple(own), tuple(elsewhere), dict(constant)
         self.names = self.own + self.elsewhere
         fields = table_fields(kind.__name__)
+        self.place = {name: i for i, name in enumerate(self.names)}
         self.first_word = {name: WORDS * i for i, (name, *_) in enumerate(fields)}
         self.dtypes = {name: dtype for name, dtype, _ in fields}
         self.dimensions = {name: dimensions.get(name, (COUNT,) * many) for name, _, many in fields}
@@ -132,8 +133,9 @@ class Layout(Generic[T]):
     def array(self, name: str) -> Any:
         """An array of this memory in the last table."""
         plan = self._plan
-        count, at = self._into[plan.own.index(name)], self._table[plan.first_word[name]] - self._memory.address
-        shape = tuple([count if length == COUNT else length for length in plan.dimensions[name]])
+        count, at = self._into[plan.place[name]], self._table[plan.first_word[name]] - self._memory.address
+        shape = plan.dimensions[name]
+        shape = (count,) if len(shape) == 1 else tuple([count if length == COUNT else length for length in shape])
         array = self._memory.array(shape or (1,), plan.dtypes[name], at)
         return array if shape else array[0]
 
