@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..impacts.scene import EventLoop
+from ..impacts.scene_memory import Laid
 
 if TYPE_CHECKING:
     from ..space.world import World
@@ -34,8 +35,8 @@ class TimeOfImpact:
 def event_loop(world: World, limit: int, together: bool = False) -> EventLoop:
     """The event loop of a world, see `EventLoop`."""
     joints, memory = world.joints, world.memory
-    rows = world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.measured(), world.disks, limit
+    laid = Laid(world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, world.measured())
     if joints is None:
-        return EventLoop(*rows, together=together, memory=memory)
+        return EventLoop(laid, limit, together=together, memory=memory)
     partners = joints.partners
-    return EventLoop(*rows, joints.joint, partners.PARTNER, together, partners.still, memory)
+    return EventLoop(laid, limit, joints.joint, partners.PARTNER, together, partners.still, memory)

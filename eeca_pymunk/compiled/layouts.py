@@ -21,7 +21,6 @@ from .kernels import Kernel, nonallocating
 from .tables import WORDS, Pointers, Table, words_of
 
 T = TypeVar("T")
-R = TypeVar("R")
 COUNT = -1
 
 
@@ -117,7 +116,7 @@ class Layout(Generic[T]):
             self._pointers.make_by(partial(self._arrays, elsewhere))
         return self.table
 
-    def bound(self, *kernels: Kernel[..., R]) -> list[Callable[..., R]]:
+    def bound(self, *kernels: Kernel[..., Any]) -> list[Callable[..., Any]]:
         """Kernels with the last table as their first argument; in machine code they are made once for all tables."""
         calls = self._calls.get(kernels)
         if calls is None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -31,7 +31,7 @@ from .new_scene import tie_components
 from .remembering import UNBOUND, Remembering
 from .run import ROOM_FOR_IMPACTS, run
 from .run_buffers import RunBuffers
-from .scene_memory import ORDER, RULE_COLUMNS, SceneMemory
+from .scene_memory import ORDER, RULE_COLUMNS, Laid, SceneMemory
 from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS
 
 if TYPE_CHECKING:
@@ -58,9 +58,7 @@ class EventLoop(Remembering):
     """Steps the packed bodies and shapes of a world from impact to impact.
 
     Args:
-        BODY, SHAPE, LINK, VERTEX: see `..model`; BODY has the present poses.
-        measured: what `measure_scene` tells of these.
-        disks: the first so many rows of BODY are single disks.
+        laid: the rows of the world.
         limit: impacts that a body may have in a step.
         joint: (j,) the joints; kept, not copied. Bodies are rows of BODY, or len(BODY) + row of PARTNER (x,), which
             joints cannot move. None for a scene without joints.
@@ -73,18 +71,18 @@ class EventLoop(Remembering):
     """
 
     def __init__(
-        self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, measured: Sequence[int],
-        disks: int, limit: int, joint: Rows[Joint] | None = None, PARTNER: Rows[Body] | None = None,
+        self, laid: Laid, limit: int, joint: Rows[Joint] | None = None, PARTNER: Rows[Body] | None = None,
         together: bool = False, still: IntArray | None = None, memory: SceneMemory | None = None,
     ) -> None:  # fmt: skip
-        n, memory = len(BODY), memory or SceneMemory()
+        BODY, memory = laid.BODY, memory or SceneMemory()
+        n = len(BODY)
         self.jointed, self.together = joint is not None, together
         self.joint, self.partner = _NO_JOINTS if joint is None else joint, BODY[:0] if PARTNER is None else PARTNER
         self._still = _NO_STILL if still is None else still
         self._mobility: FloatArray | None = None  # of bodies, if joints hold any
-        PINNED = self._hold(BODY, SHAPE, LINK) if self.jointed else NO_PINNED
+        PINNED = self._hold(BODY, laid.SHAPE, laid.LINK) if self.jointed else NO_PINNED
         budget = STEP_LOOKS + STEP_LOOKS_BODY * n * max(n, MANY_BODIES) // MANY_BODIES
-        self.table = memory.scene(BODY, SHAPE, LINK, VERTEX, PINNED, limit, disks, together, budget, measured)
+        self.table = memory.scene(laid, PINNED, limit, together, budget)
         (self._par, self._count, self.log), self._bound = memory.records(), UNBOUND
         self._laid, self._memory, self.thin = self.table, memory, memory.thin > 0
         self._rules: dict[tuple[int, int], tuple[float, float, float, float]] = {}  # those of the table

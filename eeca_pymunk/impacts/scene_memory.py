@@ -5,6 +5,7 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable, Sequence
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -43,6 +44,18 @@ def _arrays() -> Plan[Scene]:
     )  # fmt: skip
 
 
+class Laid(NamedTuple):
+    """The rows of a world, see `..model`; BODY has the present poses, and single disks first, so many `disks`.
+    measured: what `measure_scene` tells of them."""
+
+    BODY: Rows[Body]
+    SHAPE: Rows[Shape]
+    LINK: Rows[Link]
+    VERTEX: FloatArray
+    disks: int
+    measured: Sequence[int]
+
+
 class SceneMemory:
     """Memory for the scenes of one stepper: each replaces the one before, whose arrays it overwrites.
 
@@ -59,14 +72,11 @@ class SceneMemory:
         self._unjointed: tuple[Table, int] = None, 0
         self._step: tuple[tuple[Table, ...], Callable[..., int]] = (None,) * 3, int
 
-    def scene(
-        self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, PINNED: Rows[Pinned],
-        limit: int, disks: int, together: bool, budget: int, measured: Sequence[int],
-    ) -> Table:  # fmt: skip
-        """The table of a scene that has taken no step; the arrays given are kept, not copied. measured: see
-        `measure_scene`; the other numbers are fields of COUNT."""
+    def scene(self, laid: Laid, PINNED: Rows[Pinned], limit: int, together: bool, budget: int) -> Table:
+        """The table of a scene that has taken no step; the arrays given are kept, not copied. The numbers are fields of
+        COUNT."""
+        BODY, SHAPE, LINK, VERTEX, disks, (moving, corners, self.thin, lossy) = laid
         n, k = len(BODY), len(LINK)
-        moving, corners, self.thin, lossy = measured
         room = _CONTACTS
         while lossy and room < min(_OF_A_BODY * n, _MANY):
             room *= 2

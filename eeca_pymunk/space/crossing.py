@@ -87,15 +87,18 @@ class Crossing:
     BODY: Rows[Body]
     eccentric: bool
     gather: Callable[[], None]
+    check_start: Callable[[], int]
+    write_ends: Callable[[int], int]
 
     def __init__(self, space: pymunk.Space, past: Crossing | None) -> None:
         """Room for the bodies of a space, and their state now in STATES[NOW]. `past`: of the same space before, which
         can no more be used to read and write; it keeps copies of what these arrays overwrite."""
         self.space = space
         N = len((*space.bodies, space.static_body))  # which exists from its first access on
-        self._memory = memory = Memory() if past is None else past._memory
+        memory = Memory() if past is None else past._memory
         if past is not None:
             past.STATES, past.WALK = past.STATES.copy(), past.WALK.copy()
+        self._memory: Memory = memory
         ends, row = END_COLUMNS * N + 1, 8 * N
         walk, extra, held = _WALK * row, _EXTRA * row, _HELD * row
         memory.provide(0, held + HELD * STATE_COLUMNS * row + 8 * ends)
@@ -110,7 +113,7 @@ class Crossing:
         self.gather = private_batch.reader(space, STATE_FIELDS, self.STATES, self.WALK, last)
         self.gather()
         self.WALK[KNOWN] = self.WALK[FOUND]
-        self._write = _Writers(self, None if past is None else past._write)
+        self._write: _Writers = _Writers(self, None if past is None else past._write)
 
     def bind(self, reading: Table, bound: Callable[..., list[Callable[..., Any]]]) -> None:
         """Use the kernels of the `Reading` with these arrays."""

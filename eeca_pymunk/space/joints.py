@@ -49,7 +49,7 @@ class JointRows(Listing):
             past.refresh()
         super().__init__(space, past)
         before = [-1] * len(self.items) if past is None else [past.row.get(item, -1) for item in self.items]
-        self._memory = moved(Joint, bytearray() if past is None else past._memory, before)
+        self._memory: bytearray = moved(Joint, bytearray() if past is None else past._memory, before)
         self.joint = over(Joint, self._memory)
         self._impulses = Impulses(space, self.joint)
         others = [body for body in self.bodies if body not in row]

@@ -44,7 +44,7 @@ class Partners:
         before = {} if past is None else {body: i for i, body in enumerate(past.items)}
         there = [before.get(body, -1) for body in self.items]
         # Those that are new are written below.
-        self._memory = moved(Body, bytearray() if past is None else past._memory, there)
+        self._memory: bytearray = moved(Body, bytearray() if past is None else past._memory, there)
         self.PARTNER = over(Body, self._memory)
         known = [] if past is None else past._known
         self._known: list[tuple[float, ...] | None] = [known[i] if i >= 0 else None for i in there]

@@ -15,6 +15,7 @@ from eeca_pymunk.contacts.memory import forget
 from eeca_pymunk.contacts.works import carried, moved
 from eeca_pymunk.geometry.corners import moving_thin
 from eeca_pymunk.impacts.scene import EventLoop
+from eeca_pymunk.impacts.scene_memory import Laid
 from eeca_pymunk.model.bodies import POSE, VELOCITY
 from eeca_pymunk.model.contacts import Force, Problem
 from eeca_pymunk.model.islands import Island
@@ -63,8 +64,8 @@ class Pile:
         # The scene of these bodies: its shapes, its memory of forces.
         thin = moving_thin(world.link, world.vertex, moving := int((owner < len(world.body) - 1).sum()))
         measured = moving, max(2, int(world.link["vertices"].max())), thin, int((world.shape["elasticity"] < 1.0).any())
-        rows_of = world.body, world.shape, world.link, world.vertex
-        self.scene = EventLoop(*rows_of, measured, world.disks, 0).scene
+        laid = Laid(world.body, world.shape, world.link, world.vertex, world.disks, measured)
+        self.scene = EventLoop(laid, 0).scene
         self.room(64)
 
     def room(self, size: int) -> None:
