@@ -35,7 +35,7 @@ class TimeOfImpact:
 def event_loop(world: World, limit: int, together: bool = False) -> EventLoop:
     """The event loop of a world, see `EventLoop`."""
     joints, memory = world.joints, world.memory
-    laid = Laid(world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, world.measured())
+    laid = Laid(world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, world.packed.measured())
     if joints is None:
         return EventLoop(laid, limit, together=together, memory=memory)
     partners = joints.partners

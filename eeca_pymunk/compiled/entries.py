@@ -36,6 +36,7 @@ TABLES = {
     "Reading": """
         TOLD:i8[1] BODIES:BodyValues[1] SHAPES:ShapeValues[1] OWNER:i8[1] POINT:f8[2] STATES:f8[3] WALK:i8[2]
         EXTRA:f8[2] ENDS:f8[1] HELD:f8[3] BODY:Body[1] SHAPE:Shape[1] LINK:Link[1] VERTEX:f8[2] ORDER:i8[1]
+        MEASURED:Measures
     """,
     "Joints": """
         JOINT:Joint[1] PARTNER:Body[1] COMPONENT:Component[1] JOINED:ComponentBody[1]

@@ -69,30 +69,30 @@ class Entry:
         # None for tables.
         self._wanted = [None if (kind := self.kinds[i]).endswith("}") else split(kind) for i in self._arrays]
         self._numbers = [i for i, kind in enumerate(self.kinds) if not is_array(kind)]
-        self._last: tuple[list[Any], Callable[..., int] | None] = [], None
 
     def point_to(self, address: int) -> None:
         """Call the C function at this address."""
         numbers = ["double" if kind == "f8" else "int64_t" for kind in self.kinds if not is_array(kind)]
         self.function: Callable[..., int] = _ffi.cast(f"int64_t(*)({', '.join(['int64_t *', *numbers])})", address)
+        self._last: tuple[tuple[Any, ...], Callable[..., int]] = (), int
 
     def __call__(self, *args: Any) -> int:
         if len(args) != len(self.kinds):
             raise TypeError(f"{self.name} takes {len(self.kinds)} arguments, not {len(args)}")
-        arrays = [args[i] for i in self._arrays]
-        known, call = self._last
-        # One by one: comparing lists would compare the elements of arrays.
-        if call is None or any(map(operator.is_not, arrays, known)):
-            call = self.bind(*arrays)
-            self._last = arrays, call
+        call = self.bind(*[args[i] for i in self._arrays])
         return check(self.name, call(*[args[i] for i in self._numbers]))
 
     def bind(self, *arrays: Any) -> Callable[..., int]:
-        """The entry with these arrays: a function of its numbers, whose result `check` takes.
+        """The entry with these arrays: a function of its numbers, whose result `check` takes; that of the last call for
+        the same arrays.
 
         Raises:
             TypeError: an array is not of the declared dtype and dimensions, or not C-contiguous.
         """
+        known, call = self._last
+        # One by one: comparing tuples would compare the elements of arrays.
+        if 0 < len(arrays) == len(known) and not any(map(operator.is_not, arrays, known)):
+            return call
         words: list[int] = []
         for place, (wanted, array) in enumerate(zip(self._wanted, arrays, strict=True)):
             if wanted is None:
@@ -109,6 +109,7 @@ class Entry:
         # A pointer is passed in half the time of a number.
         call = functools.partial(self.function, _ffi.new(_WORDS, words))
         call.kept = arrays  # type: ignore[attr-defined] # as long as their addresses are used
+        self._last = arrays, call
         return call
 
 

@@ -11,23 +11,22 @@ from ..geometry.corners import find_corners, moving_thin
 from ..model.joints import joints_of
 from ..model.parameters.impulses import AUGMENTATION
 from ..model.scene import scene_of
-from ..model.values import LOSSY, MOST_VERTICES, MOVING, THIN, reading_of
+from ..model.values import reading_of
 from ..pairs.margins import begin_lists
 
 
 @nonallocating
 def measure_scene(reading: Table) -> None:
-    """Write to TOLD: how many shapes move; the most vertices of a shape, at least 2; how many thin shapes move, 0 if no
-    thin shapes may meet; 1 if any elasticity is below 1."""
+    """Write MEASURED."""
     R = reading_of(reading)
-    TOLD, LINK = R.TOLD, R.LINK
-    TOLD[MOVING], TOLD[MOST_VERTICES], TOLD[LOSSY] = 0, 2, 0
+    M, LINK = R.MEASURED, R.LINK
+    M.moving, M.vertices, M.lossy = 0, 2, 0
     for s in range(LINK.shape[0]):
-        TOLD[MOVING] += 1 if LINK[s].owner < R.BODY.shape[0] - 1 else 0
-        TOLD[MOST_VERTICES] = max(TOLD[MOST_VERTICES], LINK[s].vertices)
+        M.moving += 1 if LINK[s].owner < R.BODY.shape[0] - 1 else 0
+        M.vertices = max(M.vertices, LINK[s].vertices)
         if R.SHAPE[s].elasticity < 1.0:
-            TOLD[LOSSY] = 1
-    TOLD[THIN] = moving_thin(LINK, R.VERTEX, TOLD[MOVING])
+            M.lossy = 1
+    M.thin = moving_thin(LINK, R.VERTEX, M.moving)
 
 
 @kernel

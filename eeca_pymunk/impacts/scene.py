@@ -32,7 +32,7 @@ from .remembering import UNBOUND, Remembering
 from .run import ROOM_FOR_IMPACTS, run
 from .run_buffers import RunBuffers
 from .scene_memory import ORDER, RULE_COLUMNS, Laid, SceneMemory
-from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS
+from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, step
 
 if TYPE_CHECKING:
     import pymunk
@@ -163,7 +163,7 @@ class EventLoop(Remembering):
 
     def _bind_to(self, reading: Table) -> Callable[..., int]:
         """The step as machine code, bound to this reading and to the arrays of the scene."""
-        self._bound = reading, self._memory.bound(self.table, self.ties, reading)
+        self._bound = reading, step.bind(self.table, self.ties, reading)
         return self._bound[1]
 
     def _grow(self, wish: int) -> None:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import operator
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import cache
 from typing import NamedTuple
 
@@ -23,7 +22,6 @@ from ..model.shapes import Link, Shape, Side
 from ..pairs.setup import NO_GRID, filled, pool_sizes
 from .memory import OF_SCENE
 from .new_scene import begin_scene
-from .step import step
 
 RULE_COLUMNS = 6
 ORDER = 4  # of the steps of components without dissipation, drives and contacts
@@ -46,7 +44,7 @@ def _arrays() -> Plan[Scene]:
 
 class Laid(NamedTuple):
     """The rows of a world, see `..model`; BODY has the present poses, and single disks first, so many `disks`.
-    measured: what `measure_scene` tells of them."""
+    measured: their `Measures`."""
 
     BODY: Rows[Body]
     SHAPE: Rows[Shape]
@@ -70,7 +68,6 @@ class SceneMemory:
         self._layout = Layout(_arrays())
         self.joints, self.log = JointMemory(), 0
         self._unjointed: tuple[Table, int] = None, 0
-        self._step: tuple[tuple[Table, ...], Callable[..., int]] = (None,) * 3, int
 
     def scene(self, laid: Laid, PINNED: Rows[Pinned], limit: int, together: bool, budget: int) -> Table:
         """The table of a scene that has taken no step; the arrays given are kept, not copied. The numbers are fields of
@@ -94,14 +91,6 @@ class SceneMemory:
         (begin,) = self._layout.bound(begin_scene)
         found = check("begin_scene", begin(limit, disks, together, budget, lossy))
         return filled(table, SHAPE, moving, found)
-
-    def bound(self, *tables: Table) -> Callable[..., int]:
-        """The step bound to the tables of scene, joints and reading, which stay where they are from scene to scene."""
-        known, call = self._step
-        if any(map(operator.is_not, tables, known)):
-            call = step.bind(*tables)
-            self._step = tables, call
-        return call
 
     def records(self) -> tuple[memoryview, memoryview, memoryview]:
         """PAR as numbers, COUNT and LOG as integers, of the last scene."""

@@ -50,13 +50,22 @@ class ShapeValues(Record):
     first: int  # its first vertex
 
 
+class Measures(Record):
+    """What memory the scene of these rows needs depends on this (`..impacts.new_scene`)."""
+
+    moving: int  # shapes that move
+    vertices: int  # the most of a shape, at least 2
+    thin: int  # thin shapes that move, 0 if no thin shapes may meet
+    lossy: int  # 1 if any elasticity is below 1
+
+
 class Reading(NamedTuple):
     """A space as pymunk has it, and the rows that are made of it.
 
     BODIES (N,), SHAPES (k,): values, in pymunk's order; OWNER (k,): `owner` of the shapes; POINT (v, 2): the vertices
     of all shapes, overwritten. STATES, WALK, EXTRA, ENDS, HELD: see `..layout`. Out: BODY (moving bodies + 1,), SHAPE,
     LINK (k,), VERTEX (v, 4), whose rows in use come first; ORDER (k + N + 2,), the index in SHAPES of every row of
-    SHAPE, and scratch; TOLD: numbers that Python asks for.
+    SHAPE, and scratch; TOLD: numbers that Python asks for. MEASURED: by `..impacts.new_scene.measure_scene`.
     """
 
     TOLD: IntArray
@@ -74,13 +83,11 @@ class Reading(NamedTuple):
     LINK: Rows[Link]
     VERTEX: FloatArray
     ORDER: IntArray
+    MEASURED: Measures
 
 
 reading_of = Opener(Reading)
 # Places in TOLD: numbers of single disks; of dynamic bodies; of solid shapes of moving bodies; of rows of VERTEX in
 # use; of bodies whose centre of mass is not the origin; with velocity functions; with position functions.
 DISKS, DYNAMICS, CARRIED, CORNERS, ECCENTRICS, STEERERS, MOVERS = 0, 1, 2, 3, 4, 5, 6
-# And by `..impacts.new_scene.measure_scene`.
-MEASURED = MOVING = 7
-MOST_VERTICES, THIN, LOSSY = 8, 9, 10
-TOLD = 11
+TOLD = 7

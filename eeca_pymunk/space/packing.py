@@ -16,6 +16,7 @@ import pymunk
 from ..arrays import FloatArray, IntArray
 from ..compiled.layouts import COUNT, Layout, Plan
 from ..compiled.records import Rows
+from ..impacts.new_scene import measure_scene
 from ..layout import EXTRA_COLUMNS, HELD, STATE_COLUMNS
 from ..model.bodies import Body
 from ..model.shapes import Link, Shape
@@ -121,7 +122,7 @@ def shape_counts(bodies: Bodies, records: Records) -> dict[Any, int]:
 @cache
 def _arrays() -> Plan[Reading]:
     return Plan(
-        Reading, ("TOLD", "BODY", "SHAPE", "LINK", "VERTEX", "ORDER", "SHAPES", "OWNER", "POINT"), 6,
+        Reading, ("TOLD", "BODY", "SHAPE", "LINK", "VERTEX", "ORDER", "SHAPES", "OWNER", "POINT", "MEASURED"), 6,
         ("BODIES", "STATES", "WALK", "EXTRA", "ENDS", "HELD"), {},
         {
             "VERTEX": (COUNT, 4), "POINT": (COUNT, 2), "STATES": (2, COUNT, STATE_COLUMNS), "WALK": (4, COUNT),
@@ -156,8 +157,8 @@ class Packed:
         moving, v = N - bodies.VALUES["kind"].tolist().count(STATIC), len(points) // _POINT
         self._layout = layout = Layout(_arrays()) if past is None else past._layout
         counts = {
-            "TOLD": TOLD, "BODY": moving + 1, "SHAPE": k, "LINK": k, "VERTEX": v, "ORDER": k + N + 2, "BODIES": N,
-            "SHAPES": k, "OWNER": k, "POINT": v, "STATES": N, "WALK": N, "EXTRA": N,
+            "TOLD": TOLD, "MEASURED": 1, "BODY": moving + 1, "SHAPE": k, "LINK": k, "VERTEX": v, "ORDER": k + N + 2,
+            "BODIES": N, "SHAPES": k, "OWNER": k, "POINT": v, "STATES": N, "WALK": N, "EXTRA": N,
             "ENDS": len(crossing.ENDS), "HELD": N,
         }  # fmt: skip
         self.table = layout.lay(
@@ -169,7 +170,7 @@ class Packed:
         self.bound = layout.bound
         self._write, read = layout.bound(write_rows, read_space)
         self.status = read(bodies.arranged)
-        self.told = self.tell()
+        self.told: list[int] = layout.integers("TOLD").tolist()
         self.BODY: Rows[Body] = layout.array("BODY")
         self.SHAPE: Rows[Shape] = layout.array("SHAPE")
         self.LINK: Rows[Link] = layout.array("LINK")
@@ -178,10 +179,12 @@ class Packed:
         self.shapes = tuple([solid[i] for i in order])
         self.owner: IntArray = np.array([owner[i] for i in order], np.int64)
 
-    def tell(self) -> list[int]:
-        """The present `told`."""
-        told: list[int] = self._layout.integers("TOLD").tolist()
-        return told
+    def measured(self) -> list[int]:
+        """The `Measures` of the present rows."""
+        (measure,) = self.bound(measure_scene)
+        measure()
+        found: list[int] = self._layout.integers("MEASURED").tolist()
+        return found
 
     def write_again(
         self, records: Records, edited: Mapping[pymunk.Shape, Record], moved: bool

@@ -10,10 +10,8 @@ from typing import Any
 import pymunk
 
 from ..arrays import BoolArray
-from ..impacts.new_scene import measure_scene
 from ..impacts.scene_memory import SceneMemory
 from ..layout import BODY_ROW, KNOWN
-from ..model.values import MEASURED
 from ..report import Details, nothing
 from ..transfer import take
 from .bodies import Bodies
@@ -91,7 +89,7 @@ class World(Crossing):
         if self.frictionless:
             self.SHAPE["friction"] = 0.0
             self.BODY["friction"] = 0.0
-        self.disks, self.dynamic, self._carried, _, eccentric, *self._functions = packed.told[:MEASURED]
+        self.disks, self.dynamic, self._carried, _, eccentric, *self._functions = packed.told
         self.eccentric = eccentric > 0
         self.patches = 0
         self.parted: set[tuple[int, int]] = set()
@@ -149,12 +147,6 @@ class World(Crossing):
     def places(self) -> dict[pymunk.Shape, int]:
         """The row of SHAPE of each solid shape."""
         return {shape: k for k, shape in enumerate(self.shapes)}
-
-    def measured(self) -> list[int]:
-        """See `impacts.new_scene.measure_scene`, of the present rows."""
-        (measure,) = self.bound(measure_scene)
-        measure()
-        return self.packed.tell()[MEASURED:]
 
     @property
     def centred(self) -> BoolArray:

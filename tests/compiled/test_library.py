@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,7 +14,9 @@ import pytest
 from eeca_pymunk.compiled import library, sources
 from eeca_pymunk.compiled.entries import ENTRIES
 from eeca_pymunk.compiled.library import Status, load
-from eeca_pymunk.transfer import write_ends
+from eeca_pymunk.compiled.records import rows
+from eeca_pymunk.model.bodies import Body
+from eeca_pymunk.transfer import give
 
 compiler = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler to make libraries with")
 loaded = pytest.mark.skipif(sources.library_path() is None, reason="no library of these sources")
@@ -24,6 +27,13 @@ def made(folder: Path, text: str) -> Path:
     path = folder / "made.so"
     subprocess.run(["cc", "-shared", "-fPIC", "-x", "c", "-o", path, "-"], input=text.encode(), check=True)
     return path
+
+
+def given() -> list[Any]:
+    """Arguments of `give`, of three bodies at rest."""
+    return [
+        np.zeros((2, 3, 9)), np.zeros((4, 3), np.int64), np.zeros((3, 5)), rows(Body, 1), np.zeros(54), 0.0, 1.0, 0
+    ]  # fmt: skip
 
 
 def test_no_library() -> None:
@@ -90,29 +100,29 @@ def test_libraries_of_read_only_packages_are_kept_in_the_cache_folder(
     [
         ({0: np.zeros((2, 3, 9), np.float32)}, "C-contiguous f8.3., not float32"),
         ({1: np.zeros((4, 3)).T}, "C-contiguous i8.2., not float64"),
-        ({2: np.zeros((54, 1))}, "C-contiguous f8.1., not float64 of shape .54, 1."),
-        ({2: np.zeros(108)[::2]}, "strides .16,."),
+        ({4: np.zeros((54, 1))}, "C-contiguous f8.1., not float64 of shape .54, 1."),
+        ({4: np.zeros(108)[::2]}, "strides .16,."),
     ],
 )
 def test_entries_refuse_arrays_that_they_would_misread(change: dict[int, np.ndarray], told: str) -> None:
-    entry = load(sources.library_path())[1][write_ends.name]
-    arguments = [np.zeros((2, 3, 9)), np.zeros((4, 3), np.int64), np.zeros(54), 0]
+    entry = load(sources.library_path())[1][give.name]
+    arguments = given()
     assert entry(*arguments) == 0
     for place, value in change.items():
         arguments[place] = value
     with pytest.raises(TypeError, match=told):
         entry(*arguments)
-    with pytest.raises(TypeError, match="transfer:write_ends takes 4 arguments, not 3"):
-        entry(*arguments[:3])
+    with pytest.raises(TypeError, match="transfer:give takes 8 arguments, not 7"):
+        entry(*arguments[:7])
 
 
 @loaded
 def test_statuses_of_kernels_become_exceptions() -> None:
-    entry = library.Entry(write_ends.name, 0)
+    entry = library.Entry(give.name, 0)
     for status, error in ((library.NO_MEMORY, MemoryError), (library.NO_SHAPE, ValueError)):
         entry.function = lambda *_, status=status: status  # type: ignore[misc]
-        with pytest.raises(error, match="transfer:write_ends"):
-            entry(np.zeros((2, 3, 9)), np.zeros((4, 3), np.int64), np.zeros(54), 0)
+        with pytest.raises(error, match="transfer:give"):
+            entry(*given())
 
 
 @loaded
