@@ -42,19 +42,22 @@ from .bodies import STATE_FIELDS, Bodies
 from .private import batch as private_batch
 
 _F = batch.BodyFields
-_SPEED, _SPINS = _F.VELOCITY, _F.VELOCITY | _F.ANGULAR_VELOCITY
-_WHOLE = {0: _F.POSITION | _SPEED, TURNS: _F.POSITION | _F.ANGLE | _SPINS}
-# Fields of each table of ENDS, by where it begins, plus TURNS if it has angles and spins.
-_FIELDS = {END + turns: fields for turns, fields in _WHOLE.items()}
-_FIELDS |= {STILL + turns: fields for turns, fields in _WHOLE.items()}
-_FIELDS |= {SPEED: _SPEED, SPEED + TURNS: _SPINS, PULL: _F.FORCE | _F.TORQUE}
+_SPEEDS = {0: _F.VELOCITY, TURNS: _F.VELOCITY | _F.ANGULAR_VELOCITY}
+_WHOLE = {0: _F.POSITION | _F.VELOCITY, TURNS: _F.POSITION | _F.ANGLE | _F.VELOCITY | _F.ANGULAR_VELOCITY}
+_FORCES = {0: _F.FORCE | _F.TORQUE}
+# Where each table of ENDS begins, and its fields, by that place, plus TURNS if it has angles and spins.
+_TABLES = {
+    start + turns: (start, fields)
+    for start, both in ((END, _WHOLE), (STILL, _WHOLE), (SPEED, _SPEEDS), (PULL, _FORCES))
+    for turns, fields in both.items()
+}
 # Where WALK, EXTRA and HELD begin, in N.
 _WALK, _EXTRA, _HELD = 2 * STATE_COLUMNS, 2 * STATE_COLUMNS + 4, 2 * STATE_COLUMNS + 4 + EXTRA_COLUMNS
 _KERNELS = copy_start, write_ends, write_still_ends, alter_end, as_read, place_anew
 
 
 class _Writers(dict[int, Callable[[], None]]):
-    """Functions that write the tables of ENDS, by the keys of _FIELDS; made at the first use, from those of `past`,
+    """Functions that write the tables of ENDS, by the keys of _TABLES; made at the first use, from those of `past`,
     which are lost."""
 
     def __init__(self, of: Crossing, past: _Writers | None) -> None:
@@ -62,9 +65,9 @@ class _Writers(dict[int, Callable[[], None]]):
         self._past: dict[int, Callable[[], None]] = {} if past is None else {**past._past, **past}
 
     def __missing__(self, place: int) -> Callable[[], None]:
-        of, turns = self._of, TURNS if place - TURNS in _FIELDS else 0
-        ends = of.ENDS[(place - turns) * len(of.bodies) :]
-        write = private_batch.writer(of.space, _FIELDS[place], ends, of.bodies.reached, self._past.get(place))
+        of, (start, fields) = self._of, _TABLES[place]
+        ends = of.ENDS[start * len(of.bodies) :]
+        write = private_batch.writer(of.space, fields, ends, of.bodies.reached, self._past.get(place))
         self[place] = write
         return write
 
