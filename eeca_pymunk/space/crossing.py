@@ -37,7 +37,7 @@ from ..layout import (
 from ..model.bodies import Body
 from ..model.values import STATIC
 from ..rehearsing import alter_end, as_read, copy_start
-from ..transfer import FORCES, TURNS, place_anew, write_ends, write_still_ends
+from ..transfer import FORCES, TURNS, place_anew, take, write_ends, write_still_ends
 from .bodies import STATE_FIELDS, Bodies
 from .private import batch as private_batch
 
@@ -123,6 +123,15 @@ class Crossing:
         self.reading, self.bound = reading, bound
         self.check_start, self.write_ends, self._write_still_ends, self._alter_end, *more = bound(*_KERNELS)
         self.left_as_read, self.start_afresh = more
+
+    def load(self) -> None:
+        """Read the present states into BODY."""
+        self.gather()
+        self._take(0.0, 0.0, 1.0)
+
+    @cached_property
+    def _take(self) -> Callable[[float, float, float], int]:
+        return take.bind(self.STATES, self.WALK, self.EXTRA, self.BODY)
 
     def reset_forces(self) -> None:
         """Write the forces at the end of the step."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import cached_property
 from typing import Any
 
@@ -13,7 +13,6 @@ from ..arrays import BoolArray
 from ..impacts.scene_memory import SceneMemory
 from ..layout import BODY_ROW, KNOWN
 from ..report import Details, nothing
-from ..transfer import take
 from .bodies import Bodies
 from .checks import has_friction, settings
 from .crossing import Crossing
@@ -239,15 +238,6 @@ class World(Crossing):
     def edited(self) -> bool:
         """Whether a shape or body was edited in place."""
         return self._edits.in_place != self._known
-
-    def load(self) -> None:
-        """Read the present states into BODY."""
-        self.gather()
-        self._take(0.0, 0.0, 1.0)
-
-    @cached_property
-    def _take(self) -> Callable[[float, float, float], int]:
-        return take.bind(self.STATES, self.WALK, self.EXTRA, self.BODY)
 
     def half_damping(self, dt: float) -> float:
         """Factor of half a step's damping; 1 for damping 0, whose velocities `alter_end` sets to 0 at the end."""
