@@ -3,17 +3,8 @@
 from __future__ import annotations
 
 from ..compiled import nonallocating
-from ..model.joints import BOXED, MOTOR, PRESCRIBED, ROTARY_SPRING, SPRING, Joints
+from ..model.joints import BOXED, PRESCRIBED, Joints
 from ..newton.entries import is_limit
-
-
-@nonallocating
-def drives(J: Joints, s: int) -> bool:
-    """Whether the joints of component s move its bodies by themselves: springs, motors, joints with a max_force."""
-    for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
-        if J.COUPLING[k].kind in (SPRING, ROTARY_SPRING, MOTOR) or J.JOINT[J.COUPLING[k].joint].bounded != 0:
-            return True
-    return False
 
 
 @nonallocating

@@ -77,6 +77,16 @@ def some_give(J: Joints, groups: Groups) -> bool:
     return False
 
 
+@nonallocating
+def aims(change: float, slow: float, fast: float, elastic: bool) -> tuple[float, float, float]:
+    """The speed that errors of an island are parts of; the difference of velocities of contacts and components at which
+    their iterations end, and the residual of laws. change: |a| h.  slow, fast: speeds of the island."""
+    if elastic:
+        return change + fast, AGREE_ELASTIC * (change + fast), 1e-15 * (change + fast)
+    scale, rests = change + slow, slow < change
+    return scale, (AGREE_REST if rests else AGREE) * scale, (PRESS_RESIDUAL_REST if rests else PRESS_RESIDUAL) * scale
+
+
 @kernel
 def press(
     A: Scene, J: Joints, interval: Interval, L: FloatArray, EXPECTED: FloatArray, slow: float, fast: float, pull: float,
@@ -93,10 +103,7 @@ def press(
     rates(P, Q, ROWS, isle.V, m)
     SLIP, limited = take_slips(ROWS, m), False
     elastic = conserves(ROWS, m)
-    scale = pull * h + (fast if elastic else slow)
-    rests = not elastic and slow < pull * h
-    agree = (AGREE_ELASTIC if elastic else (AGREE_REST if rests else AGREE)) * scale
-    fine = (1e-15 if elastic else (PRESS_RESIDUAL_REST if rests else PRESS_RESIDUAL)) * scale
+    scale, agree, fine = aims(pull * h, slow, fast, elastic)
     most = PRESS_SWEEPS_ELASTIC if elastic else (PRESS_SWEEPS_FEW if m <= COLUMN_CONTACTS else PRESS_SWEEPS)
     exactly, rounds = elastic or m <= COLUMN_CONTACTS, OUTER
     if not exactly:
@@ -106,7 +113,7 @@ def press(
     # Where many contacts do not come to an end, joints come near enough until the last step of the components.
     if J.PROGRESS.effort > J.PROGRESS.budget:
         rounds, most = OUTER_PART, min(most, PRESS_SWEEPS)
-    J.PROGRESS.near = 0.0 if exactly or rests else JOINTS_NEAR
+    J.PROGRESS.near = 0.0 if exactly or slow < pull * h else JOINTS_NEAR
     EFFECT = np.zeros((len(isle.IM), 3))
     PREVIOUS = np.empty((len(isle.IM), 3))
     FORESEEN, UNKNOWN = np.empty((len(isle.IM), 3)), np.empty((0, 3))
@@ -156,6 +163,9 @@ def press(
             for q in range(len(EFFECT)):
                 for c in range(3):
                     EFFECT[q, c] = (EFFECT[q, c] - isle.V[q, c]) / h
+            # Springs and motors accelerate bodies, too.
+            pull = max(pull, farthest_apart(EFFECT, np.zeros_like(EFFECT), isle.EXTENT, n))
+            scale, agree, fine = aims(pull * h, slow, fast, elastic)
             target(P, Q, ROWS, m, EFFECT, EXPECTED, pull, h)
         copy(FORESEEN, motion.MEAN)
         copy(PREVIOUS, motion.MEAN)
@@ -188,8 +198,8 @@ def press(
             advance(A, J, interval, L, B, False, UNKNOWN)
         # What gives way is as stiff as its joints pull: round-off of its ways does not fall further.
         converged = (converged and off <= agree) or (best <= AGREE * scale and some_give(J, groups))
-    quick = fast + max(pull * h, h * farthest_apart(EFFECT, np.zeros_like(EFFECT), isle.EXTENT, n))
     # Impulses that are no solution may take any work from walls.
+    quick = fast + pull * h
     if excessive(L, m, isle.IM, n, quick) or (not converged and m <= COLUMN_CONTACTS):
         solve_gently(A, J, interval, L, B, free)
         converged, bent = False, np.inf if free else 0.0

@@ -6,8 +6,7 @@ import math
 
 import numpy as np
 
-from ..arrays import FloatArray
-from ..compiled import kernel, nonallocating
+from ..compiled import kernel
 from ..contacts.geometry import gather
 from ..contacts.interval import make_contacts, recall, speeds
 from ..contacts.memory import remember_loads
@@ -24,12 +23,11 @@ from ..islands.local import (
     own_contacts,
 )
 from ..islands.membership import lossy
-from ..model.islands import Island
 from ..model.joint_steps import ELASTIC
 from ..model.joints import Joints
 from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, LARGE_ISLAND, UNSOLVED_PART
-from ..model.parameters.joints import COLUMN_CONTACTS, FORESEEN, INTERVAL_SHARE
+from ..model.parameters.joints import COLUMN_CONTACTS, INTERVAL_SHARE
 from ..model.scene import Scene
 from ..model.step import AGAIN, CONTACTS, DONE, PUSHES_FULL, SPENT
 from ..rows.bounded import room_for_rows
@@ -37,39 +35,14 @@ from ..rows.build import conserves, normal_rate
 from .advance import Interval, Motion, advance
 from .alone import account_turning, begin_alone, is_component, meets_nobody, set_path
 from .columns import make_columns
-from .component import step_component
 from .fitting import fit
-from .gathered import gather_component, keep_joints, restore_joints
-from .groups import Groups, find_groups
+from .gathered import keep_joints, restore_joints
+from .groups import find_groups
 from .ledger import work_left
 from .lengths import excess, led_in, sinks
 from .lifting import lift_island
 from .lock import lost, slip_of
-from .motors import drives
 from .press import press
-
-
-@nonallocating
-def foresee(
-    A: Scene, J: Joints, isle: Island, groups: Groups, t: float, h: float, motion: Motion, REACH: FloatArray
-) -> float:
-    """Add to REACH (k,) how far springs and motors move points of bodies in h; the largest such acceleration."""
-    most, J.PROGRESS.near = 0.0, FORESEEN
-    for g in range(len(groups.COMPONENT)):
-        s = groups.COMPONENT[g]
-        if s < 0 or not drives(J, s):
-            continue
-        length = gather_component(A, J, s, isle.POSE, isle.V, isle.ACC, isle.IM, isle.II, t, h)
-        step_component(A, J, s, h, length, False, motion.V, motion.WAY, motion.END, motion.MID)
-        restore_joints(J, s)
-        for w in range(groups.FIRST[g], groups.FIRST[g + 1]):
-            q = groups.BODY[w]
-            x, y = motion.WAY[q, 0] - h * isle.V[q, 0], motion.WAY[q, 1] - h * isle.V[q, 1]
-            way = math.sqrt(x * x + y * y) + abs(motion.WAY[q, 2] - h * isle.V[q, 2]) * isle.EXTENT[q]
-            REACH[q] += 1.1 * way
-            most = max(most, 2.0 * way / (h * h))
-    J.PROGRESS.near = 0.0
-    return most
 
 
 @kernel
@@ -136,7 +109,6 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     slow, fast, pull = speeds(isle.V, isle.ACC, isle.EXTENT, isle.IM, n, h, REACH)
     m = 0
     if p > 0:
-        pull = max(pull, foresee(A, J, isle, groups, t, h, motion, REACH))
         m = gather(A, isle, contacts, moved(isle.POSE, isle.V, 0.5 * h), REACH, h, k == n)
     interval = Interval(isle, groups, P, Q, ROWS, motion, make_columns(groups, P, Q, m), m, n, t, h)
     held, before = True, J.PROGRESS.effort

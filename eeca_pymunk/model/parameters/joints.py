@@ -118,9 +118,6 @@ JOINTED_CORRECTION_SWEEPS = work(40, "sweeps", "Sweeps of the penetration correc
 STEP_WORK = work(
     50000000.0, "operations", "Work of a step with joints besides STEP_WORK_BODY; 5e9 operations take about a second."
 )
-FORESEEN = accuracy(
-    1e-6, "of the component", "Error of joints in the step that tells how far springs and motors will move bodies."
-)
 INTERVAL_SHARE = work(
     0.25,
     "of what is left of the budget",
