@@ -16,8 +16,9 @@ from ..newton.rows import start_joint
 
 @nonallocating
 def taut(W: Workspace, h: float) -> bool:
-    """Whether the impulse F of some joint between points pulls so that (h/2) dF/dx > TAUT of a body's inertia: `turn`
-    is -dF/dx for its angle, arm . F, `per` that across a pin or slide, F over its length."""
+    """Whether the impulse F of some joint between points pulls so that (h/4) dF/dx > TAUT of a body's inertia, as its
+    STIFF takes (`..newton.response.inertia_taken`): `turn` is -dF/dx for its angle, arm . F, `per` that across a pin or
+    slide, F over its length."""
     hinge, link = W.J.HINGE, W.link
     for k in range(W.joints):
         kind = link[k].kind
@@ -35,6 +36,6 @@ def taut(W: Workspace, h: float) -> bool:
         for end in range(2):
             i = link[k].body[0] if end == 0 else link[k].body[1]
             turn = -(rax * fx + ray * fy) if end == 0 else rbx * fx + rby * fy
-            if 0.5 * abs(h) * max(turn * W.J.LOCAL[i].mobility[2], per * W.J.LOCAL[i].mobility[0]) > TAUT:
+            if 0.25 * abs(h) * max(turn * W.J.LOCAL[i].mobility[2], per * W.J.LOCAL[i].mobility[0]) > TAUT:
                 return True
     return False

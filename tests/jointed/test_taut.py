@@ -207,7 +207,7 @@ def test_what_a_groove_answers_is_positive(force: float) -> None:
 @pytest.mark.parametrize("kind", [PIVOT, PIN])
 @pytest.mark.parametrize("turned", [0.0, 2.0])
 def test_taut_is_what_pulls_hard(kind: int, turned: float) -> None:
-    """Two rods end to end: a pull on their joint is stiff beside their moments if (h/2) h f r > I/2."""
+    """Two rods end to end: a pull on their joint is stiff beside their moments if (h/4) h f r > I/2."""
     J = joints_of(JointMemory().plan(rows(Body, 3), rows(Joint, 1), rows(Body, 0), 2))._replace(LOCAL=rows(BodyStep, 2))
     joint, link, local = J.JOINT[0], J.COUPLING[:1], J.LOCAL
     link[0].kind, link[0].body[:] = kind, (0, 1)
@@ -216,7 +216,7 @@ def test_taut_is_what_pulls_hard(kind: int, turned: float) -> None:
     x, y = math.cos(turned), math.sin(turned)
     local[1].pose[:2] = (1.0 + apart) * x, (1.0 + apart) * y
     local["cos"], local["sin"], local["mobility"] = x, y, (1.0, 1.0, 12.0)
-    least = 0.5 / (0.5 * 0.1 * 0.5 * 12.0)  # impulse
+    least = 0.5 / (0.25 * 0.1 * 0.5 * 12.0)  # impulse
     for pull, expected in ((0.99, False), (1.01, True), (-10.0, False)):
         # On b, towards a: it pulls.
         f = -pull * least
