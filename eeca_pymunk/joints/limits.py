@@ -14,8 +14,8 @@ instants (`parts`).
 
 from __future__ import annotations
 
-from ..compiled import nonallocating
-from ..model.joint_steps import SPEEDS, JointLedger
+from ..compiled import inlined, nonallocating
+from ..model.joint_steps import SPEEDS, JointLedger, Parts
 from ..model.joints import Workspace
 from ..model.parameters.joints import (
     JOINT_TOUCH,
@@ -43,29 +43,10 @@ from .bounds import (
 )
 from .correct import correct, fitting_loss
 from .ledger import book
-from .parts import begin_as_known, meets_limit, note_part
+from .parts import begin_as_before, begin_next, meets_limit, note_part, weaken_lead
 
-
-@nonallocating
-def begin_as_before(W: Workspace, before: float, h: float) -> None:
-    """Let the solve of a part h begin with the mean accelerations and forces of the last solve, of a part `before` from
-    the same start: `lead` and `lam`."""
-    local, hinge, longer = W.J.LOCAL, W.J.HINGE, h / before
-    for i in range(W.bodies):
-        for c in range(3):
-            local[i].lead[c] = (local[i].v1[c] - local[i].v0[c]) / before - local[i].acceleration[c]
-    for k in range(W.joints):
-        hinge[k].lam[0] *= longer
-        hinge[k].lam[1] *= longer
-
-
-@nonallocating
-def weaken_lead(W: Workspace, share: float) -> None:
-    """Let the next part begin with this share of the accelerations by joints in the part before: the shorter that was,
-    the more they tell of velocities that did not fit, and the less of forces."""
-    for i in range(W.bodies):
-        for c in range(3):
-            W.J.LOCAL[i].lead[c] *= share
+# What comes after a solve: another one, the limit that was searched, the end of the step, nothing as it fails.
+GOES_ON, MEETS, ENDS, FAILS = 0, 1, 2, 3
 
 
 @nonallocating
@@ -91,6 +72,140 @@ def stop_at(W: Workspace, k: int, side: int, at_once: bool, stays: bool, ledger:
 
 
 @nonallocating
+def search_for(S: Parts, k: int, side: int, when: float, high: float) -> None:
+    """Search the instant at which joint k meets its limit at this side, from `when` on, before `high`."""
+    S.limit, S.side, S.when, S.low, S.high, S.secants = k, side, when, 0.0, high, 0
+
+
+@nonallocating
+def late(W: Workspace, S: Parts) -> bool:
+    """Whether no limit is searched any more: those that are met land."""
+    return bool(S.events >= LIMIT_EVENTS or W.J.PROGRESS.effort > W.J.PROGRESS.hurry)
+
+
+@nonallocating
+def end_part(W: Workspace, S: Parts, linear: bool, h: float, whole: bool, ledger: JointLedger) -> int:
+    """End a part at whose end no limit is passed: that of the step, or, where one has been passed and passed again, an
+    instant between. Arguments as of `step_with_limits`."""
+    component = W.J.COMPONENT[W.s]
+    within = S.when if linear or late(W, S) else passed_within(W, S.when)
+    if within != S.when:
+        if whole:
+            return FAILS
+        S.when, S.events, component.parts_within = within, S.events + 1, 0.0
+        return GOES_ON
+    book(W, S.when, ledger)
+    advance(W.J.LOCAL, W.bodies, S.when)
+    if component.parts_within == h:
+        note_part(W, S.part, -1, 0, S.when)
+    S.left -= S.when
+    if S.left == 0.0:
+        return ENDS
+    S.when, S.solved = S.left, 0.0
+    begin_part(W.link, W.joints)
+    drop_impulses(W)
+    return GOES_ON
+
+
+@nonallocating
+def at_end(W: Workspace, S: Parts, linear: bool, h: float, whole: bool, ledger: JointLedger) -> int:
+    """What comes after a solve to the end of the step. Arguments as of `step_with_limits`."""
+    most = LIMIT_SOLVES if linear else 2 * W.joints + 100  # more of them neither let go nor search
+    if S.solves < most and release(W):
+        return GOES_ON
+    k, side, instant = first_bound(W, S.when)
+    if k < 0 or linear:
+        return end_part(W, S, linear, h, whole, ledger)
+    if whole:
+        return FAILS
+    lands = late(W, S) or S.solves >= most
+    S.events += 1
+    if S.hopped < W.joints and hops(W, k, side, instant, S.when):
+        S.solved, S.hopped = 0.0, S.hopped + 1
+        stop_at(W, k, side, True, True, ledger)
+    elif lands:
+        W.link[k].side = side
+    else:
+        search_for(S, k, side, instant, S.left)
+    return GOES_ON
+
+
+@nonallocating
+def seek(W: Workspace, S: Parts, gap_now: float) -> None:
+    """The next instant at which to look for the limit, whose gap has been looked at: a secant, or the middle."""
+    if gap_now > 0.0:
+        S.low = S.when
+    else:
+        S.high = S.when
+    _, rate = gap_rates(W, S.limit, S.side)
+    # Not the secant from beyond the bound to before a gap that opens first: it hardly moves.
+    if S.secants > 1 and S.when != S.last:
+        secant = (gap_now - S.gap) / (S.when - S.last)
+        rate = secant if gap_now > 0.0 or secant < 0.5 * rate else rate
+    S.last, S.gap = S.when, gap_now
+    step = S.when - gap_now / rate if rate < 0.0 else 0.5 * (S.low + S.high)
+    S.when = step if S.low < step < S.high else 0.5 * (S.low + S.high)
+
+
+@nonallocating
+def at_limit(W: Workspace, S: Parts) -> int:
+    """What comes after a solve to the instant at which a limit is thought to be met: MEETS if it is, and no other one
+    before."""
+    look(W, S.limit, S.when)
+    gap_now, touch = gap(W.J.JOINT, W.J.HINGE, W.link, S.limit, S.side), JOINT_TOUCH * W.J.HINGE[S.limit].size
+    S.secants += 1
+    if S.foreseen > 0:  # perhaps it is not met now
+        _, rate = gap_rates(W, S.limit, S.side)
+        if not (rate < 0.0 and 0.0 < S.when - gap_now / rate < S.left):
+            S.limit, S.when, S.secants, S.events, S.foreseen = -1, S.left, 0, S.events - 1, 0
+            return GOES_ON
+    most = LIMIT_SECANTS if W.J.PROGRESS.effort <= W.J.PROGRESS.hurry else LIMIT_SECANTS_HASTE
+    if abs(gap_now) > 0.1 * touch and S.secants < most:
+        seek(W, S, gap_now)
+        return GOES_ON
+    if abs(gap_now) > touch:  # not found: land
+        W.link[S.limit].side = S.side
+        S.limit, S.when = -1, S.left
+        return GOES_ON
+    k, side, instant = first_bound(W, S.when)
+    if k < 0 or k == S.limit:
+        return MEETS
+    if held_till_then(W, k, side, instant) or late(W, S):
+        W.link[k].side = side  # holds, or lands
+        search_for(S, S.limit, S.side, S.when, S.left)
+    else:
+        S.events += 1
+        search_for(S, k, side, instant, S.when)
+    return GOES_ON
+
+
+@nonallocating
+def meet_limit(W: Workspace, S: Parts, h: float, ledger: JointLedger) -> None:
+    """Let the joint stand on the limit that it meets at the end of the part; the bodies go there unless that is within
+    round-off of the start."""
+    at_once = not is_solved(S, h)
+    if not at_once:
+        rate, after = gap_rates(W, S.limit, S.side)
+        near = rate < 0.0 and -S.when * min(rate, after) <= LIMIT_WAY * W.J.HINGE[S.limit].size
+        at_once = near or S.when <= MEET_INSTANT * abs(h)
+    if not at_once:  # round-off of places would be velocities
+        book(W, S.when, ledger)
+        advance(W.J.LOCAL, W.bodies, S.when)
+        note_part(W, S.part, S.limit, S.side, S.when)
+        S.part += 1
+        S.left -= S.when
+        if S.when < S.left:
+            weaken_lead(W, S.when / S.left)
+    stop_at(W, S.limit, S.side, at_once, False, ledger)
+
+
+@inlined
+def is_solved(S: Parts, h: float) -> bool:
+    """Whether the part is longer than round-off of the step h, so that there is something to solve."""
+    return bool(S.when > 1e-13 * abs(h) or h < 0.0)
+
+
+@nonallocating
 def step_with_limits(
     W: Workspace, linear: bool, h: float, length: float, loops: bool, give: float, whole: bool, ledger: JointLedger
 ) -> bool:
@@ -101,114 +216,28 @@ def step_with_limits(
         loops: whether rows may be redundant.  give: compliance over h², see `..newton.systems`.
         whole: whether the step must not meet any limit: False if it would.  ledger: energies are added to it.
     """
-    hinge, link, local, progress, component = W.J.HINGE, W.link, W.J.LOCAL, W.J.PROGRESS, W.J.COMPONENT[W.s]
-    # What is left of the step; the length of the next solve; instants before and after that at which a limit is met.
-    left, when, low, high = h, h, 0.0, h
-    solved = 0.0  # length of the last solve from the present start
-    # The limit whose instant is searched, -1 for none, and its side.
-    events, solves, secants, meeting, side = 0, 0, 0, -1, 0
-    last, before = 0.0, 0.0  # the last instant of the search, and the gap there
-    part, foreseen, hopped = 0, False, 0
-    most_solves = LIMIT_SOLVES if linear else 2 * W.joints + 100  # more of them neither let go nor search
-    begin_part(link, W.joints)
+    S, component = W.J.PARTS, W.J.COMPONENT[W.s]
+    S.left = h
+    S.part = S.events = S.solves = 0
+    begin_part(W.link, W.joints)
     if component.parts_within != h or linear or whole:
         component.parts, component.parts_within = 0, 0.0 if linear or whole else h
-    if meets_limit(component):
-        meeting, side, when = begin_as_known(W, 0, h, loops)
-        foreseen, events = meeting >= 0, 1
+    component.parts = component.parts if meets_limit(component) else 0
+    begin_next(W, S, loops)
     while True:
-        redundant, at_once = loops or standing(link, W.joints), True
-        if when > 1e-13 * abs(h) or h < 0.0:
-            if solved != 0.0 and not linear:
-                begin_as_before(W, solved, when)
-            if not (solve_linearly(W, when, length) if linear else solve(W, when, length, redundant, give)):
+        if is_solved(S, h):
+            redundant = loops or standing(W.link, W.joints)
+            if S.solved != 0.0 and not linear:
+                begin_as_before(W, S.solved, S.when)
+            if not (solve_linearly(W, S.when, length) if linear else solve(W, S.when, length, redundant, give)):
                 return False
-            solves, solved = solves + 1, when
-            if meeting < 0:  # a step to the end
-                if solves < most_solves and release(W):
-                    continue
-                k, other, instant = first_bound(W, when)
-                if k < 0 or linear:
-                    may_end = not linear and events < LIMIT_EVENTS and progress.effort <= progress.hurry
-                    within = passed_within(W, when) if may_end else when
-                    if within != when:  # a limit is passed, and passed again: the part ends between
-                        if whole:
-                            return False
-                        when, events, component.parts_within = within, events + 1, 0.0
-                        continue
-                    book(W, when, ledger)
-                    advance(local, W.bodies, when)
-                    if component.parts_within == h:
-                        note_part(W, part, -1, 0, when)
-                    if when == left:
-                        return True
-                    left -= when
-                    when, solved = left, 0.0
-                    begin_part(link, W.joints)
-                    drop_impulses(W)
-                    continue
-                if whole:
-                    return False
-                side, events = other, events + 1
-                if hopped < W.joints and hops(W, k, other, instant, when):
-                    solved, hopped = 0.0, hopped + 1
-                    stop_at(W, k, other, True, True, ledger)
-                    continue
-                if events > LIMIT_EVENTS or solves >= most_solves or progress.effort > progress.hurry:  # land
-                    link[k].side = side
-                    continue
-                meeting, when, low, high, secants = k, instant, 0.0, left, 0
+            S.solves, S.solved = S.solves + 1, S.when
+            verdict = at_limit(W, S) if S.limit >= 0 else at_end(W, S, linear, h, whole, ledger)
+            if verdict == GOES_ON:
                 continue
-            look(W, meeting, when)
-            distance = gap(W.J.JOINT, hinge, link, meeting, side)
-            secants += 1
-            if foreseen:  # perhaps it is not met now
-                _, rate = gap_rates(W, meeting, side)
-                if not (rate < 0.0 and 0.0 < when - distance / rate < left):
-                    meeting, when, secants, events, foreseen = -1, left, 0, events - 1, False
-                    continue
-            most = LIMIT_SECANTS if progress.effort <= progress.hurry else LIMIT_SECANTS_HASTE
-            if abs(distance) > 0.1 * JOINT_TOUCH * hinge[meeting].size and secants < most:
-                if distance > 0.0:
-                    low = when
-                else:
-                    high = when
-                _, rate = gap_rates(W, meeting, side)
-                # Not the secant from beyond the bound to before a gap that opens first: it hardly moves.
-                if secants > 1 and when != last:
-                    secant = (distance - before) / (when - last)
-                    rate = secant if distance > 0.0 or secant < 0.5 * rate else rate
-                last, before = when, distance
-                step = when - distance / rate if rate < 0.0 else 0.5 * (low + high)
-                when = step if low < step < high else 0.5 * (low + high)
-                continue
-            if abs(distance) > JOINT_TOUCH * hinge[meeting].size:  # not found: land
-                link[meeting].side = side
-                meeting, when = -1, left
-                continue
-            k, other, instant = first_bound(W, when)
-            if k >= 0 and k != meeting:  # another one is passed before
-                if held_till_then(W, k, other, instant) or events >= LIMIT_EVENTS or progress.effort > progress.hurry:
-                    link[k].side, low, high, secants = other, 0.0, left, 0  # holds, or lands
-                else:
-                    meeting, side, low, high, secants, events = k, other, 0.0, when, 0, events + 1
-                    when = instant
-                continue
-            rate, after = gap_rates(W, meeting, side)
-            near = rate < 0.0 and -when * min(rate, after) <= LIMIT_WAY * hinge[meeting].size
-            at_once = near or when <= MEET_INSTANT * abs(h)
-            if not at_once:  # round-off of places would be velocities
-                book(W, when, ledger)
-                advance(local, W.bodies, when)
-                note_part(W, part, meeting, side, when)
-                part += 1
-                left -= when
-                if when < left:
-                    weaken_lead(W, when / left)
-        solved, hopped = 0.0, 0
-        stop_at(W, meeting, side, at_once, False, ledger)
-        if left <= 1e-13 * h:
+            if verdict != MEETS:
+                return verdict == ENDS
+        meet_limit(W, S, h, ledger)
+        if S.left <= 1e-13 * h:
             return True
-        meeting, side, when = begin_as_known(W, part, left, loops)
-        foreseen, low, high, secants = meeting >= 0, 0.0, left, 0
-        events += 1 if foreseen else 0
+        begin_next(W, S, loops)

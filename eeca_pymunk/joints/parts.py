@@ -9,6 +9,7 @@ limits has no parts of order 4 (`foresight`), whose memory serves.
 from __future__ import annotations
 
 from ..compiled import inlined, nonallocating
+from ..model.joint_steps import Parts
 from ..model.joints import Component, Workspace
 from .foresight import DEPTH, store
 
@@ -42,6 +43,15 @@ def begin_as_known(W: Workspace, part: int, left: float, cold: bool) -> tuple[in
 
 
 @nonallocating
+def begin_next(W: Workspace, S: Parts, cold: bool) -> None:
+    """Begin the next part as the last solution took it, with the search for the limit that it met, if any."""
+    S.limit, S.side, S.when = begin_as_known(W, S.part, S.left, cold)
+    S.foreseen = 1 if S.limit >= 0 else 0
+    S.low, S.high, S.secants, S.solved, S.hopped = 0.0, S.left, 0, 0.0, 0
+    S.events += S.foreseen
+
+
+@nonallocating
 def note_part(W: Workspace, part: int, k: int, side: int, when: float) -> None:
     """Note that a part of length `when` has been taken, at whose end joint k met its limit at this side; -1: none, it
     was the last one."""
@@ -52,3 +62,25 @@ def note_part(W: Workspace, part: int, k: int, side: int, when: float) -> None:
         component.parts = part + 1  # what came after another limit is not known
     component.part_limit[part], component.part_side[part], component.part_length[part] = k, side, when
     store(W, part, when)
+
+
+@nonallocating
+def begin_as_before(W: Workspace, before: float, h: float) -> None:
+    """Let the solve of a part h begin with the mean accelerations and forces of the last solve, of a part `before` from
+    the same start: `lead` and `lam`."""
+    local, hinge, longer = W.J.LOCAL, W.J.HINGE, h / before
+    for i in range(W.bodies):
+        for c in range(3):
+            local[i].lead[c] = (local[i].v1[c] - local[i].v0[c]) / before - local[i].acceleration[c]
+    for k in range(W.joints):
+        hinge[k].lam[0] *= longer
+        hinge[k].lam[1] *= longer
+
+
+@nonallocating
+def weaken_lead(W: Workspace, share: float) -> None:
+    """Let the next part begin with this share of the accelerations by joints in the part before: the shorter that was,
+    the more they tell of velocities that did not fit, and the less of forces."""
+    for i in range(W.bodies):
+        for c in range(3):
+            W.J.LOCAL[i].lead[c] *= share

@@ -95,6 +95,27 @@ class Progress(Record):
     hurry: float  # likewise, from which on limits land instead of being met at their instants
 
 
+class Parts(Record):
+    """A step taken in parts between instants at which limits are met: what is left of it, the solve of the present
+    part, and the search for the instant at which a limit is met."""
+
+    left: float  # time from the start of the part to the end of the step
+    when: float  # length of the next solve, and of the last one from the start of the part, 0 for none
+    solved: float
+    low: float  # instants before and after that at which the limit is met
+    high: float
+    last: float  # the last instant that was looked at, and the gap there
+    gap: float
+    limit: int  # the joint whose limit is searched, -1 for none, and the side of that
+    side: int
+    foreseen: int  # 1 if the last solution of the step has met it
+    secants: int  # instants looked at for it
+    part: int  # parts that have been taken
+    events: int  # limits that were passed, solves, limits held after a hop in this part
+    solves: int
+    hopped: int
+
+
 class JointLedger(Record):
     """Energies of a step of a component. K is kinetic energy, W the work of the bodies' constant accelerations:
 

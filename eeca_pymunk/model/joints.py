@@ -12,7 +12,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import Opener
 from ..compiled.records import Record, Rows
 from .bodies import Body
-from .joint_steps import BodyStep, JointLedger, JointStep, Progress
+from .joint_steps import BodyStep, JointLedger, JointStep, Parts, Progress
 
 
 class Joint(Record):
@@ -159,9 +159,9 @@ class Joints(NamedTuple):
     JOINT (j,): bodies are rows of BODY (n rows) or n + row of PARTNER (x,), which joints cannot move. The plan:
     COMPONENT (components,), with the bodies of each in JOINED and its joints in COUPLING. Scratch for the largest
     component: HINGE, LOCAL, of its joints and bodies; MATRIX, banded; RIGHT, right sides; PIVOTS; MORE, of linear
-    systems and bounded rows; STIFF (6, 6), derivative of a joint's impulse by the ways of its bodies; PROGRESS; PART,
-    the ledger of a part of the step. OF (n,): the component of a body, -1 for none. KEPT (j,): the joints at the start
-    of an interval. STEPPED (components,): their ledgers in their intervals.
+    systems and bounded rows; STIFF (6, 6), derivative of a joint's impulse by the ways of its bodies; PROGRESS;
+    PARTS; PART, the ledger of a part of the step. OF (n,): the component of a body, -1 for none. KEPT (j,): the joints
+    at the start of an interval. STEPPED (components,): their ledgers in their intervals.
     """
 
     JOINT: Rows[Joint]
@@ -176,6 +176,7 @@ class Joints(NamedTuple):
     MORE: FloatArray
     STIFF: FloatArray
     PROGRESS: Progress
+    PARTS: Parts
     PART: JointLedger
     PIVOTS: IntArray
     OF: IntArray
@@ -186,7 +187,7 @@ class Joints(NamedTuple):
 
 # What steps change.
 OF_JOINTS = (
-    "JOINT", "HINGE", "LOCAL", "STIFF", "PROGRESS", "PART", "PIVOTS", "KEPT", "STEPPED", "TALLY",
+    "JOINT", "HINGE", "LOCAL", "STIFF", "PROGRESS", "PARTS", "PART", "PIVOTS", "KEPT", "STEPPED", "TALLY",
 )  # fmt: skip
 
 joints_of = Opener(Joints)
