@@ -16,6 +16,8 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from tqdm import tqdm
@@ -39,7 +41,7 @@ OFF = {
     "INTERVAL_DEPTH": ALWAYS, "INTERVAL_DEPTH_WIDTH": ALWAYS, "INTERVAL_DEPTH_LEAST": "0.0", "INTERVAL_RETRY": ALWAYS,
     "LARGE_ISLAND": "1 << 20", "REST_CANDIDATE": "0.0", "REST_CANDIDATE_LARGE": "0.0", "STOPPING_STEPS": "1.0",
     "ROCKING": "0.0", "INITIAL_PENETRATION": ALWAYS, "SOLVES_BEFORE_HASTE": NEVER, "MOVING_SHARE": "0.0",
-    "JOINT_SPEED_LEFT": "0.0", "TAUT": ALWAYS, "WEDGED": ALWAYS,
+    "JOINT_SPEED_LEFT": "0.0", "TAUT": ALWAYS, "WEDGED": ALWAYS, "UNSOLVED_DEPTH": ALWAYS, "LIMIT_HOP": "-1.0",
 }  # fmt: skip
 
 
@@ -97,11 +99,13 @@ def switched(name: str, value: str, copy: Path) -> None:
     raise ValueError(f"{name} is no heuristic")
 
 
-def variant(name: str, seeds: int) -> dict[str, float]:
-    """What is measured with one rule off; with an empty name, of the package as it is."""
+@contextmanager
+def package_without(name: str, *rooms: str) -> Iterator[tuple[str, dict[str, str]]]:
+    """A copy of the package, and of these rooms beside it, with one rule off, all on if the name is empty: its folder,
+    and an environment that runs it."""
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder)
-        for room in ("eeca_pymunk", "scenes", "comparisons"):
+        for room in ("eeca_pymunk", *rooms):
             shutil.copytree(ROOT / room, copy / room, ignore=shutil.ignore_patterns("__pycache__", "figures"))
         if name:
             switched(name, OFF[name], copy)
@@ -109,6 +113,12 @@ def variant(name: str, seeds: int) -> dict[str, float]:
         subprocess.run(
             [sys.executable, "-m", "eeca_pymunk.build"], cwd=folder, env=environment, check=True, capture_output=True
         )
+        yield folder, environment
+
+
+def variant(name: str, seeds: int) -> dict[str, float]:
+    """What is measured with one rule off; with an empty name, of the package as it is."""
+    with package_without(name, "scenes", "comparisons") as (folder, environment):
         try:
             done = subprocess.run(
                 [sys.executable, "-m", "comparisons.ablation", str(seeds)], cwd=folder, env=environment,

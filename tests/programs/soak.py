@@ -1,6 +1,7 @@
 """Ten thousand random programs of API calls: `python -m tests.programs.soak [COUNT] [--minutes M] [--joints]`.
 
-`--compositions` plays random scenes of `varied.py` in their place, and prints the longest step of all.
+`--compositions` plays random scenes of `varied.py` in their place, and prints the longest step of all; with `--off
+RULE` under a copy of the package without one of its heuristics (`comparisons.ablation.OFF`).
 
 Goes on after a failure, and prints its seed and calls; with `--shrink`, which draws more slowly and less widely, the
 shortest program that fails in the same way, with what was drawn. `--gain 1e-5` takes a gain of energy above that part
@@ -10,11 +11,15 @@ of the scale for a failure (see `fuzz.Program`).
 from __future__ import annotations
 
 import argparse
+import subprocess
+import sys
 import time
 
 from hypothesis import HealthCheck, given, seed, settings
 from hypothesis import strategies as st
 from tqdm import tqdm
+
+from comparisons.ablation import package_without
 
 from .fuzz import GAIN, Drawn, Program, Thrown
 from .varied import Varied
@@ -55,17 +60,20 @@ def plain(count: int, start: int, gain: float, joints: bool, length: int) -> str
 
 def compositions(count: int, minutes: float, start: int, joints: bool) -> int:
     """Play so many compositions, or for so long; how many break a law."""
-    clock, failed, longest, done = time.perf_counter(), 0, 0.0, 0
+    clock, failed, longest, unconverged, done = time.perf_counter(), 0, 0.0, 0, 0
     with tqdm(total=count, unit="scene", desc="compositions") as bar:
         while done < count and time.perf_counter() - clock < 60.0 * minutes:
             try:
-                longest = max(longest, Varied(start + done, joints).play().longest)
+                found = Varied(start + done, joints).play()
+                longest, unconverged = max(longest, found.longest), unconverged + found.unconverged
             except Exception as error:
                 failed += 1
                 tqdm.write(f"seed {start + done}: {type(error).__name__}: {error}")
             done += 1
             bar.update(1)
-    print(f"{done} compositions, {failed} fail, longest step {1e3 * longest:.0f} ms")
+    spent = time.process_time() / max(done, 1)
+    print(f"{done} compositions, {failed} fail, longest step {1e3 * longest:.0f} ms", end=", ")
+    print(f"{unconverged / max(done, 1):.2f} steps of each not converged, {spent:.2f} s each")
     return failed
 
 
@@ -94,7 +102,13 @@ if __name__ == "__main__":
     parser.add_argument("--joints", action="store_true", help="join bodies, too")
     parser.add_argument("--compositions", action="store_true", help="scenes in containers that turn and shake")
     parser.add_argument("--shrink", action="store_true", help="draw by hypothesis, and shrink what fails")
+    parser.add_argument("--off", help="a heuristic, of compositions")
     one = parser.parse_args()
+    if one.off:
+        arguments = [word for word in sys.argv[1:] if word not in ("--off", one.off)]
+        with package_without(one.off, "scenes", "comparisons", "tests") as (folder, environment):
+            command = [sys.executable, "-m", "tests.programs.soak", *arguments]
+            raise SystemExit(subprocess.run(command, cwd=folder, env=environment).returncode)
     if one.compositions:
         raise SystemExit(min(compositions(one.count, one.minutes, one.seed, one.joints), 1))
     raise SystemExit(min(soak(one.count, one.minutes, one.seed, one.gain, one.joints, one.shrink), 1))

@@ -58,7 +58,7 @@ SMALL_SWEEPS = work(40, "sweeps", "Sweeps of a small island that moves, and of a
 UNSOLVED_PART = work(
     4.0, "ratio", "Factor by which an interval with joints becomes shorter, at most, where its contacts are not solved."
 )
-UNSOLVED_DEPTH = accuracy(
+UNSOLVED_DEPTH = heuristic(
     0.1,
     "of what an interval allows",
     "Depth by which a contact of a small island with joints may close in an interval that is not solved: beyond it the "

@@ -31,7 +31,7 @@ IMPACT_LIMITS = work(4, "solutions", "Solutions of an impact, each with the limi
 IMPACT_ENERGY = round_off(4e-16, "of the kinetic energy", "Change of energy by an impact that is round-off.")
 LIMIT_EVENTS = work(12, "number", "Limits that are reached in one step of a component, at most.")
 LIMIT_WAY = round_off(1e-9, "of the component", "Way of a limit to its bound up to which the part before it is empty.")
-LIMIT_HOP = accuracy(
+LIMIT_HOP = heuristic(
     1e-6,
     "of the component",
     "Way by which a limit may leave its bound and return in a part of a step, and be held.",
