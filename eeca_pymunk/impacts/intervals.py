@@ -8,7 +8,7 @@ from ..contacts.unmet import most_work, note_unmet
 from ..islands.accounting import close_interval
 from ..islands.building import build_islands
 from ..islands.intervals import lift_here, solve
-from ..jointed.ends import end_here, left_apart, shorten, stand_still, take_back, under_way
+from ..jointed.ends import end_here, left_apart, shorten, stand_still, under_way
 from ..jointed.lifting import lift_here as lift_joined
 from ..jointed.solve import begin_interval
 from ..model.bodies import AT_REST
@@ -61,6 +61,15 @@ def start_waiting(A: Scene, J: Joints) -> int:
     return DONE
 
 
+@nonallocating
+def begins(A: Scene, root: int) -> float:
+    """Instant at which the interval of an island without joints has begun."""
+    for c in range(A.COUNT.pushes):
+        if A.PUSHED_BY[c].root == root:
+            return float(A.PUSHED[c].start)
+    return 0.0
+
+
 @kernel
 def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
     """End the step at instant t, that of the event of body i, since its budget is spent; so no impact is ignored."""
@@ -74,33 +83,29 @@ def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
     if J.TALLY.components > 0:
         # The shortened intervals are solved again below, beyond the budget that is spent.
         J.PROGRESS.budget = J.PROGRESS.effort + STEP_WORK
-    over = 0  # islands with joints whose intervals have ended before
+    # Bodies may already be at a later instant than t, as impacts of joints come later than predicted, or earlier
+    # (`..jointed.meet`). Those on the way of an interval go back on it; then the poses of all become those at t.
     for k in range(A.BODY.shape[0] - 1):
-        # An island may already be at a later instant than t, as impacts of joints come later than predicted, or earlier
-        # (`..jointed.meet`): the poses there become those at t.
-        later = A.BODY[k].since > t
-        A.BODY[k].since = min(A.BODY[k].since, t)
+        if A.STATE[k].island == k and A.MEMBER[k].rest != AT_REST and A.MEMBER[k].jointed == 0 and A.MEMBER[k].open > 0:
+            close_interval(A, k, max(begins(A, k), t))
+    for k in range(A.BODY.shape[0] - 1):
         root = A.STATE[k].island
-        if root < 0 or A.MEMBER[root].rest == AT_REST:
+        over = root >= 0 and A.MEMBER[root].rest != AT_REST and A.MEMBER[root].open == 0
+        A.BODY[k].since = t if over else min(A.BODY[k].since, t)
+    count = 0  # islands with joints whose intervals have ended before
+    for k in range(A.BODY.shape[0] - 1):
+        if A.STATE[k].island != k or A.MEMBER[k].rest == AT_REST:
             continue
-        if A.MEMBER[root].open == 0:
-            A.BODY[k].since = t  # its path ended before; until the cut it stays there
-        if A.MEMBER[root].jointed > 0:
-            if root == k and under_way(A, k):
-                shorten(A, J, k, t)
-                if left_apart(A, J, k):
-                    stand_still(A, J, k, t)
-                end_here(A, J, k, t)
-            elif root == k:
-                A.BLOCK[over] = k
-                over += 1
-            continue
-        if root == k:
-            if later:
-                take_back(A, k)  # its interval was to begin after the cut
-            if A.MEMBER[k].open > 0:
-                close_interval(A, k, t)
+        if A.MEMBER[k].jointed == 0:
             lift_here(A, k, t)
-    for c in range(over):
+        elif under_way(A, k):
+            shorten(A, J, k, t)
+            if left_apart(A, J, k):
+                stand_still(A, J, k, t)
+            end_here(A, J, k, t)
+        else:
+            A.BLOCK[count] = k
+            count += 1
+    for c in range(count):
         lift_joined(A, J, A.BLOCK[c], t)
     return DONE

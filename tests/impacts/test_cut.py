@@ -1,0 +1,61 @@
+"""Steps that end early: nothing is lost, whatever instants the bodies of islands have come to."""
+
+from __future__ import annotations
+
+import numpy as np
+import pymunk
+import pytest
+
+import eeca_pymunk as ep
+from eeca_pymunk.contacts.interval import step_island
+from eeca_pymunk.contacts.single import move_to
+from eeca_pymunk.impacts.begin import begin, total
+from eeca_pymunk.impacts.intervals import cut_short, start_islands
+from eeca_pymunk.islands.accounting import end_interval
+from eeca_pymunk.islands.intervals import solve
+from eeca_pymunk.model.scene import Scene
+
+
+def open_energy(A: Scene) -> float:
+    """What the ledger up to now does not explain, where all contacts are in it up to the instants of their bodies."""
+    PAR = A.PAR
+    return float(total(A) - PAR.before - PAR.external + PAR.restitution + PAR.frictional + PAR.damped)
+
+
+@pytest.mark.parametrize("begun", [False, True])
+@pytest.mark.parametrize("beyond", [0, 1])
+def test_an_island_beyond_the_cut_closes_its_ledger(begun: bool, beyond: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A box slides on a floor, and another one on it, until the step is cut, before their interval has begun, or after;
+    then one of them has gone ahead on its path."""
+    space, dt = pymunk.Space(), 0.01
+    space.gravity = 0.0, -10.0
+    floor = pymunk.Segment(space.static_body, (-9.0, 0.0), (9.0, 0.0), 0.0)
+    floor.friction = 0.5
+    space.add(floor)
+    for k in range(2):
+        body = pymunk.Body(1.0, 1.0)
+        body.position, body.velocity = (0.0, 0.5 + k), (3.0 - 2.0 * k, 0.0)
+        shape = pymunk.Poly.create_box(body, (1.0, 1.0))
+        shape.friction = 0.5
+        space.add(body, shape)
+    stepper = ep.EECA(space)
+    stepper.step(dt)
+    monkeypatch.setattr(step_island, "run", step_island.python)  # within kernels in Python
+    assert stepper.event_loop is not None
+    A, J = stepper.event_loop.scene, stepper.event_loop.joints
+    for i in range(2):
+        A.BODY[i].since, A.BODY[i].ax, A.BODY[i].ay, A.BODY[i].angular = 0.0, 0.0, -10.0, 0.0
+    begin(A, np.zeros((4, 0), np.int64))
+    start_islands(A, J)
+    root = A.STATE[0].island
+    assert (root, A.STATE[1].island, A.MEMBER[root].bodies) == (0, 0, 2)
+    if begun:
+        move_to(A.BODY, beyond, 0.4 * dt)
+    else:
+        end_interval(A, root, 0.4 * dt)
+        solve(A, root, 0.4 * dt)
+        move_to(A.BODY, beyond, 0.5 * dt)
+    cut_short(A, J, 0, 0.3 * dt)
+    assert [float(A.BODY[i].since) for i in range(2)] == [A.PAR.dt] * 2
+    assert open_energy(A) == pytest.approx(0.0, abs=1e-12)
+    assert A.PAR.frictional > 0.01
