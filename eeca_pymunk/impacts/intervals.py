@@ -8,8 +8,9 @@ from ..contacts.unmet import most_work, note_unmet
 from ..islands.accounting import close_interval
 from ..islands.building import build_islands
 from ..islands.intervals import lift_here, solve
-from ..jointed.ends import end_here, left_apart, shorten, stand_still, under_way
+from ..jointed.ends import shorten, under_way
 from ..jointed.lifting import lift_here as lift_joined
+from ..jointed.meet import end_before
 from ..jointed.solve import begin_interval
 from ..model.bodies import AT_REST
 from ..model.joints import Joints
@@ -100,9 +101,7 @@ def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
             lift_here(A, k, t)
         elif under_way(A, k):
             shorten(A, J, k, t)
-            if left_apart(A, J, k):
-                stand_still(A, J, k, t)
-            end_here(A, J, k, t)
+            end_before(A, J, k, t, False)
         else:
             A.BLOCK[count] = k
             count += 1

@@ -14,9 +14,9 @@ from ..islands.building import comes_to_rest
 from ..islands.local import clear_places, set_places
 from ..islands.membership import jointed, members
 from ..jointed.columns import fill_free, make_columns, weigh
-from ..jointed.ends import end_here, shorten, under_way
+from ..jointed.ends import shorten, under_way
 from ..jointed.groups import find_groups
-from ..jointed.meet import meet
+from ..jointed.meet import end_before, meet
 from ..model.bodies import AT_REST
 from ..model.contacts import SOLVED, JointedProblem, Row, Solved
 from ..model.joints import Joints
@@ -135,7 +135,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
             root = A.STATE[A.BLOCK[q]].island
             if under_way(A, root):
                 shorten(A, J, root, t)
-                end_here(A, J, root, t)
+                end_before(A, J, root, t, False)
                 again = True
         if again:
             clear_places(A, A.BLOCK, n)

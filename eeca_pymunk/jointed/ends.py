@@ -115,15 +115,3 @@ def left_apart(A: Scene, J: Joints, root: int) -> bool:
         if J.STEPPED[s].status >= LINEAR or J.STEPPED[s].gave > LINEAR_APART:
             return True
     return False
-
-
-@kernel
-def stand_still(A: Scene, J: Joints, root: int, t: float) -> None:
-    """Take the interval of an island back, at whose end it was `left_apart`: until instant t it keeps poses and
-    velocities."""
-    J.TALLY.worst = LINEAR
-    shorten(A, J, root, A.BODY[root].since)
-    i = root
-    while i >= 0:
-        A.BODY[i].since = t
-        i = A.MEMBER[i].following

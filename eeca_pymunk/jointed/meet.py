@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 from ..compiled import kernel, nonallocating
 from ..geometry.flight import pose
 from ..geometry.gap import gap
 from ..geometry.sides import remembers, smaller
 from ..islands.depths import depth_limit
 from ..islands.membership import in_large_island
+from ..model.joint_steps import LINEAR
 from ..model.joints import Joints
 from ..model.parameters.intervals import INTERVAL_DEPTH
 from ..model.parameters.joints import (
@@ -24,7 +27,7 @@ from ..model.scene import Scene
 from ..pairs.lists import far_apart
 from ..pairs.rules import barred
 from ..prediction.impact_times import meet as find_meeting
-from .ends import end_here, left_apart, shorten, stand_still, under_way
+from .ends import end_here, left_apart, shorten, under_way
 
 
 @nonallocating
@@ -51,19 +54,33 @@ def shorten_both(A: Scene, J: Joints, one: int, other: int, t: float) -> int:
 
 
 @nonallocating
+def is_beyond(A: Scene, a: int, b: int, through: float, t: float) -> bool:
+    """Whether shapes a and b, which meet at instant `through` on their paths, are on the far sides of each other at t:
+    the normal there is against that at which they meet."""
+    before, after = gap(A, a, b, through), gap(A, a, b, t)
+    return bool(before[1] * after[1] + before[2] * after[2] < 0.0)
+
+
+@nonallocating
 def passes(A: Scene, root: int, t: float) -> bool:
-    """Whether a shape of an island is deeper at instant t, the end of its interval, in another one that it has no
-    contact with than an interval allows, and than at its start: the path of an interval that is shortened is another
-    one, on which nobody has looked for impacts."""
+    """Whether a shape of an island has come through another one that it has no contact with at instant t, the end of
+    its interval, or is deeper in it than an interval allows, and than at its start: the path of an interval that is
+    shortened is another one, on which nobody has looked for impacts."""
     i = root if under_way(A, root) else -1
     while i >= 0:
         for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
             for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
                 o = int(A.POOL[w])
-                if A.FLAG[w] != 0 or barred(A.RULE, s, o) or far_apart(A, s, o, t, 0.0):
+                if A.FLAG[w] != 0 or barred(A.RULE, s, o):
                     continue
-                g, small = gap(A, s, o, t)[0], smaller(A, s, o)
                 began = max(A.BODY[i].since, A.BODY[A.LINK[o].owner].since)
+                g = math.inf if far_apart(A, s, o, t, 0.0) else gap(A, s, o, t)[0]
+                if g > 0.0:
+                    through, met = first_meeting(A, s, o, t)
+                    if met and through > began + A.PAR.instant and is_beyond(A, s, o, through, t):
+                        return True
+                    continue
+                small = smaller(A, s, o)
                 # Thin shapes that are deeper remember their sides.
                 deep = INTERVAL_DEPTH * small if remembers(A, s, o) else depth_limit(A, s, o)
                 if g < -deep and g < gap(A, s, o, began)[0] - MEET_MANY * small:
@@ -83,6 +100,28 @@ def too_late(A: Scene, J: Joints, roots: tuple[int, int], t: float) -> bool:
 
 
 @kernel
+def end_before(A: Scene, J: Joints, root: int, t: float, fits: bool) -> bool:
+    """End the interval of an island, which has been shortened to instant t. Unless it is known that it `fits`: where
+    joints do not hold at its end, or it has led through others, the island goes half as far, and so on, or not at all,
+    and stays there until t. Returns whether it does."""
+    if not under_way(A, root):
+        return False
+    began, then = A.BODY[root].since, t
+    for tries in range(0 if fits else MEET_SECANTS):
+        if not (left_apart(A, J, root) or passes(A, root, then)):
+            break
+        J.TALLY.worst = LINEAR
+        then = began if tries + 1 == MEET_SECANTS else 0.5 * (began + then)
+        shorten(A, J, root, then)
+    end_here(A, J, root, then)
+    i = root
+    while i >= 0:
+        A.BODY[i].since = t
+        i = A.MEMBER[i].following
+    return bool(then < t)
+
+
+@kernel
 def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
     """Bring the islands of shapes a and b, which are seen to meet at instant t, to the instant at which they do; that
     instant, and whether they are apart there.
@@ -90,7 +129,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
     The end of a coarse interval is not a continuous function of its length: stiff springs swing more than once in it.
     If the shapes are on the far side of each other, or on the way there, as their paths meet before the end, or it is
     `too_late` for joints or others, the instant is before that. If no interval is found that ends where they touch,
-    both end at one at which they are apart; what has no interval that joints hold in stands still until then.
+    both end at one at which they are apart; what has no interval that fits is there before, and stays until then.
     """
     i, j = A.LINK[a].owner, A.LINK[b].owner
     roots = (A.STATE[i].island, A.STATE[j].island if A.BODY[j].inv_mass > 0.0 else -1)
@@ -158,8 +197,10 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
         t = then
     if loaded == 0 and rate >= 0.0 and g < -MEET_MANY * small:
         crosses = True  # what joints bring together again meets before secants come to
+    fits = False
     for _ in range(MEET_HALVINGS):
-        if not (crosses or too_late(A, J, roots, t)):
+        fits = not (crosses or too_late(A, J, roots, t))
+        if fits:
             break
         crossed, t = True, 0.5 * (apart + t)
         shorten_both(A, J, roots[0], roots[1], t)
@@ -171,14 +212,14 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
         met = min(max(A.STATE[i].events, A.STATE[j].events), MEET_DOUBLINGS)
         t = min(least + 2.0 ** (met + 1) * A.PAR.instant, latest)
         shorten_both(A, J, roots[0], roots[1], t)
-        while t - least > A.PAR.instant and too_late(A, J, roots, t):
+        fits = not too_late(A, J, roots, t)
+        while not fits and t - least > A.PAR.instant:
             t = 0.5 * (least + t)
             shorten_both(A, J, roots[0], roots[1], t)
+            fits = not too_late(A, J, roots, t)
     for root in roots:
-        if left_apart(A, J, root):
-            stand_still(A, J, root, t)
+        if end_before(A, J, root, t, fits):
             g, crossed = gap(A, a, b, t)[0] - level, True
-        end_here(A, J, root, t)
     return t, crossed and g > close * small
 
 
