@@ -123,7 +123,9 @@ def gives_way(groups: Groups, A: IntArray, B: IntArray, ROWS: Rows[Row], i: int,
 
 @nonallocating
 def weigh(groups: Groups, C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], m: int) -> None:
-    """Let K, A and W of the rows be those of the columns; leave out what hardly can be moved."""
+    """Let K, A and W of the rows be those of the columns; leave out what hardly can be moved. Where the error of the
+    response is all that impulses change of the slip at a given normal rate, tt - nt^2/nn, bodies can go one way only:
+    then it is 0, and no stick is solved for."""
     for i in range(m):
         nn, tt = along(C, A, B, ROWS, i, C.N, False), along(C, A, B, ROWS, i, C.T, True)
         nt = 0.5 * (along(C, A, B, ROWS, i, C.N, True) + along(C, A, B, ROWS, i, C.T, False))
@@ -131,6 +133,8 @@ def weigh(groups: Groups, C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row],
         C.OUT[i] = 0 if gives_way(groups, A, B, ROWS, i, nn) else 1
         if C.OUT[i] == 0:
             ROWS[i].k_n, ROWS[i].a_nn = 1.0 / nn, nn
+        if C.OUT[i] == 0 and (tt - nt * nt / nn) * ROWS[i].k_t <= least:
+            tt = nt * nt / nn
         if tt * ROWS[i].k_t > least:
             ROWS[i].k_t, ROWS[i].a_tt, ROWS[i].a_nt = 1.0 / tt, tt, nt
         else:

@@ -1,0 +1,44 @@
+"""The matrix of a contact whose bodies joints guide."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from eeca_pymunk.compiled.records import zeros
+from eeca_pymunk.jointed.columns import weigh
+from eeca_pymunk.jointed.groups import Groups
+from eeca_pymunk.model.contacts import ROW, Columns
+from eeca_pymunk.model.parameters.joints import STRUT_BETWEEN
+from eeca_pymunk.rows.coulomb import coulomb
+
+
+@pytest.mark.parametrize("mass", [1e-3, 1.0, 1e4])
+@pytest.mark.parametrize("slope", [0.01, 0.3, 1.5])
+@pytest.mark.parametrize("error", [0.0, 1e-3 * STRUT_BETWEEN, -1e-3 * STRUT_BETWEEN, 0.1])
+def test_what_joints_guide_on_a_line_does_not_stick_by_impulses_without_bound(
+    error: float, slope: float, mass: float
+) -> None:
+    """A body slides on a line at an angle to a wall that moves along n, so that there are no impulses by which it would
+    stick: A = d d^T / m but for an `error` of the response. By an elastic impact u_n is reversed: lam = -2 u_n / A_nn
+    without friction, no more than 1 / (1 - mu |A_nt| / A_nn) times as much with it."""
+    rows, d = zeros(1, ROW), (math.sin(slope), math.cos(slope))  # along n = (1, 0) and t = (0, 1)
+    row = rows[0]
+    row.nx, row.k_n, row.k_t, row.friction = 1.0, mass, mass, 0.5 * d[0] / d[1]
+    N, T = np.zeros((1, 3)), np.zeros((1, 3))
+    N[0, :2] = d[0] * d[0] / mass, d[0] * d[1] / mass
+    T[0, :2] = d[1] * d[0] / mass, (d[1] * d[1] + error) / mass
+    one, none = np.array([0]), np.zeros(0, np.int64)
+    C = Columns(np.array([0, 1]), one, N, T, np.zeros(1, np.int64), np.zeros(1))
+    weigh(Groups(np.array([0, -1]), np.array([0, 1]), one, one, none), C, np.array([1]), one, rows, 1)
+    assert C.OUT[0] == 0
+    assert row.a_nn == pytest.approx(d[0] ** 2 / mass, rel=1e-12)
+    assert math.isnan(row.w_nn) == (abs(error) < STRUT_BETWEEN)
+    un, ut = -d[0] - 0.3, -d[1]
+    lam, beta = coulomb(2.0 * un, ut, row.a_nn, row.a_nt, row.a_tt, row.friction, un, ut, -un)
+    assert abs(beta) <= row.friction * lam * (1.0 + 1e-12)
+    if abs(error) < STRUT_BETWEEN:
+        assert lam * row.a_nn <= -2.0 * un * 2.0 * (1.0 + 1e-9)
+        assert row.a_nn * lam + row.a_nt * beta == pytest.approx(-2.0 * un, rel=1e-6)
