@@ -75,13 +75,14 @@ def _per_root_energy(joint: pymunk.Constraint) -> list[float]:
 
 
 def _deepest(space: pymunk.Space, box: pymunk.Body) -> float:
-    """Deepest overlap of the shapes of a body with others."""
+    """Deepest overlap of the shapes of a body with others. The sign of the distance depends on the order of the two
+    shapes; only what overlaps has points."""
     depth = 0.0
     for one in box.shapes:
         for other in space.shapes:
             if other.body is not box and one.cache_bb().intersects(other.cache_bb()):
                 with suppress(AssertionError):  # of pymunk, for shapes that do not collide
-                    depth = max(depth, *(-point.distance for point in one.shapes_collide(other).points), 0.0)
+                    depth = max(depth, *(abs(point.distance) for point in one.shapes_collide(other).points), 0.0)
     return depth
 
 

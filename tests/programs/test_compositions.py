@@ -15,6 +15,7 @@ import pytest
 import eeca_pymunk as ep
 
 from .compositions import Composition, Found
+from .outside import Outside
 from .seeds import play
 
 
@@ -161,3 +162,15 @@ def test_work_from_nowhere_is_found(joints: bool) -> None:
 def test_joints_bring_no_more_energy_than_their_bounds_do(first: int) -> None:
     """What joints book as external is at most `max_force` times the way, and 0 without such a joint."""
     assert play(partial(Composition, joints=True), range(first, first + 20), 10) > 0
+
+
+@pytest.mark.parametrize("kind", ["disk", "box"])
+def test_what_overlaps_a_moving_container_has_a_depth_whatever_pymunk_calls_its_distance(kind: str) -> None:
+    """Lifting it out of a wall of radius 0.2 is the work of the container, though there is no impulse to report."""
+    space, box = pymunk.Space(), pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    box.velocity = 1.0, 0.0
+    body = pymunk.Body(1.0, 1.0)
+    body.position = 0.0, 0.69
+    shape = pymunk.Circle(body, 0.5) if kind == "disk" else pymunk.Poly.create_box(body, (1.0, 1.0))
+    space.add(box, body, pymunk.Segment(box, (-9.0, 0.0), (9.0, 0.0), 0.2), shape)
+    assert Outside(space, box, False).depth == pytest.approx(0.01)
