@@ -89,8 +89,7 @@ ENTRIES = {
     "impacts.run:run": "{Scene} {Joints} {RunArrays} f8[3] i8[2] f8[2] f8[1]",
     "joints.workspace:plan_components": "{Joints} Body[1] i8[1] i8",
     "joints.straight:find_pinned": "Body[1] Body[1] Joint[1] i8[1] Shape[1] Link[1] i8[1]",
-    # Only tests call these, which solve single islands and components: some hundred times slower as plain Python.
-    "joints.components:step_all": "{Joints} Body[1] f8",
+    # Only tests call this, which solves single islands: some hundred times slower as plain Python.
     "contacts.interval:step_island": "{Scene} {Island} {IslandContacts} i8 f8 i8 f8 f8 f8",
     "contacts.memory:forget": "i8[1] Force[1] Count i8[1] Force[1] f8",
 }

@@ -1,4 +1,4 @@
-"""Steps a space of joints and measures what tests compare."""
+"""Steps spaces of jointed bodies without shapes, and measures what tests compare."""
 
 from __future__ import annotations
 
@@ -8,28 +8,79 @@ from collections.abc import Callable
 import numpy as np
 import pymunk
 
-from .jointed import JointedSpace
+import eeca_pymunk as ep
+from eeca_pymunk.model.joints import Joints
+
+from ..jointed.measures import energy, moving
 
 
-def run(space: pymunk.Space, dt: float, steps: int, order: int = 2) -> JointedSpace:
+class Driven:
+    """EECA steps of a space, their ledgers summed.
+
+    Attributes:
+        space, stepper.  report: of the last step.
+        order: 2 or 4 (where a component allows it).  status: of the last step, the worst of its components.
+        restitution: what limits and projections have lost.  friction: bounded joints.  damping: springs.
+        external: work of motors and supports, and of joints that hold, which is round-off.
+        start: energy before the first step.
+    """
+
+    def __init__(self, space: pymunk.Space, order: int = 4) -> None:
+        self.space, self.stepper, self.order = space, ep.EECA(space), order
+        self.restitution = self.friction = self.damping = self.external = 0.0
+        self.start = energy(space)
+
+    @property
+    def joints(self) -> Joints:
+        """The arrays of the joints."""
+        assert self.stepper.event_loop is not None
+        return self.stepper.event_loop.joints
+
+    @property
+    def status(self) -> int:
+        return self.joints.TALLY.worst
+
+    def step(self, dt: float) -> None:
+        """Step the space by dt."""
+        self.joints.TALLY.order = self.order
+        self.report = self.stepper.step(dt)
+        ledger = self.report.ledger
+        assert ledger is not None
+        self.restitution += ledger.restitution
+        self.friction += ledger.friction
+        self.damping += ledger.damping
+        self.external += ledger.external
+
+    def losses(self) -> tuple[float, float, float]:
+        """All that has been lost so far."""
+        return self.damping, self.restitution, self.friction
+
+    def gain(self) -> float:
+        """Energy that the ledgers say has come in since the start."""
+        return self.external - sum(self.losses())
+
+    def unexplained(self) -> float:
+        """Change of energy since the start beside what the ledgers say."""
+        return energy(self.space) - self.start - self.gain()
+
+
+def run(space: pymunk.Space, dt: float, steps: int, order: int = 4) -> Driven:
     """Step `space` so often."""
-    stepper = JointedSpace(space, order)
+    stepper = Driven(space, order)
     for _ in range(steps):
         stepper.step(dt)
     return stepper
 
 
-def drift(space: pymunk.Space, dt: float, steps: int, order: int = 2) -> tuple[float, float, JointedSpace]:
-    """The worst change of energy beside what motors, supports and losses explain; the worst error of a joint."""
-    stepper = JointedSpace(space, order)
-    stepper.step(dt)
-    start, worst, apart = stepper.energy() - stepper.gain() + stepper.ledger.closed, 0.0, 0.0
+def drift(space: pymunk.Space, dt: float, steps: int, order: int = 4) -> tuple[float, float, Driven]:
+    """The worst change of energy, of a space without motors and supports, beside its losses; the worst error of a
+    joint."""
+    stepper = Driven(space, order)
+    worst = apart = 0.0
     for k in range(steps):
-        stepper.components.step(stepper.bodies, dt)
-        stepper.book()
-        worst = max(worst, abs(stepper.energy() - stepper.gain() + stepper.ledger.closed - start))
+        stepper.step(dt)
+        worst = max(worst, abs(stepper.unexplained() + stepper.external))
         if k % 50 == 0:
-            stepper._scatter()
             apart = max(apart, error(space))
     return worst, apart, stepper
 
@@ -62,17 +113,19 @@ def slopes(
 
 def momenta(space: pymunk.Space) -> tuple[float, float, float]:
     """Momentum, and angular momentum about the origin."""
-    px = sum(b.mass * b.velocity.x for b in space.bodies)
-    py = sum(b.mass * b.velocity.y for b in space.bodies)
+    bodies = moving(space)
+    px = sum(b.mass * b.velocity.x for b in bodies)
+    py = sum(b.mass * b.velocity.y for b in bodies)
     spin = 0.0
-    for b in space.bodies:
+    for b in bodies:
         centre = b.local_to_world(b.center_of_gravity)
         spin += b.mass * centre.cross(b.velocity) + b.moment * b.angular_velocity
     return px, py, spin
 
 
-def ledger_closes(stepper: JointedSpace, start: float, scale: float) -> None:
-    """Assert that energy changed by what the ledger says, that nothing is unexplained, and losses are losses."""
-    assert abs(stepper.energy() - start - stepper.gain()) < 1e-12 * scale
-    assert abs(stepper.ledger.closed) < 1e-12 * scale
+def ledger_closes(stepper: Driven, scale: float, external: float = 0.0) -> None:
+    """Assert that energy changed by what the ledger says, that nothing is unexplained beside the `external` work, and
+    losses are losses."""
+    assert abs(stepper.unexplained()) < 1e-12 * scale
+    assert abs(stepper.external - external) < 1e-12 * scale
     assert min(stepper.losses()) >= -1e-15 * scale

@@ -10,8 +10,7 @@ from eeca_pymunk.joints.foresight import DEPTH, PARTS, WEIGHTS
 from eeca_pymunk.joints.ladder import SUZUKI
 from scenes import linkages
 
-from .driving import error
-from .jointed import JointedSpace
+from .driving import Driven, error
 
 LENGTHS = (SUZUKI, SUZUKI, 1.0 - 4.0 * SUZUKI, SUZUKI, SUZUKI)
 
@@ -38,15 +37,15 @@ def test_weights_foretell_what_they_are_made_for() -> None:
 def test_a_step_of_another_length_begins_anew(longer: float) -> None:
     """Nothing is foretold over a change of dt, or after an edit; joints hold all the same."""
     space = linkages.chain(4, lean=0.5)
-    stepper = JointedSpace(space, 4)
+    stepper = Driven(space)
     dt = 1.0 / 240.0
     counts = []
     for k in range(12):
         stepper.step(dt * (1.0 + (longer if k == 6 else 0.0)))
-        counts.append(stepper.rows.joint[0].known_parts)
+        counts.append(stepper.joints.JOINT[0].known_parts)
         assert error(space) < 1e-13
     assert counts[:8] == [5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 5.0, 5.0]
     first = next(iter(space.bodies))
     first.velocity = first.velocity * 1.0001
     stepper.step(dt)
-    assert stepper.rows.joint[0].known_parts == 5.0
+    assert stepper.joints.JOINT[0].known_parts == 5.0

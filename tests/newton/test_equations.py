@@ -7,18 +7,17 @@ import pymunk
 import pytest
 
 from eeca_pymunk.arrays import FloatArray
-from eeca_pymunk.joints.components import read_bodies
 from eeca_pymunk.joints.ordering import order_unknowns
 from eeca_pymunk.joints.workspace import workspace
 from eeca_pymunk.model.joint_steps import NO_BEND, OWN_TURN, JointStep
 from eeca_pymunk.newton.banded import back_banded, factor_banded
 from eeca_pymunk.newton.condensed import factor, substitute
-from eeca_pymunk.newton.motion import move
+from eeca_pymunk.newton.motion import move, seat, size_up
 from eeca_pymunk.newton.rows import joint_rows, start_joint
 from scenes import linkages
 from scenes.linkages import body, empty
 
-from ..joints.jointed import JointedSpace
+from ..joints.driving import Driven
 
 
 def band_of(matrix: FloatArray, band: int, width: int) -> FloatArray:
@@ -85,11 +84,15 @@ class Iterate:
         space = every_joint()
         if static:
             next(iter(space.bodies)).body_type = pymunk.Body.KINEMATIC
-        self.h, stepper = h, JointedSpace(space)
-        stepper._gather()
-        J = stepper.components.arrays
-        read_bodies(stepper.bodies, J, 0, h)
-        self.work = workspace.python(J, 0)
+        self.h, J = h, Driven(space).joints
+        for local, joined in zip(J.LOCAL, J.JOINED[:2], strict=True):
+            one = list(space.bodies)[joined.body]
+            seat(local, joined)
+            local.pose[:], local.v0[:] = (*one.position, one.angle), (*one.velocity, one.angular_velocity)
+            if joined.freedoms > 0:
+                local.mobility[:] = 1.0 / one.mass, 1.0 / one.mass, 1.0 / one.moment
+        size_up(J, 0, h)
+        self.work = workspace(J, 0)
         self.joint, self.hinge, self.local, self.stiff = J.JOINT, J.HINGE, J.LOCAL, J.STIFF
         rng = np.random.default_rng(5)
         self.hinge["lam"] = rng.normal(size=(10, 2))
@@ -193,7 +196,7 @@ def test_condensed_components_step_as_full_ones(order: int) -> None:
     ends = []
     for wide in (False, True):
         space = linkages.cloth(5)
-        stepper = JointedSpace(space, order)
+        stepper = Driven(space, order)
         arrange(stepper, wide)
         for _ in range(20):
             stepper.step(1 / 120)
@@ -202,16 +205,15 @@ def test_condensed_components_step_as_full_ones(order: int) -> None:
     np.testing.assert_allclose(ends[0], ends[1], atol=1e-10)
 
 
-def arrange(stepper: JointedSpace, condensed: bool) -> None:
+def arrange(stepper: Driven, condensed: bool) -> None:
     """Have the stepper's only component in the bodies' unknowns alone, or not."""
-    J = stepper.components.arrays
+    J, loop = stepper.joints, stepper.stepper.event_loop
+    assert loop is not None
     order_unknowns(J.COMPONENT, J.JOINED, J.COUPLING, 0, condensed)
     C = J.COMPONENT[0]
-    stepper.components.use(
-        J._replace(
-            RIGHT=np.zeros(2 * C.unknowns + C.impulses), MATRIX=np.zeros(C.unknowns * (3 * C.band + 1)),
-            MORE=np.zeros(C.unknowns), PIVOTS=np.zeros(C.unknowns, np.int64),
-        )
+    loop.joints = J._replace(
+        RIGHT=np.zeros(2 * C.unknowns + C.impulses), MATRIX=np.zeros(C.unknowns * (3 * C.band + 1)),
+        MORE=np.zeros(C.unknowns), PIVOTS=np.zeros(C.unknowns, np.int64),
     )  # fmt: skip
 
 
@@ -233,9 +235,9 @@ def test_all_systems_step_an_island_alike() -> None:
     ends = []
     for rigid in (0, 2):
         space = linked()
-        stepper = JointedSpace(space)
-        assert stepper.components.arrays.COMPONENT[0].rigid == 2
-        stepper.components.arrays.COMPONENT[0].rigid = rigid
+        stepper = Driven(space)
+        assert stepper.joints.COMPONENT[0].rigid == 2
+        stepper.joints.COMPONENT[0].rigid = rigid
         for _ in range(60):
             stepper.step(1 / 60)
             assert stepper.status <= 1
