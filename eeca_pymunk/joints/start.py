@@ -19,6 +19,7 @@ from ..model.joints import (
     Joint,
     Workspace,
 )
+from ..model.parameters.joints import STALLED
 from ..newton.entries import is_limit
 from ..newton.rows import joint_rows
 from ..newton.systems import first_iterate
@@ -38,6 +39,44 @@ def mark_bounded(W: Workspace) -> None:
     for k in range(W.joints if rows <= W.J.COMPONENT[W.s].boxes else 0):
         if link[k].bounded != 0:
             link[k].bounded = BOXED
+
+
+@nonallocating
+def most_impulse(W: Workspace, h: float, length: float) -> float:
+    """The angular momentum of all that moves a component in a step h, to whose size of `length` all arms are taken:
+    momenta, those by accelerations, springs and bounded joints, and what motors bring to their rate; through all gears.
+    """
+    total, geared = 0.0, 1.0
+    for i in range(W.bodies):
+        local = W.J.LOCAL[i]
+        for c in range(3):
+            if local.mobility[c] > 0.0:
+                arm = 1.0 if c == 2 else length
+                total += arm * (abs(local.v0[c]) + abs(h * local.acceleration[c])) / local.mobility[c]
+    for k in range(W.joints):
+        joint, kind, turns = W.J.JOINT[W.link[k].joint], W.link[k].kind, 0.0
+        a, b = W.J.LOCAL[W.link[k].body[0]], W.J.LOCAL[W.link[k].body[1]]
+        if kind == SPRING:
+            turns = abs(h) * length * (abs(joint.push) + joint.stiffness * length)
+        elif kind == ROTARY_SPRING:
+            turns = abs(h) * (abs(joint.push) + joint.stiffness * abs(a.pose[2] - b.pose[2] - joint.rest))
+        elif joint.bounded != 0:
+            turns = abs(h) * joint.max_force * (1.0 if kind >= GEAR else length)
+        elif kind == MOTOR and a.mobility[2] + b.mobility[2] > 0.0:
+            turns = abs(joint.rate) / (a.mobility[2] + b.mobility[2])
+        elif kind == GEAR:
+            geared *= max(abs(joint.ratio), 1.0 / abs(joint.ratio))
+        total += turns
+    return geared * total
+
+
+@nonallocating
+def bound_motors(W: Workspace, h: float, length: float) -> None:
+    """Bound the torque of motors that may have any by STALLED of all that moves their component: where they drive
+    against a limit, no finite impulse would hold both."""
+    for k in range(W.joints):
+        if W.link[k].kind == MOTOR and not W.J.HINGE[k].bound < np.inf:
+            W.J.HINGE[k].bound = STALLED * most_impulse(W, h, length) / abs(h)
 
 
 @nonallocating
@@ -68,6 +107,7 @@ def read_joints(W: Workspace, h: float, length: float) -> tuple[bool, bool]:
             hinge[k].target[0] = -joint[j].rate
         bounded = bounded or (link[k].bounded != 0 and kind != MOTOR)
         touched = touched or joint[j].touched != 0
+    bound_motors(W, h, length)
     return touched, bounded
 
 

@@ -249,3 +249,26 @@ def test_a_joint_of_angles_that_nothing_turns_does_nothing(joint: type) -> None:
         assert all(stepper.step(1 / 60).converged for _ in range(60))
         ends.append((rigid.position, swing.position))
     assert ends[0] == ends[1]
+
+
+@pytest.mark.parametrize("unit", UNITS)
+@pytest.mark.parametrize("kind", ["limit", "ratchet"])
+def test_a_motor_of_unlimited_force_stalls_at_a_limit(kind: str, unit: float) -> None:
+    """It turns one body against the ground or the stop of another one, loses what that had, I w²/2, once, and works no
+    more; what has nothing to do with it goes on."""
+    space, wheel, other = empty(0.0), pymunk.Body(2.0, 3.0 * unit**2), pymunk.Body(1.0, unit**2)
+    ground, rate, bound = space.static_body, 1.0, -0.1
+    other.position, other.velocity = (10.0 * unit, 0.0), (unit, 0.0)
+    space.add(wheel, other, pymunk.PivotJoint(ground, wheel, (0, 0), (0, 0)), pymunk.SimpleMotor(ground, wheel, rate))
+    limit, ratchet = pymunk.RotaryLimitJoint(ground, wheel, bound, 10.0), pymunk.RatchetJoint(ground, wheel, 0.0, 0.1)
+    space.add(limit if kind == "limit" else ratchet)
+    stepper, lost, worked = ep.EECA(space), 0.0, 0.0
+    for _ in range(60):
+        report = stepper.step(1 / 60)
+        assert report.converged, report.unmet
+        lost, worked = lost + report.ledger.restitution, worked + report.ledger.external
+    once = 0.5 * 3.0 * unit**2 * rate**2
+    assert wheel.angle == pytest.approx(bound if kind == "limit" else 0.0, abs=1e-11)
+    assert lost == pytest.approx(once if kind == "limit" else 0.0, rel=1e-9, abs=1e-9 * once)
+    assert worked == pytest.approx(lost, rel=1e-9, abs=1e-9 * once)
+    assert other.position.x == pytest.approx(11.0 * unit, rel=1e-12)

@@ -76,6 +76,11 @@ REPAID = accuracy(
 JOINT_GAIN = round_off(
     1e-10, "of the kinetic energy", "Gain of joints that hold in a step, above which it is taken from what moves."
 )
+STALLED = accuracy(
+    100.0,
+    "of all momenta, loads and forces of a component, as angular momentum",
+    "Impulse that a motor of unlimited force may have in a step: what drives against a limit stalls.",
+)
 TAUT = heuristic(
     0.5,
     "of a body's inertia",
