@@ -7,12 +7,9 @@ import math
 from ..compiled import kernel, nonallocating
 from ..geometry.flight import pose
 from ..geometry.gap import gap
-from ..geometry.sides import remembers, smaller
-from ..islands.depths import depth_limit
 from ..islands.membership import in_large_island
 from ..model.joint_steps import LINEAR
 from ..model.joints import Joints
-from ..model.parameters.intervals import INTERVAL_DEPTH
 from ..model.parameters.joints import (
     COLUMN_CONTACTS,
     MEET,
@@ -24,10 +21,8 @@ from ..model.parameters.joints import (
     MEET_SECANTS_LOADED,
 )
 from ..model.scene import Scene
-from ..pairs.lists import far_apart
-from ..pairs.rules import barred
-from ..prediction.impact_times import meet as find_meeting
 from .ends import end_here, left_apart, shorten, under_way
+from .paths import first_meeting, passes
 
 
 @nonallocating
@@ -54,49 +49,12 @@ def shorten_both(A: Scene, J: Joints, one: int, other: int, t: float) -> int:
 
 
 @nonallocating
-def is_beyond(A: Scene, a: int, b: int, through: float, t: float) -> bool:
-    """Whether shapes a and b, which meet at instant `through` on their paths, are on the far sides of each other at t:
-    the normal there is against that at which they meet."""
-    before, after = gap(A, a, b, through), gap(A, a, b, t)
-    return bool(before[1] * after[1] + before[2] * after[2] < 0.0)
-
-
-@nonallocating
-def passes(A: Scene, root: int, t: float) -> bool:
-    """Whether a shape of an island has come through another one that it has no contact with at instant t, the end of
-    its interval, or is deeper in it than an interval allows, and than at its start: the path of an interval that is
-    shortened is another one, on which nobody has looked for impacts."""
-    i = root if under_way(A, root) else -1
-    while i >= 0:
-        for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
-            for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
-                o = int(A.POOL[w])
-                if A.FLAG[w] != 0 or barred(A.RULE, s, o):
-                    continue
-                began = max(A.BODY[i].since, A.BODY[A.LINK[o].owner].since)
-                g = math.inf if far_apart(A, s, o, t, 0.0) else gap(A, s, o, t)[0]
-                if g > 0.0:
-                    through, met = first_meeting(A, s, o, t)
-                    if met and through > began + A.PAR.instant and is_beyond(A, s, o, through, t):
-                        return True
-                    continue
-                small = smaller(A, s, o)
-                # Thin shapes that are deeper remember their sides.
-                deep = INTERVAL_DEPTH * small if remembers(A, s, o) else depth_limit(A, s, o)
-                if g < -deep and g < gap(A, s, o, began)[0] - MEET_MANY * small:
-                    return True
-        i = A.MEMBER[i].following
-    return False
-
-
-@kernel
-def too_late(A: Scene, J: Joints, roots: tuple[int, int], t: float) -> bool:
-    """Whether instant t is beyond what both islands come to: either is `left_apart` there, or `passes` another
-    shape."""
-    for root in roots:
-        if left_apart(A, J, root) or passes(A, root, t):
-            return True
-    return False
+def too_late(A: Scene, J: Joints, roots: tuple[int, int], t: float) -> float:
+    """The instant by which one of both islands, whose intervals end at t, has come further than it can: it `passes`
+    another shape, or is `left_apart` at t; inf if none has."""
+    if left_apart(A, J, roots[0]) or left_apart(A, J, roots[1]):
+        return t
+    return min(passes(A, roots[0], t), passes(A, roots[1], t))
 
 
 @kernel
@@ -108,7 +66,7 @@ def end_before(A: Scene, J: Joints, root: int, t: float, fits: bool) -> bool:
         return False
     began, then = A.BODY[root].since, t
     for tries in range(0 if fits else MEET_SECANTS):
-        if not (left_apart(A, J, root) or passes(A, root, then)):
+        if not (left_apart(A, J, root) or passes(A, root, then) < math.inf):
             break
         J.TALLY.worst = LINEAR
         then = began if tries + 1 == MEET_SECANTS else 0.5 * (began + then)
@@ -183,7 +141,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
             crossed, before = True, -1.0
             t = through if apart < through < t else 0.5 * (apart + t)
             continue
-        if g > 0.0 and not too_late(A, J, roots, t):
+        if g > 0.0 and not (left_apart(A, J, roots[0]) or left_apart(A, J, roots[1])):
             apart = t
         # The islands end where they were brought last.
         if not slope < 0.0 or tries + 1 == MEET_SECANTS:
@@ -199,9 +157,12 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
         crosses = True  # what joints bring together again meets before secants come to
     fits = False
     for _ in range(MEET_HALVINGS):
-        fits = not (crosses or too_late(A, J, roots, t))
+        late = math.inf if crosses else too_late(A, J, roots, t)
+        fits = not (crosses or late < math.inf)
         if fits:
             break
+        if late <= apart:  # what is passed is passed before, too
+            apart = least
         crossed, t = True, 0.5 * (apart + t)
         shorten_both(A, J, roots[0], roots[1], t)
         g = gap(A, a, b, t)[0] - level
@@ -212,22 +173,15 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
         met = min(max(A.STATE[i].events, A.STATE[j].events), MEET_DOUBLINGS)
         t = min(least + 2.0 ** (met + 1) * A.PAR.instant, latest)
         shorten_both(A, J, roots[0], roots[1], t)
-        fits = not too_late(A, J, roots, t)
+        fits = too_late(A, J, roots, t) == math.inf
         while not fits and t - least > A.PAR.instant:
             t = 0.5 * (least + t)
             shorten_both(A, J, roots[0], roots[1], t)
-            fits = not too_late(A, J, roots, t)
+            fits = too_late(A, J, roots, t) == math.inf
     for root in roots:
         if end_before(A, J, root, t, fits):
             g, crossed = gap(A, a, b, t)[0] - level, True
     return t, crossed and g > close * small
-
-
-@nonallocating
-def first_meeting(A: Scene, a: int, b: int, t: float) -> tuple[float, bool]:
-    """Instant before t at which the paths of shapes a and b, which are apart at t, meet, and whether there is one."""
-    through, certain = find_meeting(A, a, b, t)
-    return through, bool(certain and through < t)
 
 
 @nonallocating

@@ -1,0 +1,63 @@
+"""Whom the path of an interval of an island with joints leads through."""
+
+from __future__ import annotations
+
+import math
+
+from ..compiled import nonallocating
+from ..geometry.gap import gap
+from ..geometry.sides import remembers, smaller
+from ..islands.depths import depth_limit
+from ..model.parameters.intervals import INTERVAL_DEPTH
+from ..model.parameters.joints import MEET_MANY
+from ..model.scene import Scene
+from ..pairs.lists import far_apart
+from ..pairs.rules import barred
+from ..prediction.impact_times import meet as find_meeting
+from .ends import under_way
+
+
+@nonallocating
+def first_meeting(A: Scene, a: int, b: int, t: float) -> tuple[float, bool]:
+    """Instant before t at which the paths of shapes a and b, which are apart at t, meet, and whether there is one."""
+    through, certain = find_meeting(A, a, b, t)
+    return through, bool(certain and through < t)
+
+
+@nonallocating
+def is_beyond(A: Scene, a: int, b: int, through: float, t: float) -> bool:
+    """Whether shapes a and b, which meet at instant `through` on their paths, are on the far sides of each other at t:
+    the normal there is against that at which they meet."""
+    before, after = gap(A, a, b, through), gap(A, a, b, t)
+    return bool(before[1] * after[1] + before[2] * after[2] < 0.0)
+
+
+@nonallocating
+def passes(A: Scene, root: int, t: float) -> float:
+    """The instant by which a shape of an island has come through one that it has no contact with at t, the end of its
+    interval, or t if it is deeper in it than an interval allows, and than at its start; inf if none does: the path of
+    an interval that is shortened is another one, on which nobody has looked for impacts."""
+    i = root if under_way(A, root) else -1
+    while i >= 0:
+        for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
+            # Near lists are looked through as in a prediction.
+            A.COUNT.work += A.LIST[s].number // 4
+            for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
+                o = int(A.POOL[w])
+                twice = o < s and A.STATE[A.LINK[o].owner].island == A.STATE[i].island  # in the list of o, too
+                if twice or A.FLAG[w] != 0 or barred(A.RULE, s, o):
+                    continue
+                began = max(A.BODY[i].since, A.BODY[A.LINK[o].owner].since)
+                g = math.inf if far_apart(A, s, o, t, 0.0) else gap(A, s, o, t)[0]
+                if g > 0.0:
+                    through, met = first_meeting(A, s, o, t)
+                    if met and through > began + A.PAR.instant and is_beyond(A, s, o, through, t):
+                        return through
+                    continue
+                small = smaller(A, s, o)
+                # Thin shapes that are deeper remember their sides.
+                deep = INTERVAL_DEPTH * small if remembers(A, s, o) else depth_limit(A, s, o)
+                if g < -deep and g < gap(A, s, o, began)[0] - MEET_MANY * small:
+                    return t
+        i = A.MEMBER[i].following
+    return math.inf
