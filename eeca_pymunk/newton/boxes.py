@@ -24,7 +24,7 @@ from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.joint_steps import BodyStep, JointStep
 from ..model.joints import BOXED, GROOVE, Coupling, Workspace
-from ..model.parameters.joints import BOX_REDUNDANT, BOX_RESIDUAL, BOX_ROUNDS, BOX_SWEEPS
+from ..model.parameters.joints import BOX_REDUNDANT, BOX_RESIDUAL, BOX_ROUNDS, BOX_SWEEPS, DISC_WORK
 from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, on_disc
 from .condensed import factor, substitute
 from .dual import STRIDE
@@ -166,16 +166,28 @@ def direct_boxes(more: FloatArray, w: int, u: int, n: int) -> None:
 
 
 @nonallocating
-def solve_boxes(more: FloatArray, w: int, u: int, n: int) -> None:
-    """Solve for the impulses within their bounds, by sweeps and direct solutions in turn."""
+def discs(more: FloatArray, u: int, n: int) -> int:
+    """How many of the n rows begin a disc: sweeps over these are work, those over single rows are not much of it."""
+    count = 0
+    for i in range(n):
+        count += int(more[u + 4 * n + i] == FIRST_OF_DISC)
+    return count
+
+
+@nonallocating
+def solve_boxes(more: FloatArray, w: int, u: int, n: int) -> int:
+    """Solve for the impulses within their bounds, by sweeps and direct solutions in turn; how many sweeps it took."""
+    sweeps = 0
     for turn in range(BOX_ROUNDS):
         worst = 1.0
         for _ in range(BOX_SWEEPS):
             worst = sweep_boxes(more, w, u, n)
+            sweeps += 1
             if worst <= BOX_RESIDUAL:
-                return
+                return sweeps
         if turn + 1 < BOX_ROUNDS:
             direct_boxes(more, w, u, n)
+    return sweeps
 
 
 @nonallocating
@@ -207,7 +219,7 @@ def bound_impulses(W: Workspace, n: int, h: float, fresh: bool) -> None:
     w = STRIDE * component.dual_size + (n + 1) * (component.unknowns + component.impulses)
     u = w + 3 * n * n
     measure_boxes(W, w, u, n, h, fresh)
-    solve_boxes(W.J.MORE, w, u, n)
+    W.J.PROGRESS.effort += DISC_WORK * discs(W.J.MORE, u, n) * solve_boxes(W.J.MORE, w, u, n)
     apply_boxes(W, u, n)
 
 

@@ -17,8 +17,10 @@ from ..model.parameters.joints import (
     COLUMN_HOMOTOPIES,
     COLUMN_SWEEPS,
     COLUMN_SWEEPS_AFTER,
+    DISC_WORK,
     SWEEP_WORK,
 )
+from .bounded import FIRST_OF_DISC
 from .columns import as_columns, breach
 from .conjugate import iterate
 from .coulomb import slip_freely
@@ -27,12 +29,21 @@ from .inplace import copy
 from .sweeps import push, sweep, velocities
 
 
+@nonallocating
+def count_sweeps(problem: JointedProblem, sweeps: int) -> None:
+    """Add the work of sweeps over contacts and bounded rows to that of the problem."""
+    C, D = problem.C, problem.D
+    one = SWEEP_WORK * (C.AT[problem.m] + D.AT[D.USED[0]])
+    for i in range(D.USED[0]):
+        one += DISC_WORK if D.ROWS[i].part == FIRST_OF_DISC else 0.0
+    C.WORK[0] += sweeps * one
+
+
 @kernel
 def sweep_columns(problem: JointedProblem, L: FloatArray, V: FloatArray, tolerance: float, most: int) -> float:
     """`iterate`, whose work is counted; the change in the last sweep."""
     done, worst = iterate(problem, L, V, tolerance, most)
-    entries = problem.C.AT[problem.m] + problem.D.AT[problem.D.USED[0]]
-    problem.C.WORK[0] += SWEEP_WORK * done * entries
+    count_sweeps(problem, done)
     return worst
 
 
@@ -72,6 +83,7 @@ def solve_columns(
         while done < COLUMN_SWEEPS_AFTER and worst > tolerance:
             worst = sweep(problem, L, V)
             done += 1
+        count_sweeps(problem, done)
         if worst < best:
             best = worst
             copy(L0, L)

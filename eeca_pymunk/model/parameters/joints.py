@@ -175,6 +175,7 @@ OUTER_FLOOR = round_off(
 )
 PRESS_WORK_ROUND_OFF = round_off(4e-14, "of impulses times speed", "Round-off of the work of contacts of components.")
 SWEEP_WORK = work(40.0, "operations", "Work of a sweep over contacts for each entry of their columns.")
+DISC_WORK = work(1000.0, "operations", "Work of a sweep over bounded rows for each two of a disc.")
 HOMOTOPY_WORK = work(
     25.0, "operations", "Work of the matrix of a homotopy for each of its entries; a change of state takes one."
 )
