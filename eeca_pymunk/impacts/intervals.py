@@ -101,7 +101,7 @@ def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
             lift_here(A, k, t)
         elif under_way(A, k):
             shorten(A, J, k, t)
-            end_before(A, J, k, t, False)
+            end_before(A, J, k, t, False, False)
         else:
             A.BLOCK[count] = k
             count += 1

@@ -135,7 +135,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
             root = A.STATE[A.BLOCK[q]].island
             if under_way(A, root):
                 shorten(A, J, root, t)
-                end_before(A, J, root, t, False)
+                end_before(A, J, root, t, False, False)
                 again = True
         if again:
             clear_places(A, A.BLOCK, n)
@@ -149,7 +149,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     WHO = np.full(len(block.IM), -1, np.int64)
     for q in range(n):
         WHO[q] = A.BLOCK[q]
-    groups = find_groups(WHO, block.IM, J.OF)
+    groups = find_groups(WHO, block.IM, J)
     C = make_columns(groups, P, Q, rows)
     J.PROGRESS.effort += SOLUTION_WORK * C.AT[rows]
     fill_free(groups, C, Q, ROWS, block.IM, block.II, rows)

@@ -13,11 +13,10 @@ from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Columns, Row
 from ..model.joints import Joints
-from ..model.parameters.joints import STRUT, STRUT_BETWEEN
 from ..rows.build import invert
 from ..rows.columns import push_column
 from .component import answer
-from .groups import Groups
+from .groups import Groups, least_mobility
 
 
 @kernel
@@ -117,8 +116,7 @@ def along(C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], i: int, D: Floa
 @nonallocating
 def gives_way(groups: Groups, A: IntArray, B: IntArray, ROWS: Rows[Row], i: int, mobility: float) -> bool:
     """Whether contact i with such a mobility along n is moved by more than the error of the response."""
-    least = STRUT if groups.GROUP[A[i]] == groups.GROUP[B[i]] else STRUT_BETWEEN
-    return bool(mobility * ROWS[i].k_n > least)
+    return bool(mobility * ROWS[i].k_n > least_mobility(groups, A[i], B[i]))
 
 
 @nonallocating
@@ -129,7 +127,7 @@ def weigh(groups: Groups, C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row],
     for i in range(m):
         nn, tt = along(C, A, B, ROWS, i, C.N, False), along(C, A, B, ROWS, i, C.T, True)
         nt = 0.5 * (along(C, A, B, ROWS, i, C.N, True) + along(C, A, B, ROWS, i, C.T, False))
-        least = STRUT if groups.GROUP[A[i]] == groups.GROUP[B[i]] else STRUT_BETWEEN
+        least = least_mobility(groups, A[i], B[i])
         C.OUT[i] = 0 if gives_way(groups, A, B, ROWS, i, nn) else 1
         if C.OUT[i] == 0:
             ROWS[i].k_n, ROWS[i].a_nn = 1.0 / nn, nn

@@ -9,25 +9,28 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
-from ..model.joints import Component, ComponentBody
+from ..model.joints import Component, ComponentBody, Joints
+from ..model.parameters.joints import STRUT, STRUT_BETWEEN
 
 
 class Groups(NamedTuple):
     """GROUP (k,): the group of a body, -1 for what impulses do not move; BODY (n,): bodies by group, those of group g
     at FIRST[g] : FIRST[g + 1]; COMPONENT (groups,): that of a group, -1 for a free body; JOINTED: those
-    of components."""
+    of components; LEAST (groups,): mobility, as a part of that without joints, of a contact between two bodies of a
+    group that is the error of its response."""
 
     GROUP: IntArray
     FIRST: IntArray
     BODY: IntArray
     COMPONENT: IntArray
     JOINTED: IntArray
+    LEAST: FloatArray
 
 
 @kernel
-def find_groups(WHO: IntArray, IM: FloatArray, OF: IntArray) -> Groups:
-    """The groups of bodies WHO (k,), rows of BODY, of which OF tells the components."""
-    k = len(WHO)
+def find_groups(WHO: IntArray, IM: FloatArray, J: Joints) -> Groups:
+    """The groups of bodies WHO (k,), rows of BODY."""
+    k, OF, LEAST = len(WHO), J.OF, np.full(len(WHO), STRUT_BETWEEN)
     GROUP, NEXT = np.full(k, -1, np.int64), np.full(k, -1, np.int64)
     FIRST, COMPONENT, BODY = np.zeros(k + 1, np.int64), np.empty(k, np.int64), np.empty(k, np.int64)
     JOINTED, groups, jointed = np.empty(k, np.int64), 0, 0
@@ -37,6 +40,7 @@ def find_groups(WHO: IntArray, IM: FloatArray, OF: IntArray) -> Groups:
         GROUP[q], COMPONENT[groups] = groups, OF[WHO[q]]
         if OF[WHO[q]] >= 0:
             JOINTED[jointed] = OF[WHO[q]]
+            LEAST[groups] = STRUT if J.COMPONENT[OF[WHO[q]]].loops > 0 else STRUT_BETWEEN
             jointed += 1
             for p in range(q + 1, k):
                 if IM[p] > 0.0 and OF[WHO[p]] == OF[WHO[q]]:
@@ -52,7 +56,15 @@ def find_groups(WHO: IntArray, IM: FloatArray, OF: IntArray) -> Groups:
         if GROUP[q] >= 0:
             BODY[NEXT[GROUP[q]]] = q
             NEXT[GROUP[q]] += 1
-    return Groups(GROUP, FIRST[: groups + 1], BODY, COMPONENT[:groups], JOINTED[:jointed])
+    return Groups(GROUP, FIRST[: groups + 1], BODY, COMPONENT[:groups], JOINTED[:jointed], LEAST[:groups])
+
+
+@nonallocating
+def least_mobility(groups: Groups, a: int, b: int) -> float:
+    """The mobility, as a part of that without joints, of a contact of bodies a and b that is the error of their
+    response."""
+    g = groups.GROUP[a]
+    return float(groups.LEAST[g]) if g >= 0 and g == groups.GROUP[b] else STRUT_BETWEEN
 
 
 @nonallocating

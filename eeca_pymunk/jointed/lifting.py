@@ -64,7 +64,7 @@ def lift_here(A: Scene, J: Joints, root: int, t: float) -> None:
     isle, contacts, MINE, m = contacts_at(A, root, t)
     n, k, P, Q, ROWS = len(MINE), len(isle.WHO), contacts.A, contacts.B, contacts.ROWS
     if not conserves(ROWS, m):
-        groups, NOTHING = find_groups(isle.WHO, isle.IM, J.OF), np.zeros((k, 3))
+        groups, NOTHING = find_groups(isle.WHO, isle.IM, J), np.zeros((k, 3))
         motion = Motion(isle.V.copy(), isle.V, NOTHING, isle.POSE.copy(), np.zeros((k, 2)), NOTHING)
         interval = Interval(isle, groups, P, Q, ROWS, motion, make_columns(groups, P, Q, m), m, n, t, 0.0)
         fill_free(groups, interval.C, Q, ROWS, isle.IM, isle.II, m)

@@ -22,6 +22,7 @@ from ..model.parameters.joints import (
 )
 from ..model.scene import Scene
 from .ends import end_here, left_apart, shorten, under_way
+from .ledger import work_left
 from .paths import first_meeting, passes
 
 
@@ -58,10 +59,11 @@ def too_late(A: Scene, J: Joints, roots: tuple[int, int], t: float) -> float:
 
 
 @kernel
-def end_before(A: Scene, J: Joints, root: int, t: float, fits: bool) -> bool:
+def end_before(A: Scene, J: Joints, root: int, t: float, fits: bool, spent: bool) -> bool:
     """End the interval of an island, which has been shortened to instant t. Unless it is known that it `fits`: where
     joints do not hold at its end, or it has led through others, the island goes half as far, and so on, or not at all,
-    and stays there until t. Returns whether it does."""
+    and stays there until t; or it waits there for the end of the step, whose work is `spent`. Returns whether it does
+    either."""
     if not under_way(A, root):
         return False
     began, then = A.BODY[root].since, t
@@ -74,7 +76,7 @@ def end_before(A: Scene, J: Joints, root: int, t: float, fits: bool) -> bool:
     end_here(A, J, root, then)
     i = root
     while i >= 0:
-        A.BODY[i].since = t
+        A.BODY[i].since = then if spent else t
         i = A.MEMBER[i].following
     return bool(then < t)
 
@@ -179,8 +181,8 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
             shorten_both(A, J, roots[0], roots[1], t)
             fits = too_late(A, J, roots, t) == math.inf
     for root in roots:
-        if end_before(A, J, root, t, fits):
-            g, crossed = gap(A, a, b, t)[0] - level, True
+        if end_before(A, J, root, t, fits, work_left(A, J) < 0.0):
+            g, crossed = math.inf if work_left(A, J) < 0.0 else gap(A, a, b, t)[0] - level, True
     return t, crossed and g > close * small
 
 

@@ -97,7 +97,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
         return PUSHES_FULL, h
     isle = local_island(A, MINE, n, found, t)
     k = len(isle.WHO)
-    groups = find_groups(isle.WHO, isle.IM, J.OF)
+    groups = find_groups(isle.WHO, isle.IM, J)
     for s in groups.JOINTED:
         keep_joints(J, s)
     contacts, EXPECTED = make_contacts(p, k), np.zeros(2 * p + 1)

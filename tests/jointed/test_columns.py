@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pymunk
 import pytest
 
+import eeca_pymunk as ep
 from eeca_pymunk.compiled.records import zeros
 from eeca_pymunk.jointed.columns import weigh
 from eeca_pymunk.jointed.groups import Groups
@@ -32,7 +34,14 @@ def test_what_joints_guide_on_a_line_does_not_stick_by_impulses_without_bound(
     T[0, :2] = d[1] * d[0] / mass, (d[1] * d[1] + error) / mass
     one, none = np.array([0]), np.zeros(0, np.int64)
     C = Columns(np.array([0, 1]), one, N, T, np.zeros(1, np.int64), np.zeros(1))
-    weigh(Groups(np.array([0, -1]), np.array([0, 1]), one, one, none), C, np.array([1]), one, rows, 1)
+    weigh(
+        Groups(np.array([0, -1]), np.array([0, 1]), one, one, none, np.array([STRUT_BETWEEN])),
+        C,
+        np.array([1]),
+        one,
+        rows,
+        1,
+    )
     assert C.OUT[0] == 0
     assert row.a_nn == pytest.approx(d[0] ** 2 / mass, rel=1e-12)
     assert math.isnan(row.w_nn) == (abs(error) < STRUT_BETWEEN)
@@ -42,3 +51,24 @@ def test_what_joints_guide_on_a_line_does_not_stick_by_impulses_without_bound(
     if abs(error) < STRUT_BETWEEN:
         assert lam * row.a_nn <= -2.0 * un * 2.0 * (1.0 + 1e-9)
         assert row.a_nn * lam + row.a_nt * beta == pytest.approx(-2.0 * un, rel=1e-6)
+
+
+@pytest.mark.parametrize("ratio", [10.0, 1e3, 1e4])
+def test_a_light_body_that_heavy_ones_of_its_own_component_hold_is_hit(ratio: float) -> None:
+    """A block that does not turn is pinned to a heavy one, m at a distance d from the pin with moment m d², and hit by
+    another heavy one, which a weak spring makes part of the component: the blow moves 1/ratio of what the block by
+    itself would. At the pin the other one meets 1 + 1/(1/m + d²/(m d²)) = 1 + m/2."""
+    space, far = pymunk.Space(), 3.0
+    heavy, light, other = (pymunk.Body(m, i) for m, i in ((ratio, ratio * far**2), (1.0, math.inf), (ratio, math.inf)))
+    heavy.position, other.position, other.velocity = (0.0, far), (-2.0, 0.0), (1.0, 0.0)
+    shapes = [pymunk.Circle(b, 0.5) for b in (light, other)]
+    for shape in shapes:
+        shape.elasticity = 1.0
+    pin = pymunk.PivotJoint(heavy, light, (0.0, 0.0))
+    space.add(heavy, light, other, *shapes, pin, pymunk.DampedRotarySpring(heavy, other, 0.0, 1e-9, 0.0))
+    stepper = ep.EECA(space)
+    for _ in range(90):
+        report = stepper.step(1 / 60)
+        assert report.converged, report.unmet
+    met = 1.0 + 0.5 * ratio
+    assert other.velocity.x == pytest.approx((ratio - met) / (ratio + met), rel=1e-9)

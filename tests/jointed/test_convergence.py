@@ -62,7 +62,9 @@ def test_columns_answer_as_the_last_motion_did() -> None:
     """Y' d = Y d + e, Y' x = Y x for x across d: Broyden's update, of two bodies of one component and one that is
     free."""
     rng = np.random.default_rng(1)
-    groups = Groups(np.array([0, 0, 1]), np.array([0, 2, 3]), np.array([0, 1, 2]), np.array([0, -1]), np.array([0]))
+    groups = Groups(
+        np.array([0, 0, 1]), np.array([0, 2, 3]), np.array([0, 1, 2]), np.array([0, -1]), np.array([0]), np.zeros(2)
+    )
     columns = Columns(
         np.array([0, 3, 6]), np.array([0, 1, 2, 0, 1, 2]), rng.normal(size=(6, 3)), rng.normal(size=(6, 3)),
         np.zeros(2, np.int64), np.zeros(1),

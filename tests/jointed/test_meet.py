@@ -54,7 +54,7 @@ def test_an_interval_that_would_lead_through_a_wall_ends_before(h: float) -> Non
     """Its body stays on its side, with the energy that it had, until the instant that it is brought to."""
     A, J = falling(2.0 * h, 1.0)
     shorten(A, J, 0, h)
-    assert end_before(A, J, 0, h, False) == (h > 0.01)
+    assert end_before(A, J, 0, h, False, False) == (h > 0.01)
     assert (J.TALLY.worst == LINEAR) == (h > 0.01)
     body = A.BODY[0]
     assert (body.since, A.MEMBER[0].open) == (h, 0)

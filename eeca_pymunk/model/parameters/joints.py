@@ -101,11 +101,11 @@ STRAIGHT_CHAIN = round_off(
 STRUT = round_off(
     0.001,
     "of the free mobility",
-    "Mobility of a contact between two bodies of one component that is the error of the component's response, which "
-    "redundant joints enlarge: the contact is left out.",
+    "Mobility of a contact between two bodies of one component that is the error of its response where joints are "
+    "redundant: the contact is left out.",
 )
 STRUT_BETWEEN = round_off(
-    1e-07, "of the free mobility", "Mobility of a contact with other bodies that is the error of the response."
+    1e-07, "of the free mobility", "Mobility of other contacts that is the error of the response."
 )
 CORRECTION_JOINTS = accuracy(1e-11, "of the component", "Error of joints when overlaps are corrected.")
 FIT_CLOSING = round_off(
