@@ -183,7 +183,8 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
     for root in roots:
         if end_before(A, J, root, t, fits, work_left(A, J) < 0.0):
             g, crossed = math.inf if work_left(A, J) < 0.0 else gap(A, a, b, t)[0] - level, True
-    return t, crossed and g > close * small
+    # What closes within an instant, which is no interval, meets now.
+    return t, crossed and g > max(close * small, -rate * A.PAR.instant)
 
 
 @nonallocating

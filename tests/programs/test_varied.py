@@ -190,6 +190,13 @@ def test_jointed_shapes_that_overlap_neither_repeat_impacts_nor_gain_energy(seed
     assert Varied(seed, True).play().unconverged <= most
 
 
+@pytest.mark.parametrize("seed", [7200134, 7400719])
+def test_time_goes_on_where_impacts_on_joints_would_be_repeated(seed: int) -> None:
+    """A light body that a heavy one of its own component hits, and a corner that is to meet a wall within an instant,
+    which is no interval."""
+    Varied(seed, True).play()
+
+
 @pytest.mark.parametrize("seed", [63294, 112574, 112928])
 def test_steps_that_are_cut_press_nothing_through_walls(seed: int) -> None:
     """Without the penetration correction at the cut, boxes leave the container; as they do where light bodies between
