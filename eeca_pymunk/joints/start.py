@@ -44,15 +44,22 @@ def mark_bounded(W: Workspace) -> None:
 @nonallocating
 def most_impulse(W: Workspace, h: float, length: float) -> float:
     """The angular momentum of all that moves a component in a step h, to whose size of `length` all arms are taken:
-    momenta, those by accelerations, springs and bounded joints, and what motors bring to their rate; through all gears.
-    """
-    total, geared = 0.0, 1.0
+    momenta, those by accelerations, springs and bounded joints, and what motors bring to their rate, or partners that
+    impulses do not move to their speed and spin; through all gears."""
+    total, geared, mass, moment, speed, spin = 0.0, 1.0, 0.0, 0.0, 0.0, 0.0
     for i in range(W.bodies):
         local = W.J.LOCAL[i]
         for c in range(3):
             if local.mobility[c] > 0.0:
                 arm = 1.0 if c == 2 else length
                 total += arm * (abs(local.v0[c]) + abs(h * local.acceleration[c])) / local.mobility[c]
+            elif c == 2:
+                spin = max(spin, abs(local.v0[c]))
+            else:
+                speed = max(speed, abs(local.v0[c]))
+        mass += 1.0 / local.mobility[0] if local.mobility[0] > 0.0 else 0.0
+        moment += 1.0 / local.mobility[2] if local.mobility[2] > 0.0 else 0.0
+    total += length * mass * (speed + spin * length) + moment * spin
     for k in range(W.joints):
         joint, kind, turns = W.J.JOINT[W.link[k].joint], W.link[k].kind, 0.0
         a, b = W.J.LOCAL[W.link[k].body[0]], W.J.LOCAL[W.link[k].body[1]]
@@ -74,9 +81,11 @@ def most_impulse(W: Workspace, h: float, length: float) -> float:
 def bound_motors(W: Workspace, h: float, length: float) -> None:
     """Bound the torque of motors that may have any by STALLED of all that moves their component: where they drive
     against a limit, no finite impulse would hold both."""
+    most = -1.0
     for k in range(W.joints):
         if W.link[k].kind == MOTOR and not W.J.HINGE[k].bound < np.inf:
-            W.J.HINGE[k].bound = STALLED * most_impulse(W, h, length) / abs(h)
+            most = STALLED * most_impulse(W, h, length) / abs(h) if most < 0.0 else most
+            W.J.HINGE[k].bound = most
 
 
 @nonallocating

@@ -8,6 +8,7 @@ import numpy as np
 import pymunk
 import pytest
 
+import eeca_pymunk as ep
 from scenes.linkages import body, empty, pendulum, point_double
 
 from .driving import Driven, error, ledger_closes, momenta, run
@@ -159,3 +160,23 @@ def test_pushed_bodies_are_projected_once() -> None:
     for _ in range(30):
         stepper.step(1 / 60)
     assert stepper.restitution == first
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+@pytest.mark.parametrize("rate", [0.0, 0.5])
+@pytest.mark.parametrize("heavy", [1e-2, 1e4])
+def test_a_motor_of_unlimited_force_follows_what_impulses_do_not_move(heavy: float, rate: float, unit: float) -> None:
+    """A wheel at rest, without weight, on a shaft that a program turns: after one step it has the spin of the shaft
+    less the rate, and an arm on it, pinned at its end, goes round with both."""
+    space, shaft = pymunk.Space(), pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    shaft.angular_velocity = 2.0
+    wheel, arm = pymunk.Body(heavy, heavy * unit**2), pymunk.Body(1.0, unit**2)
+    space.add(shaft, wheel, pymunk.PivotJoint(shaft, wheel, (0.0, 0.0)), pymunk.SimpleMotor(shaft, wheel, rate))
+    arm.position = (unit, 0.0)
+    space.add(arm, pymunk.PivotJoint(wheel, arm, (0.5 * unit, 0.0)), pymunk.SimpleMotor(wheel, arm, 0.0))
+    stepper = ep.EECA(space)
+    for _ in range(20):
+        report = stepper.step(1 / 60)
+        assert report.converged, report.unmet
+        assert wheel.angular_velocity == pytest.approx(2.0 - rate, rel=1e-9)
+        assert arm.angular_velocity == pytest.approx(2.0 - rate, rel=1e-9)
