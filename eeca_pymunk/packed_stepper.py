@@ -121,12 +121,47 @@ class PackedStepper(HookedStepper):
         """Whether a step of a world calls functions of the program."""
         return not world.plain and (world.hooked or (world.joints is not None and world.joints.calls_back()))
 
+    def _is_silent(self, world: World, dt: float, half_damping: float) -> bool:
+        """Whether a step calls no function of a world that has `only_handlers`; then it is read, and rehearsed."""
+        if self._sleep is not None or self.decisions.laws or world.rules.some:
+            return False
+        if world.joints is not None and world.joints.calls_back():
+            return False
+        return world.rehearsal.is_silent_again(dt, half_damping, self._sync)
+
+    def _silent_step(self, world: World, dt: float, half_damping: float) -> StepReport:
+        """A step that `_is_silent`."""
+        left_out = world.rehearsal.left_out
+        try:
+            status = self.advance(world, dt, half_damping)
+            if status < 0 and status != OTHER_BODIES:
+                self._raise_failure(world, dt, status)
+            if status >= 0:
+                outcome = self._outcome(dt)
+                if status & FORCES:
+                    world.reset_forces()
+                status = status if left_out else status & EVENTS | world.write_whole()
+                world.scatter(status)
+        except BaseException:
+            self._undo(world, world.state)  # which a rehearsal has changed
+            raise
+        if status < 0:
+            self._undo(world, world.state)
+            return self._hooked_step(self._update_world(anew=True), dt)
+        self.time += dt
+        report = self._make_report(world, dt, status, outcome)
+        world.show_joints()
+        self._sync.finish_rehearsal(dt, left_out)
+        return report
+
     def _step(self, world: World, dt: float) -> StepReport:
         """A step of the awake bodies."""
+        half_damping = world.half_damping(dt)
         if not world.plain and self._calls(world):
+            if world.only_handlers and self._is_silent(world, dt, half_damping):
+                return self._silent_step(world, dt, half_damping)
             return self._hooked_step(world, dt)
         world.gather()
-        half_damping = world.half_damping(dt)
         before = [] if self._sleep is None else self._rewound_copy(world)
         status = self.advance(world, dt, half_damping)
         if status in (OTHER_BODIES, MOVED_STATIC):

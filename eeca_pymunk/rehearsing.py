@@ -176,18 +176,22 @@ def approach(
     one.
 
     Returns:
-        1 if one of PAIRS comes near (`nears`), else 0; NOT_FINITE or OVERFLOW if a number at the start or the end is
-        not finite.
+        1 if one of PAIRS comes near (`nears`), else 0; a negative code of `copy_start`, or OVERFLOW if a number at the
+        end is not finite.
     """
     R = reading_of(table)
-    WALK, EXTRA, BODY, kept, now = R.WALK, R.EXTRA, R.BODY, R.HELD[REHEARSED], R.STATES[NOW]
+    WALK, EXTRA, BODY, kept, now, left = R.WALK, R.EXTRA, R.BODY, R.HELD[REHEARSED], R.STATES[NOW], R.STATES[LEFT]
     N = WALK.shape[1]
     pull = math.sqrt(gx * gx + gy * gy)
     down_x, down_y, deepest = 0.0, 0.0, -math.inf
     if pull > 0.0:
         down_x, down_y = gx / pull, gy / pull
     for i in range(N):
+        if WALK[FOUND, i] != WALK[KNOWN, i]:
+            return OTHER_BODIES
         row = WALK[BODY_ROW, i]
+        if row < 0 and (now[i, 0] != left[i, 0] or now[i, 1] != left[i, 1] or now[i, 2] != left[i, 2]):
+            return MOVED_STATIC
         if row >= 0 and BODY[row].inv_mass > 0.0:
             deepest = max(deepest, now[i, 0] * down_x + now[i, 1] * down_y)
     end = R.ENDS[END * N :]

@@ -7,12 +7,10 @@ velocities) apply to the EECA step, which replaces the rehearsal.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pymunk
 
 from ..arrays import FloatArray, IntArray
 from ..layout import EARLY, NOW, REHEARSED, SEEN
@@ -21,12 +19,10 @@ from ..transfer import TURNS
 from .decisions import Decisions, Rules
 from .edits import typings
 from .hearing import Hearing
-from .joints import JointRows
-from .private import joints as private_joints
 from .private import shapes as private_shapes
 from .private import spaces as private
 from .private import versions as private_versions
-from .watched import Watched
+from .watched import Watched, silent_joints
 
 if TYPE_CHECKING:
     from .sync import Sync
@@ -80,6 +76,18 @@ class Rehearsal:
         """Whether nothing holds that functions have decided, and some steps in a row, all EECA's, called none."""
         return self._without >= _LATER and self._unheard and self._sync is not None and self._sync.is_ours()
 
+    def is_silent_again(self, dt: float, half_damping: float, sync: Sync) -> bool:
+        """Whether a step in which nothing but handlers could be called calls none, as the last one: then this is the
+        whole rehearsal. The states at the start of the step are read, and not changed."""
+        if not self._unheard or sync is not self._sync:
+            return False
+        self.world.gather()
+        self._lengths = dt, *self.world.gravity, half_damping
+        if self._approach(*self._lengths) != 0 or not (sync.goes_on() and self._is_unheard(near=False)):
+            return False
+        self._call_nothing(dt, sync)
+        return True
+
     def listen(self) -> None:
         """Forget what handlers may hear, if there are new ones."""
         if self._hearing is not None and self._hearing.handled != private_versions.handled(self.space):
@@ -108,8 +116,8 @@ class Rehearsal:
         exception of a function is raised when pymunk has finished.
 
         Args:
-            sync: if given, a step that would call no handler may be left out. That needs that pymunk has taken no step
-                of its own since the last EECA step; if arbiters were read since then, they will probably be read again.
+            sync: if given, a step that would call no handler may be left out, see `_call_nothing`. That needs that
+                pymunk has taken no step of its own since the last EECA step.
 
         Returns:
             0 or a negative code of `transfer.py`, with nothing done.
@@ -128,15 +136,11 @@ class Rehearsal:
         else:
             self._unheard = sync is not None and sync.goes_on() and self._is_unheard(status > 0)
             self._later = 0 if self._unheard else _LATER
-        self.left_out = self._unheard and sync is not None and not sync.were_read() and self._without < _RENEW
-        if self.left_out:
-            self._without += 1
+        if self._unheard and sync is not None:
+            self._call_nothing(dt, sync)
             return 0
-        self._without = 0
+        self.left_out, self._without = False, 0
         world.scatter(TURNS)
-        if self._unheard:
-            self._step(dt)
-            return 0
         self._wrap()
         try:
             for handler, phase, _, watched in self._wrapped:
@@ -153,13 +157,24 @@ class Rehearsal:
             world.STATES[NOW] += world.HELD[EARLY]
         return 0
 
+    def _call_nothing(self, dt: float, sync: Sync) -> None:
+        """Take pymunk's step, which calls no function, or leave it out: up to _RENEW times in a row, unless arbiters
+        were read since the last step; they will probably be read again."""
+        self.left_out = not sync.were_read() and self._without < _RENEW
+        if self.left_out:
+            self._without += 1
+            return
+        self._without = 0
+        self.world.scatter(TURNS)
+        self._step(dt)
+
     def _step(self, dt: float) -> None:
         hooks = self.world.hooks
         if hooks.joints is None or hooks.none_within_steps():
             with hooks.silent:
                 private.step_without_end(self.space, dt)
         else:
-            with hooks.silent, self._silent_joints(hooks.joints):
+            with hooks.silent, silent_joints(self, hooks.joints):
                 private.step_without_end(self.space, dt)
 
     def _bound(self, hearing: Hearing | None) -> Callable[[float, float, float, float], int]:
@@ -217,35 +232,6 @@ class Rehearsal:
                 (handler, phase, f, hooks.later(f) if phase == _POST_SOLVE else watched)
                 for handler, phase, f, watched in self._wrapped
             ]
-
-    @contextmanager
-    def _silent_joints(self, joints: JointRows) -> Iterator[None]:
-        """Within this block `pre_solve` of constraints is wrapped, and their other functions are not called."""
-        mute = [item for item in joints.calling if item.pre_solve is None or item.a.space is None]
-        with ExitStack() as held:
-            if joints.partners.outside:
-                held.callback(private_joints.restore_motions, joints.partners.motions())
-            if mute:
-                held.enter_context(private_joints.silent(mute))
-            if joints.own:
-                held.enter_context(private_joints.with_laws(joints.own, joints.laws()))
-            if joints.before:
-                held.enter_context(self._watched_joints([item for item in joints.before if item not in mute]))
-            yield
-
-    @contextmanager
-    def _watched_joints(self, items: Sequence[pymunk.Constraint]) -> Iterator[None]:
-        """Within this block `pre_solve` of constraints is wrapped, and `post_solve` is not called."""
-        functions = [(item, item.pre_solve, item.post_solve) for item in items]
-        try:
-            for item, before, after in functions:
-                assert before is not None
-                silent = None if after is None else lambda *_: None
-                private_joints.replace_functions(item, Watched(self, before, "", 0), silent)
-            yield
-        finally:
-            for item, before, after in functions:
-                private_joints.replace_functions(item, before, after)
 
     def rules(self, earlier: Decisions) -> Rules:
         """The decisions about pairs of shapes by functions of this step, and by earlier ones.

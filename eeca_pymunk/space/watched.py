@@ -1,10 +1,16 @@
-"""Watched: a function of a collision handler or constraint that a rehearsal calls."""
+"""Watched: a function of a collision handler or constraint that a rehearsal calls; the others of constraints, which it
+does not."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Any
 
+import pymunk
+
+from .joints import JointRows
+from .private import joints as private_joints
 from .private import spaces as private
 from .private.versions import answer
 
@@ -43,3 +49,34 @@ class Watched:
             rehearsal.decided = True
         rehearsal.after_call(self._stage)
         return answered
+
+
+@contextmanager
+def silent_joints(rehearsal: Rehearsal, joints: JointRows) -> Iterator[None]:
+    """Within this block `pre_solve` of constraints is wrapped, and their other functions are not called."""
+    mute = [item for item in joints.calling if item.pre_solve is None or item.a.space is None]
+    with ExitStack() as held:
+        if joints.partners.outside:
+            held.callback(private_joints.restore_motions, joints.partners.motions())
+        if mute:
+            held.enter_context(private_joints.silent(mute))
+        if joints.own:
+            held.enter_context(private_joints.with_laws(joints.own, joints.laws()))
+        if joints.before:
+            held.enter_context(_watched_joints(rehearsal, [item for item in joints.before if item not in mute]))
+        yield
+
+
+@contextmanager
+def _watched_joints(rehearsal: Rehearsal, items: Sequence[pymunk.Constraint]) -> Iterator[None]:
+    """Within this block `pre_solve` of constraints is wrapped, and `post_solve` is not called."""
+    functions = [(item, item.pre_solve, item.post_solve) for item in items]
+    try:
+        for item, before, after in functions:
+            assert before is not None
+            silent = None if after is None else lambda *_: None
+            private_joints.replace_functions(item, Watched(rehearsal, before, "", 0), silent)
+        yield
+    finally:
+        for item, before, after in functions:
+            private_joints.replace_functions(item, before, after)

@@ -47,7 +47,8 @@ class World(Crossing):
         STATES, WALK, EXTRA, ENDS, HELD: the arrays exchanged with pymunk, see `layout.py`.
         gravity: length/time².  damping: pymunk's, 1 is none.
         hooks: functions of bodies and constraints.  collisions: whether the space has collision handlers.
-        hooked: whether a step calls functions of the program, or damping is 0.  plain: neither hooked nor with joints.
+        hooked: whether a step calls functions of the program, or damping is 0.  only_handlers: of collisions, that is.
+        plain: neither hooked nor with joints.
         rules: decisions of collision handlers about pairs of rows of SHAPE in this step.
         frictionless: whether friction, also that of handlers, is left out.  lacks_friction: and there is some.
         joints: the constraints of the space, None if it has none.
@@ -112,6 +113,7 @@ class World(Crossing):
         self._forget_rules()
         self.hooks = Hooks(self.space, self.bodies, self.joints, *self._functions)
         self.hooked = self.collisions or self.hooks.some or self.damping == 0.0
+        self.only_handlers = self.collisions and not self.hooks.some and self.damping != 0.0
         self.plain = not self.hooked and self.joints is None
         self.current = private.watch(self.space, self._edits, self._seen)
 

@@ -173,6 +173,65 @@ def test_handlers_of_other_types_are_heard_though_steps_were_left_out() -> None:
     assert told == ["0 1"]
 
 
+def hanging(reads: bool) -> tuple[pymunk.Body, pymunk.Body, Callable[[], None]]:
+    """A disk that hangs on a body outside the space, with a handler that nobody meets, and its step; `reads`: arbiters
+    are asked after each."""
+    space = pymunk.Space()
+    space.gravity = (0.0, -10.0)
+    disk, nail = add_disk(space, (1.0, 0.0), 0.1), pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    space.add(pymunk.PinJoint(nail, disk))
+    hear(space, 7, 8, [])
+    stepper = ep.EECA(space)
+
+    def step() -> None:
+        stepper.step(DT)
+        if reads:
+            disk.each_arbiter(lambda arbiter: None)
+
+    return disk, nail, step
+
+
+@pytest.mark.parametrize("reads", [False, True], ids=["left out", "rehearsed"])
+def test_steps_whose_handlers_nobody_meets_are_those_without_handlers(
+    reads: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Path, energy and impulses of a pendulum, bit by bit; no function is prepared for, but in the first steps."""
+    disk, _, step = hanging(reads)
+    plain = pymunk.Space()
+    plain.gravity = (0.0, -10.0)
+    other = add_disk(plain, (1.0, 0.0), 0.1)
+    (pin,) = disk.constraints
+    plain.add(same := pymunk.PinJoint(pymunk.Body(body_type=pymunk.Body.KINEMATIC), other))
+    beside, hooked = ep.EECA(plain), [0]
+    whole = ep.EECA._hooked_step
+
+    def counted(self: ep.EECA, *arguments: Any) -> Any:
+        hooked[0] += 1
+        return whole(self, *arguments)
+
+    monkeypatch.setattr(ep.EECA, "_hooked_step", counted)
+    for _ in range(100):
+        step()
+        beside.step(DT)
+        assert (disk.position, disk.angle, disk.velocity) == (other.position, other.angle, other.velocity)
+        assert pin.impulse == same.impulse
+    assert hooked[0] < 10
+
+
+def test_a_step_that_fails_after_its_rehearsal_changes_nothing() -> None:
+    disk, nail, step = hanging(reads=True)
+    for _ in range(20):
+        step()
+    before = disk.position, disk.velocity, disk.angle
+    nail.position = math.nan, 0.0
+    with pytest.raises(ValueError, match="constraint holds"):
+        step()
+    assert (disk.position, disk.velocity, disk.angle) == before
+    nail.position = 0.0, 0.0
+    step()
+    assert disk.position.length == pytest.approx(1.0, abs=1e-12)
+
+
 def test_what_may_be_heard_is_found_again_after_edits_of_sizes() -> None:
     space, told = pymunk.Space(), list[str]()
     one, two = (add_disk(space, (x, 0.0), 0.5) for x in (0.0, 9.0))
