@@ -8,7 +8,6 @@ from .arrays import FloatArray, IntArray
 from .compiled import kernel
 from .compiled.records import Rows
 from .layout import BODY_ROW, LEFT, NOW
-from .model.bodies import Body
 from .model.contacts import Impulse
 
 ROUND = 1e-14  # of coordinates, and of the largest speed
@@ -17,15 +16,16 @@ _LESS = 1e-9  # of lengths, by which bodies are looked for farther away
 
 @kernel
 def rests(
-    STATES: FloatArray, WALK: IntArray, BODY: Rows[Body], SIZE: FloatArray, RESTED: FloatArray, READY: IntArray,
+    STATES: FloatArray, WALK: IntArray, DYNAMIC: IntArray, SIZE: FloatArray, RESTED: FloatArray, READY: IntArray,
     slow: float, dt: float, need: float,
 ) -> int:  # fmt: skip
     """Add up for how long bodies have been at rest: at both ends of the step
 
         |v|, |spin| SIZE <= slow + round-off     and     |x - x0| <= slow dt + round-off,
 
-    without forces; `slow` and its reason are in `space/sleeping.py`. SIZE (N,): length, 0 for bodies without shapes.
-    RESTED (N,): time. READY (N,): 1 for bodies that have been at rest for the time `need`, and may sleep.
+    without forces; `slow` and its reason are in `space/sleeping.py`. DYNAMIC (N,): 1 for dynamic bodies. SIZE (N,):
+    length, 0 for bodies without shapes. RESTED (N,): time. READY (N,): 1 for bodies that have been at rest for the time
+    `need`, and may sleep.
 
     Returns:
         1 if any body may sleep, else 0.
@@ -37,8 +37,7 @@ def rests(
         fastest = max(fastest, math.sqrt(vx * vx + vy * vy))
     limit = slow + ROUND * fastest
     for i in range(N):
-        row = WALK[BODY_ROW, i]
-        still = row >= 0 and BODY[row].inv_mass > 0.0
+        still = WALK[BODY_ROW, i] >= 0 and DYNAMIC[i] > 0
         if still:
             size = SIZE[i]
             for c in range(3):

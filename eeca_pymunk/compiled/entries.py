@@ -75,7 +75,7 @@ ENTRIES = {
     "rehearsing:copy_start": "{Reading}",
     "rehearsing:as_read": "{Reading}",
     "rehearsing:alter_end": "{Reading} i8",
-    "sleepers:rests": "f8[3] i8[2] Body[1] f8[1] f8[1] i8[1] f8 f8 f8",
+    "sleepers:rests": "f8[3] i8[2] i8[1] f8[1] f8[1] i8[1] f8 f8 f8",
     "sleepers:approaches": "f8[3] i8[1] f8[1] f8[1] f8[2] i8[1] f8 f8",
     "sleepers:touches": "Impulse[1] i8[1] i8[1] i8[1] i8",
     "world_rows:write_rows": "{Reading}",
@@ -88,7 +88,7 @@ ENTRIES = {
     "impacts.step:step": "{Scene} {Joints} {Reading} f8 f8 f8 f8 i8",
     "impacts.run:run": "{Scene} {Joints} {RunArrays} f8[3] i8[2] f8[2] f8[1]",
     "joints.workspace:plan_components": "{Joints} Body[1] i8[1] i8",
-    "joints.straight:find_pinned": "Body[1] Body[1] Joint[1] i8[1] Shape[1] Link[1] i8[1]",
+    "joints.pinned:find_pinned": "Body[1] Body[1] Joint[1] i8[1] Shape[1] Link[1] i8[1] i8[2]",
     # Only tests call this, which solves single islands: some hundred times slower as plain Python.
     "contacts.interval:step_island": "{Scene} {Island} {IslandContacts} i8 f8 i8 f8 f8 f8",
     "contacts.memory:forget": "i8[1] Force[1] Count i8[1] Force[1] f8",

@@ -14,7 +14,7 @@ from ..compiled.library import check
 from ..compiled.records import R, Rows, columns, from_bytes, put, rows
 from ..contacts.memory import forget
 from ..islands.accounting import flag_pairs
-from ..joints.straight import NO_PINNED, pinned_bodies
+from ..joints.pinned import NO_PINNED, pinned_bodies
 from ..layout import NOW as READ
 from ..model.bodies import CHECK, Body
 from ..model.contacts import Force, Impulse
@@ -92,7 +92,7 @@ class EventLoop(Remembering):
             self.ties = memory.unjointed(n)
 
     def _hold(self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link]) -> Rows[Pinned]:
-        """The bodies that straight chains of joints hold, which lose their mobilities."""
+        """The bodies that joints hold where they are, which lose their mobilities."""
         PINNED = pinned_bodies(BODY, self.partner, self.joint, self._still, SHAPE, LINK)
         if len(PINNED):
             self._mobility = columns(BODY, "inv_mass", "inv_inertia")
@@ -119,7 +119,7 @@ class EventLoop(Remembering):
         tie_components(self.table, self.ties)
 
     def holds_others(self) -> bool:
-        """Whether straight chains of joints hold other bodies than those of PINNED, after changes of joints or of their
+        """Whether joints hold other bodies where they are than those of PINNED, after changes of joints or of their
         ends."""
         scene = self.scene
         BODY = scene.BODY.copy()

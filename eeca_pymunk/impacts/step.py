@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import Table, kernel
-from ..jointed.ledger import account_joints, start_joints
-from ..joints.straight import put_pinned
+from ..jointed.ledger import account_joints, load_welds, start_joints
+from ..joints.pinned import put_pinned
 from ..model.joints import Joints, joints_of
 from ..model.parameters.joints import MEET_INSTANT
 from ..model.scene import Scene, scene_of
@@ -53,6 +53,8 @@ def finish(
     """Close the step, and write the states at its end; returns the bits of the step, or a negative code."""
     account_joints(A, J)
     close(A, WALK)
+    if len(A.PINNED) > 0:
+        load_welds(A, J, STATES, WALK)
     if A.COUNT.logged > 0 or A.COUNT.unmet > 0:
         status |= SOME
     return give(STATES, WALK, EXTRA, A.BODY, ENDS, A.PAR.dt, A.PAR.half_damping, status)

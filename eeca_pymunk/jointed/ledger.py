@@ -8,10 +8,11 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import nonallocating
 from ..contacts.unmet import most_work, note_unmet
 from ..joints.ledger import clear_interval
+from ..joints.welds import pass_on, pinned_row, push_weld
 from ..layout import BODY_ROW, LEFT
 from ..layout import NOW as READ
 from ..model.joint_steps import ELASTIC
-from ..model.joints import EDITED, Joints
+from ..model.joints import EDITED, WELDED, Joints
 from ..model.parameters.events import BUDGET_TIME
 from ..model.parameters.joints import STEP_WORK, STEP_WORK_BODY
 from ..model.scene import Scene
@@ -104,3 +105,34 @@ def account_joints(A: Scene, J: Joints) -> None:
             longer = A.PAR.planned / joint.last_step
             joint.impulse[0], joint.impulse[1] = joint.impulse[0] * longer, joint.impulse[1] * longer
             joint.last_step = A.PAR.planned
+
+
+@nonallocating
+def load_welds(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray) -> None:
+    """At the end of a step, leave the impulses of welded bodies' joints in their rows."""
+    PINNED, BODY, dt, links = A.PINNED, A.BODY, A.PAR.dt, 0
+    for k in range(len(PINNED)):
+        pinned, pull = PINNED[k], PINNED[k].mass * dt
+        for c in range(2 if pinned.kind == WELDED else 0):
+            joint = J.JOINT[pinned.weld[c] // 2]
+            joint.impulse[0], joint.impulse[1], joint.last_step = 0.0, 0.0, A.PAR.planned
+        push_weld(J, pinned, pinned.x, pinned.y, pull * A.PAR.gravity_x, pull * A.PAR.gravity_y, 0.0)
+        links = max(links, pinned.link)
+    for i in range(WALK.shape[1] if links > 0 else 0):
+        row = WALK[BODY_ROW, i]
+        k = pinned_row(PINNED, row) if row >= 0 and BODY[row].inv_mass == 0.0 else -1
+        if k >= 0:
+            fx, fy, torque = STATES[READ, i, 6], STATES[READ, i, 7], STATES[READ, i, 8]
+            push_weld(J, PINNED[k], PINNED[k].x, PINNED[k].y, dt * fx, dt * fy, dt * torque)
+    for e in range(A.COUNT.logged if links > 0 else 0):
+        one = A.LOG[e]
+        px, py = one.normal * one.nx - one.tangential * one.ny, one.normal * one.ny + one.tangential * one.nx
+        for end in range(2):
+            row, side = A.LINK[int(one.first if end == 0 else one.second)].owner, 2.0 * end - 1.0
+            k = pinned_row(PINNED, row) if BODY[row].inv_mass == 0.0 else -1
+            if k >= 0:
+                push_weld(J, PINNED[k], one.px, one.py, side * px, side * py, 0.0)
+    for link in range(links, 1, -1):
+        for k in range(len(PINNED)):
+            if PINNED[k].link == link:
+                pass_on(J, PINNED, PINNED[k])

@@ -1,4 +1,4 @@
-"""Bodies that cannot move since joints hold them on a straight line between fixed points: a bridge as long as its gap.
+"""Straight chains of joints between fixed points, whose bodies cannot move: a bridge as long as its gap.
 
 A chain of bodies and joints from point A to point B, both fixed, is at most
 
@@ -20,15 +20,10 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
-from ..compiled.records import Rows, rows
+from ..compiled.records import Rows
 from ..model.bodies import Body
-from ..model.joints import PIN, PIVOT, SLIDE, Joint, Pinned
+from ..model.joints import CENTRE, FREE, PIN, PIVOT, SLIDE, WHOLLY, Joint
 from ..model.parameters.joints import STRAIGHT_CHAIN
-from ..model.shapes import Link, Shape
-from .plan import together, turning
-
-NO_PINNED = rows(Pinned, 0)
-FREE, WHOLLY, CENTRE = 0, 1, 2  # what of a body a straight chain holds
 
 
 @nonallocating
@@ -42,6 +37,17 @@ def reach(joint: Joint) -> float:
 
 
 @nonallocating
+def anchor(bodies: Rows[Body], joint: Joint, end: int) -> tuple[float, float]:
+    """The point of a joint on its body a (end 0) or b (1)."""
+    i = joint.body[end]
+    rx, ry = joint.anchor_a[0], joint.anchor_a[1]
+    if end == 1:
+        rx, ry = joint.anchor_b[0], joint.anchor_b[1]
+    c, s = math.cos(bodies[i].angle), math.sin(bodies[i].angle)
+    return bodies[i].x + c * rx - s * ry, bodies[i].y + s * rx + c * ry
+
+
+@nonallocating
 def place_points(bodies: Rows[Body], joint: Rows[Joint], X: FloatArray, HEAD: IntArray, NEXT: IntArray) -> None:
     """Fill in the places X (2 j, 2) of the points of all joints: point 2 i of joint i on its body a, 2 i + 1 on its
     body b, so that p ^ 1 is the other point of a joint. Points of joints that may be straight are listed by body: HEAD
@@ -49,11 +55,7 @@ def place_points(bodies: Rows[Body], joint: Rows[Joint], X: FloatArray, HEAD: In
     for j in range(len(joint)):
         for end in range(2):
             p, i = 2 * j + end, joint[j].body[end]
-            rx, ry = joint[j].anchor_a[0], joint[j].anchor_a[1]
-            if end == 1:
-                rx, ry = joint[j].anchor_b[0], joint[j].anchor_b[1]
-            c, s = math.cos(bodies[i].angle), math.sin(bodies[i].angle)
-            X[p, 0], X[p, 1] = bodies[i].x + c * rx - s * ry, bodies[i].y + s * rx + c * ry
+            X[p, 0], X[p, 1] = anchor(bodies, joint[j], end)
             if reach(joint[j]) < math.inf:
                 NEXT[p], HEAD[i] = HEAD[i], p
 
@@ -91,53 +93,19 @@ def fix_chain(
 
 
 @kernel
-def may_hold(joint: Rows[Joint], still: IntArray, n: int) -> bool:
-    """Whether two joints that may be straight end at bodies n + i with still[i] > 0."""
-    ends = 0
-    for j in range(len(joint)):
-        a, b = joint[j].body[0], joint[j].body[1]
-        fixed = (a >= n and still[a - n] > 0) or (b >= n and still[b - n] > 0)
-        if fixed and joint[j].bounded == 0 and joint[j].kind in (PIN, PIVOT, SLIDE):
-            ends += 1
-    return ends >= 2
-
-
-@kernel
-def find_pinned(
-    BODY: Rows[Body], PARTNER: Rows[Body], joint: Rows[Joint], STILL: IntArray, SHAPE: Rows[Shape], LINK: Rows[Link],
-    pinned: IntArray,
-) -> int:  # fmt: skip
-    """Find the bodies of straight chains between fixed points.
+def hold_chains(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, spins: IntArray, pinned: IntArray) -> int:
+    """Hold the bodies of straight chains between fixed points, which are still or pinned; how many there are.
 
     Args:
-        BODY (n,), PARTNER (x,): at their present poses; the latter cannot be moved by joints.  joint (j,).
-        STILL (x,): 1 for rows of PARTNER that never move.
-        SHAPE, LINK: of the bodies; contacts do not turn those without friction.
-        pinned (n + x,): out, FREE, WHOLLY, or CENTRE for a body that is pinned at its centre of mass and spins on.
-
-    Returns:
-        the number of bodies that are pinned.
+        bodies (n,): at their present poses.  joint (j,).
+        still (n,): 1 for bodies that never move, 0 for those that may be held, -1 for others.
+        spins (n,): 1 for bodies that neither joints nor contacts turn if their centre is held.
+        pinned (n,): in and out, FREE, WHOLLY or CENTRE.
     """
-    if not may_hold(joint, STILL, len(BODY)):
-        return 0
-    bodies = together(BODY, PARTNER)
-    still, spins = np.zeros(len(bodies), np.int64), np.zeros(len(bodies), np.int64)
-    for i in range(len(BODY)):
-        spins[i] = 1
-    for i in range(len(PARTNER)):
-        still[len(BODY) + i] = STILL[i]
-    for s in range(len(LINK)):
-        if SHAPE[s].friction > 0.0:
-            spins[LINK[s].owner] = 0
     points, n = 2 * len(joint), len(bodies)
     X, LENGTH = np.empty((points, 2)), np.empty(points)
     HEAD, NEXT = np.full(n, -1, np.int64), np.full(points, -1, np.int64)
     FROM, SEEN, STACK = np.empty(points, np.int64), np.full(points, -1, np.int64), np.empty(points, np.int64)
-    turns, cayley = np.zeros(n, np.int64), np.zeros(n, np.int64)
-    turning(bodies, joint, len(joint), turns, cayley)
-    for i in range(n):
-        pinned[i] = FREE
-        spins[i] = spins[i] if turns[i] == 0 else 0
     place_points(bodies, joint, X, HEAD, NEXT)
     total, found = 0, 1
     while found > 0:
@@ -146,7 +114,7 @@ def find_pinned(
         SEEN[:] = -1
         for first in range(points):
             begin, across = joint[first // 2].body[first % 2], reach(joint[first // 2])
-            if across == math.inf or (still[begin] == 0 and pinned[begin] == FREE):
+            if across == math.inf or (still[begin] <= 0 and pinned[begin] == FREE):
                 continue
             stamp += 1
             FROM[first ^ 1], LENGTH[first ^ 1], STACK[0], room = first, across, first ^ 1, 1
@@ -154,7 +122,7 @@ def find_pinned(
                 room -= 1
                 p = STACK[room]
                 i = joint[p // 2].body[p % 2]
-                if not straight(X, first, p, LENGTH[p]):
+                if still[i] < 0 or not straight(X, first, p, LENGTH[p]):
                     continue
                 if still[i] > 0 or pinned[i] != FREE:
                     found += fix_chain(joint, X, FROM, p, first, spins, pinned)
@@ -170,34 +138,3 @@ def find_pinned(
                     q = NEXT[q]
         total += found
     return total
-
-
-@nonallocating
-def put_pinned(PINNED: Rows[Pinned], BODY: Rows[Body]) -> float:
-    """Put pinned bodies where they are, at rest but for the spin of those that are pinned at their centre; the kinetic
-    energy that they lose, which joints take as they take that of any velocity that does not fit them."""
-    lost = 0.0
-    for k in range(len(PINNED)):
-        pinned, body = PINNED[k], BODY[PINNED[k].body]
-        lost += 0.5 * pinned.mass * (body.vx * body.vx + body.vy * body.vy)
-        body.x, body.y, body.vx, body.vy, body.ax, body.ay, body.angular = pinned.x, pinned.y, 0.0, 0.0, 0.0, 0.0, 0.0
-        if pinned.kind == WHOLLY:
-            lost += 0.5 * pinned.moment * body.spin * body.spin
-            body.angle, body.spin = pinned.angle, 0.0
-    return lost
-
-
-def pinned_bodies(
-    BODY: Rows[Body], PARTNER: Rows[Body], joint: Rows[Joint], still: IntArray, SHAPE: Rows[Shape], LINK: Rows[Link]
-) -> Rows[Pinned]:  # fmt: skip
-    """The bodies that straight chains hold, see `find_pinned`; BODY has their mobilities."""
-    kind: IntArray = np.zeros(len(BODY) + len(PARTNER), np.int64)
-    if not find_pinned(BODY, PARTNER, joint, still, SHAPE, LINK, kind):
-        return NO_PINNED
-    at = np.flatnonzero(kind)
-    PINNED, one = rows(Pinned, len(at)), BODY[at]
-    PINNED["body"], PINNED["kind"] = at, kind[at]
-    for name in ("x", "y", "angle"):
-        PINNED[name] = one[name]
-    PINNED["mass"], PINNED["moment"] = 1.0 / one["inv_mass"], 1.0 / one["inv_inertia"]
-    return PINNED

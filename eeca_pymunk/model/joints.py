@@ -132,11 +132,16 @@ class Coupling(Record):
 BOUNDED, PRESCRIBED, BOXED = 1, 2, 3
 
 
+FREE, WHOLLY, CENTRE, WELDED = 0, 1, 2, 3  # what of a body joints hold where it is
+
+
 class Pinned(Record):
-    """A body that joints hold on a straight line between fixed points (`..joints.straight`)."""
+    """A body that joints hold where it is (`..joints.pinned`)."""
 
     body: int  # row of `Body`
-    kind: int  # WHOLLY or CENTRE of `..joints.straight`
+    kind: int  # WHOLLY, CENTRE or WELDED
+    weld: Annotated[IntArray, 2]  # of a welded body: 2 j + (0 as its body a, 1 as b) of its pivot and its gear
+    link: int  # of a welded body: number of welds from there to the fixed body
     x: float  # pose: length, length, rad
     y: float
     angle: float

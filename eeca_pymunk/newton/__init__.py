@@ -21,5 +21,5 @@ Names of arguments: k a joint of the component, r one of its rows, i a body, c i
 for: STEP, POSES, SPEEDS or LINEAR_STEP; `system`: WHOLE, CONDENSED or DUAL; `build`: whether the matrix is made anew,
 or the right side alone; `give`: compliance of the joints over h², 0 if they hold. `loops`: whether rows may be
 redundant. A row *acts* unless it is that of a limit on which its joint does not stand (`entries.held`; *held* bodies
-are something else, `..joints.straight`).
+are something else, `..joints.pinned`).
 """

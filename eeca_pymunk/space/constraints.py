@@ -104,7 +104,7 @@ class ConstraintValues(NamedTuple):
 
     @property
     def shape(self) -> tuple[object, ...]:
-        """All values on which `plan` and `reach` depend."""
+        """All values on which `plan` and `reach` depend, but `gear`, which servos change in every step."""
         return self[:6]
 
     @property
@@ -115,8 +115,8 @@ class ConstraintValues(NamedTuple):
 
     @property
     def reach(self) -> tuple[object, ...]:
-        """The values that decide whether it can be part of a straight chain (`..joints.straight`)."""
-        return self.kind, self.bounded, self.anchor_a, self.anchor_b, self.length, self.limits
+        """The values that decide whether it can hold bodies where they are (`..joints.pinned`)."""
+        return self.kind, self.bounded, self.anchor_a, self.anchor_b, self.length, self.limits, self.gear
 
     def is_fine(self) -> bool:
         """Whether no value can be wrong; if not, `check_constraint`, which costs more, finds out."""

@@ -109,6 +109,8 @@ class JointRows(Listing):
                 self.ends_moved |= before.reach != values.reach
                 if before.plan != values.plan:
                     self.replan = others = True
+            elif before.gear != values.gear and any(b.body_type == pymunk.Body.STATIC for b in self.pairs[item]):
+                self.ends_moved = True
             calls = calls_of(item)
             others |= calls != self.calls[j]
             self.calls[j] = calls

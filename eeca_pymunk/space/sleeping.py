@@ -77,7 +77,8 @@ class Sleep:
         row = world.WALK[BODY_ROW]
         self._size: FloatArray = np.where(row >= 0, world.BODY["extent"][row], 0.0)
         self._far: FloatArray = self._size + np.hypot(*bodies.center_of_gravity.T)  # from the body's origin
-        self._rests = rests.bind(world.STATES, world.WALK, world.BODY, self._size, self._rested, self._ready)
+        moved: IntArray = bodies.dynamic.astype(np.int64)
+        self._rests = rests.bind(world.STATES, world.WALK, moved, self._size, self._rested, self._ready)
         self._still = bodies.asleep.astype(np.int64), bodies.static.astype(np.int64)
         self._touches: tuple[memoryview | None, Callable[[int], int]] = None, int  # bound to this log
         # Bodies that something other than the solver moves: all, if functions are called; else kinematic ones.

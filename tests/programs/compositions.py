@@ -38,6 +38,7 @@ CLOSES = 1e-11
 CHANGES = 1e-12  # by which the change of a ledger may differ from that of the space's own energy, over the scale
 OVERSPENT = 1.5  # work of a step whose budget is spent, over the budget: the last event may go beyond
 STANDS = 5
+ROUND_OFF = 2.3e-16
 OUT = 0.5  # of a body's least size
 
 
@@ -295,8 +296,10 @@ class Composition:
         g = abs(self.space.gravity[1])
         scale = sum(b.mass for b in self.bodies) * g * 10 * self.length + abs(now.kinetic) + abs(ledger.external)
         scale += ledger.restitution + ledger.friction + ledger.damping + abs(energies[-1])
+        # The energy of velocities that round-off of positions gives: all that there is at rest without gravity.
+        least = sum(b.mass for b in self.bodies) * (ROUND_OFF * self.half / self.dt) ** 2
         work = outside.most(report, self.dt, True)  # of motors, which exact joints may take up
-        if abs(ledger.residual) > CLOSES * (scale + (work if math.isfinite(work) else 0.0)):
+        if abs(ledger.residual) > least + CLOSES * (scale + (work if math.isfinite(work) else 0.0)):
             raise Broken(f"step {k}: the ledger is open by {ledger.residual / scale:.1e}")
         least = min(ledger.restitution, ledger.friction, ledger.damping) / max(scale, 1e-300)
         found.below = min(found.below, least)

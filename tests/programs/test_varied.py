@@ -143,7 +143,7 @@ def test_random_compositions_with_all_features_keep_the_laws(first: int) -> None
 
 
 def test_each_feature_is_drawn() -> None:
-    assert set().union(*(Varied(seed).has for seed in range(120))) == set(FEATURES)
+    assert set().union(*(Varied(seed, joints).has for seed in range(120) for joints in (False, True))) == set(FEATURES)
 
 
 def test_position_functions_do_not_add_what_pymunk_corrects() -> None:

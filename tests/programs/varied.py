@@ -32,6 +32,7 @@ FEATURES: dict[str, float] = {
     "spans": 0.3,  # dt of 1/240 to 1/10 s, another in each step
     "belts": 0.15,  # walls with a surface velocity
     "many": 0.03,  # up to 200 bodies
+    "welds": 0.15,  # bodies that a pivot and a gear hold on the ground, or on one another, while the box rests
 }
 AGAIN = 6  # steps that are repeated
 PASS, COUNTED = 7, 8  # collision types
@@ -71,7 +72,7 @@ class Varied(Composition):
     def _vary(self) -> None:
         seed = self.drawn[0]
         self.chance = C = Random(f"varied {seed}")
-        self.has = {name for name, share in FEATURES.items() if C.random() < share}
+        self.has = {name for name, share in FEATURES.items() if name != "welds" and C.random() < share}
         self.seed, self.calls = seed, 0
         self.extra: list[pymunk.Shape] = []
         self.away: list[pymunk.Shape] = []
@@ -85,6 +86,18 @@ class Varied(Composition):
         for name in ("compound", "handlers", "functions", "drag", "sleep", "belts"):
             if name in self.has:
                 getattr(self, "_" + name)()
+        self._weld(Random(f"welded {seed}"))
+
+    def _weld(self, C: Random) -> None:
+        """Weld up to three bodies, drawn by a generator of their own."""
+        if C.random() > FEATURES["welds"] or not self.space.constraints or self.turns:
+            return
+        self.has.add("welds")
+        base = self.space.static_body
+        for body in C.sample(self.bodies, min(len(self.bodies), C.randint(1, 3))):
+            gear = pymunk.GearJoint(base, body, body.angle - base.angle, 1.0)
+            self.space.add(pymunk.PivotJoint(base, body, tuple(body.position)), gear)
+            base = C.choice((base, body))
 
     def _fill(self) -> None:
         """A larger box, with up to 200 bodies."""
