@@ -112,12 +112,7 @@ class Lock:
 
 
 def energy_lock(
-    A: Delassus,
-    island: IntArray | None,
-    lam: FloatArray,
-    q: FloatArray,
-    psi2: FloatArray,
-    external: FloatArray,
+    A: Delassus, island: IntArray | None, lam: FloatArray, q: FloatArray, psi2: FloatArray, external: FloatArray
 ) -> Lock:
     """One scale s per island that makes the energy balance exact for any lam, loss by restitution included.
 

@@ -25,16 +25,7 @@ from ..pairs.rules import barred, law
 from .accounting import end_interval
 from .at_rest import wake_changed
 from .intervals import solve
-from .membership import (
-    approach,
-    budget_spent,
-    fixed_support,
-    jointed,
-    largest_island,
-    members,
-    persists,
-    unite,
-)
+from .membership import approach, budget_spent, fixed_support, jointed, largest_island, members, persists, unite
 from .partial_rest import rests_in_part
 from .penetration import hold_penetrating
 from .support import support

@@ -13,12 +13,7 @@ from ..geometry.gap import gap_at
 from ..geometry.sides import half_width, held_side, remembers, smaller
 from ..model.contacts import Row
 from ..model.islands import Island, IslandContacts
-from ..model.parameters.intervals import (
-    INTERVAL_DEPTH,
-    INTERVAL_DEPTH_LEAST,
-    INTERVAL_DEPTH_WIDTH,
-    INTERVAL_RETRY,
-)
+from ..model.parameters.intervals import INTERVAL_DEPTH, INTERVAL_DEPTH_LEAST, INTERVAL_DEPTH_WIDTH, INTERVAL_RETRY
 from ..model.scene import Scene
 from ..rows.build import normal_rate
 from .candidates import excess_way

@@ -7,18 +7,7 @@ import numpy as np
 from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.joint_steps import POSES
-from ..model.joints import (
-    BOUNDED,
-    BOXED,
-    GEAR,
-    GROOVE,
-    MOTOR,
-    PIN,
-    ROTARY_SPRING,
-    SPRING,
-    Joint,
-    Workspace,
-)
+from ..model.joints import BOUNDED, BOXED, GEAR, GROOVE, MOTOR, PIN, ROTARY_SPRING, SPRING, Joint, Workspace
 from ..model.parameters.joints import STALLED
 from ..newton.entries import is_limit
 from ..newton.rows import joint_rows

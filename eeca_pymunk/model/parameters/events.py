@@ -19,11 +19,7 @@ PATH_REACH = round_off(
     1.0000001, "ratio", "Two bodies cannot meet in the step if their paths miss each other by this factor."
 )
 SEARCH_AHEAD = work(1.5, "times the time that is left", "Circles that cannot meet until then need no root finding.")
-ADVANCES = work(
-    1000,
-    "number",
-    "Evaluations of a gap in a part of a step in one search for an impact, at most.",
-)
+ADVANCES = work(1000, "number", "Evaluations of a gap in a part of a step in one search for an impact, at most.")
 RESOLUTION = work(
     64,
     "in a step",
@@ -38,9 +34,7 @@ SAME_INSTANT = round_off(1e-09, "of the step", "Two computations of an instant t
 AHEAD = work(0.4, "of the margin", "Distance of the centre of a new margin circle ahead of its shape.")
 INSIDE = work(0.1, "of the margin", "Part of the margin that must be left for a shape to count as inside its circle.")
 STEP_LOOKS = work(
-    32000,
-    "looks",
-    "Work of the events of a step after which it ends early: about .25 us each. Larger: longer steps.",
+    32000, "looks", "Work of the events of a step after which it ends early: about .25 us each. Larger: longer steps."
 )
 STEP_LOOKS_BODY = work(160, "looks", "What each body adds to it.")
 MANY_BODIES = work(200, "bodies", "Number from which what a body adds grows with it, as piles are solved whole.")

@@ -32,9 +32,7 @@ IMPACT_ENERGY = round_off(4e-16, "of the kinetic energy", "Change of energy by a
 LIMIT_EVENTS = work(12, "number", "Limits that are reached in one step of a component, at most.")
 LIMIT_WAY = round_off(1e-9, "of the component", "Way of a limit to its bound up to which the part before it is empty.")
 LIMIT_HOP = heuristic(
-    1e-6,
-    "of the component",
-    "Way by which a limit may leave its bound and return in a part of a step, and be held.",
+    1e-6, "of the component", "Way by which a limit may leave its bound and return in a part of a step, and be held."
 )
 LIMIT_SECANTS = work(30, "iterations", "Secant steps to the instant at which a limit is reached, at most.")
 LIMIT_SECANTS_HASTE = work(2, "iterations", "Secant steps to that instant after the work HASTE.")
