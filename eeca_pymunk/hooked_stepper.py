@@ -7,7 +7,7 @@ from functools import partial
 from math import isfinite
 
 from .energy.ledger import AFTER, DAMPED
-from .errors import NotFiniteError
+from .impacts.run import ENERGY
 from .layout import LEFT
 from .packed_space import TOO_FAR, PackedSpace
 from .reentry import BUSY
@@ -15,7 +15,7 @@ from .report import Details, Outcome, StepReport
 from .space.sleeping import Sleep
 from .space.world import World
 from .transfer import EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES
-from .unmet import Unmet, of_missed
+from .unmet import of_missed
 
 
 class HookedStepper(PackedSpace):
@@ -61,11 +61,6 @@ class HookedStepper(PackedSpace):
     def details(self, world: World, dt: float) -> Details | Callable[[], Details]:
         """The arrays of the report of the last step, whose status has EVENTS, or a function that makes them."""
         return self._method.details(dt, world.bodies.items, world.owner)
-
-    def unmet(self, world: World) -> tuple[Unmet, ...] | Callable[[], tuple[Unmet, ...]]:
-        """Budgets and tolerances that the last step did not meet, or a function that makes them."""
-        loop = self.event_loop
-        return () if loop is None else partial(of_missed, loop.missed, world.bodies.items, world.owner)
 
     def _hooked_step(self, world: World, dt: float) -> StepReport:
         """A step of a space in which functions of bodies or constraints, or collision handlers, are called."""
@@ -124,7 +119,7 @@ class HookedStepper(PackedSpace):
             bits = status = self.advance(world, dt, half_damping)
             if status < 0:
                 self._raise_failure(world, dt, status)
-            outcome = self._outcome(dt)
+            outcome = self._outcome(world, dt)
             alters = world.damping == 0.0 or hooks.moved > 0 or (world.collisions and world.rehearsal.after)
             if alters:
                 bits, lost = world.alter_end(world.damping == 0.0)
@@ -191,14 +186,13 @@ class HookedStepper(PackedSpace):
             if self._sync.stamp < 0:
                 self._sync.note()
 
-    def _outcome(self, dt: float) -> Outcome:
+    def _outcome(self, world: World, dt: float) -> Outcome:
         """The outcome of the step. NotFiniteError, before the space is changed, if the energy overflows though
         positions and velocities do not."""
         outcome = self._method.outcome()
         book = outcome[0]
         if book is not None and not isfinite(book[AFTER]):
-            self._world = None
-            raise NotFiniteError(f"the energy of the space would be {book[AFTER]} after dt = {dt}: {TOO_FAR}")
+            self._raise_failure(world, dt, ENERGY)
         return outcome
 
     def _make_report(self, world: World, dt: float, status: int, outcome: Outcome, lost: float = 0.0) -> StepReport:
@@ -207,7 +201,8 @@ class HookedStepper(PackedSpace):
         if lost and book is not None:
             book[DAMPED] += lost
             book[AFTER] -= lost
-        unmet = () if converged else self.unmet(world)
+        loop = self.event_loop
+        unmet = () if converged or loop is None else partial(of_missed, loop.missed, world.bodies.items, world.owner)
         if not status & EVENTS:
             return StepReport(self.time, world.empty, converged=converged, book=book, unmet=unmet)
         details = self.details(world, dt)

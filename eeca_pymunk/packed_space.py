@@ -12,7 +12,9 @@ import numpy as np
 
 from .arrays import FloatArray, IntArray
 from .compiled import Table
+from .energy.ledger import AFTER
 from .errors import NotFiniteError
+from .impacts.run import ENERGY
 from .impacts.scene import EventLoop
 from .report import Details, Outcome
 from .space.checks import check_ignored
@@ -139,10 +141,6 @@ class PackedSpace(Stepper):
         or removed. False if a new reading is needed."""
         return False
 
-    def outcome(self) -> Outcome:
-        """Of the last step, or of none."""
-        return self._method.outcome()
-
     @property
     def model(self) -> str:
         return describe(self._present())
@@ -184,7 +182,7 @@ class PackedSpace(Stepper):
         self.prepare(world, past)
         if past is not None:
             past.end()
-        if self._sleep is not None and (book := self.outcome()[0]) is not None:
+        if self._sleep is not None and (book := self._method.outcome()[0]) is not None:
             self._idle_book = [0.0] * len(book)
         return self._adopt(world)
 
@@ -242,6 +240,10 @@ class PackedSpace(Stepper):
     def _raise_failure(self, world: World, dt: float, status: int) -> None:
         """Raise the exception of a negative status."""
         self._world = None
+        if status == ENERGY:
+            book = self._method.outcome()[0]
+            assert book is not None  # without a ledger there is no such status
+            raise NotFiniteError(f"the energy of the space would be {book[AFTER]} after dt = {dt}: {TOO_FAR}")
         if status == NOT_FINITE:
             world.bodies.check_finite(world.state)
         if status == OVERFLOW:

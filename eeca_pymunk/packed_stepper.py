@@ -174,7 +174,7 @@ class PackedStepper(HookedStepper):
                 return self._hooked_step(world, dt)
         if status < 0:
             self._raise_failure(world, dt, status)
-        outcome = self._outcome(dt)
+        outcome = self._outcome(world, dt)
         try:
             if status & FORCES:
                 world.reset_forces()

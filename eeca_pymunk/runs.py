@@ -11,11 +11,8 @@ import numpy.typing as npt
 from tqdm import tqdm
 
 from .arrays import FloatArray, IntArray
-from .errors import NotFiniteError
-from .impacts.run import ENERGY
 from .impacts.run_buffers import RunBuffers
 from .layout import BODY_ROW, LEFT, NOW
-from .packed_space import TOO_FAR
 from .packed_stepper import PackedStepper
 from .reentry import refuse_within
 from .report import RunReport
@@ -178,12 +175,11 @@ class RunningStepper(PackedStepper):
         status = 0
         try:
             status = self._take_steps(world, buffers, steps, progress)
+            if status < 0:
+                self._raise_failure(world, dt, status)
         finally:
             # After an interrupt too.
-            failure = self._failure(world, dt, status) if status < 0 else None
             self._write_run_end(world, buffers, dt, status)
-            if failure is not None:
-                raise failure
         return buffers
 
     def _take_steps(self, world: World, buffers: RunBuffers, steps: int, progress: bool) -> int:
@@ -200,18 +196,6 @@ class RunningStepper(PackedStepper):
                 stretch = 2 * stretch if took < _SHORT else max(stretch // 2, 1) if took > _LONG else stretch
                 bar.update(int(RUN.done) - before)
         return status
-
-    def _failure(self, world: World, dt: float, status: int) -> Exception:
-        """The error of a step that failed."""
-        loop = self.event_loop
-        assert loop is not None
-        if status == ENERGY:
-            return NotFiniteError(f"the energy of the space would be {loop.scene.PAR.after} after dt = {dt}: {TOO_FAR}")
-        try:
-            self._raise_failure(world, dt, status)
-        except Exception as error:
-            return error
-        raise AssertionError(status)
 
     def _write_run_end(self, world: World, buffers: RunBuffers, dt: float, status: int) -> None:
         """Write the end of the steps taken to the space."""

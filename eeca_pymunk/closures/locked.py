@@ -18,10 +18,11 @@ TOLERANCE = 1e-6  # of the rigid limit's complementarity problem, relative to th
 
 
 def restitution(A: Delassus, problem: ActiveContacts) -> FloatArray:
-    """(m,) e u_n + u*, the constant term q of the rigid limit; u* = u_n + dt a_n, with external forces only."""
+    """(m,) q = -b + u*, the constant term of the rigid limit: u* = u_n + dt a_n, with external forces only; -b of
+    docs/method.md, section 3, is e u_n where the contact approaches, u_n where it opens: no impulse adds energy."""
     u_n = A.relative(problem.velocity)
     u_free = u_n + problem.dt * A.relative(problem.acceleration)
-    return balance.restitution_target(u_n, problem.elasticity) + u_free
+    return np.where(u_n < 0, problem.elasticity, 1.0) * u_n + u_free
 
 
 def locked_motion(

@@ -53,11 +53,7 @@ def this_platform() -> str:
     machine += "" if sys.maxsize > 1 << 32 else "-32"
     if not sys.platform.startswith("linux"):
         return f"{sys.platform}-{machine}"
-    return f"{'linux' if _has_glibc() else 'musl'}-{machine}"
-
-
-def _has_glibc() -> bool:
-    return _glibc() > (0, 0)
+    return f"{'linux' if _glibc() > (0, 0) else 'musl'}-{machine}"
 
 
 def _glibc() -> tuple[int, ...]:

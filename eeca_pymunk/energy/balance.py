@@ -96,12 +96,6 @@ def impulse_time(psi2: FloatArray, dt: float) -> FloatArray:
     return 0.5 * dt * (1.0 - psi2)
 
 
-def restitution_target(relative: FloatArray, elasticity: FloatArray) -> FloatArray:
-    """-b of docs/method.md, section 3: e u_n where the contact approaches, u_n where it opens; no impulse adds
-    energy."""
-    return np.where(relative < 0, elasticity, 1.0) * relative
-
-
 @dataclass(frozen=True)
 class Lock:
     """The energy lock: `scale` (m,) for each contact's impulse; `valid` (m,), whether a positive scale exists. Without

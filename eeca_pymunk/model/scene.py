@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -85,11 +84,5 @@ def scene_with(**arrays: AnyArray | Record) -> Scene:
     """A scene of these arrays; the others have no rows, and records are 0."""
     for name, dtype, dimensions in table_fields("Scene"):
         if name not in arrays:
-            arrays[name] = _nothing(dtype, dimensions) if dimensions else np.zeros(1, dtype)[0]
+            arrays[name] = np.zeros((0,) * dimensions, dtype) if dimensions else np.zeros(1, dtype)[0]
     return Scene(**arrays)  # type: ignore[arg-type]
-
-
-@cache
-def _nothing(dtype: Any, dimensions: int) -> AnyArray:
-    """An array without rows."""
-    return np.zeros((0,) * dimensions, dtype)
