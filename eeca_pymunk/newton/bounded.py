@@ -11,23 +11,25 @@ import numpy as np
 from ..compiled import nonallocating
 from ..model.joints import CONDENSED, GROOVE, Workspace
 from ..model.parameters.joints import STIFFEST
-from .condensed import freeze_row
-from .entries import interval_of, put_condensed, put_free, put_rows
+from .condensed import freeze_row, put_row
+from .entries import interval_of, put_free, put_rows
 
 
 @nonallocating
-def put_bounded(W: Workspace, k: int, slopes: bool, h: float, system: int, build: bool, band: int) -> float:
+def put_bounded(W: Workspace, k: int, slopes: bool, h: float, system: int, build: bool) -> float:
     """Put in the rows of joint k, which has bounded impulses; their residual, as `value`: a length or an angle.
 
     With p = lam - rho u, u = 2 value/h, rho = scale^2 (the smaller one of two): u = 0 where p is within the bounds,
     else lam is the nearest impulse within them. `turn` is the derivative of that of a disc, bound p/|p|, by p.
     """
-    hinge, link, local, matrix, right = W.J.HINGE, W.link, W.J.LOCAL, W.J.MATRIX, W.J.RIGHT
+    hinge, link, local, matrix, right, band = (
+        W.J.HINGE, W.link, W.J.LOCAL, W.J.MATRIX, W.J.RIGHT, W.J.COMPONENT[W.s].band
+    )  # fmt: skip
     row, rows, bound = link[k].first_row, link[k].rows, hinge[k].bound * abs(h)
     kind, side, width = link[k].kind, link[k].side, 3 * band + 1
     if kind == GROOVE and side == 0:
         rows = 1
-        put_free(link, hinge, k, rows, system, build, band, matrix, right)
+        put_free(W, k, rows, system, build)
     low, high = interval_of(kind, side, bound)
     rho = hinge[k].scale[0] ** 2
     if rows == 2:
@@ -44,11 +46,8 @@ def put_bounded(W: Workspace, k: int, slopes: bool, h: float, system: int, build
             worst = max(worst, abs(off))
             right[row + r] = -off * scale * 2.0 / h
             hinge[k].weight[r] = STIFFEST
-            if build and system == CONDENSED:
-                freeze_row(hinge, link, local, k, r, slopes)
-                put_condensed(link, hinge, local, k, r, band, matrix)
-            elif build:
-                put_rows(link, hinge, local, k, r, slopes, 1.0, band, matrix)
+            if build:
+                put_row(W, k, r, slopes, system)
             continue
         p_r = p0 if r == 0 else p1
         goal = min(max(p0, low), high) if rows == 1 else bound * p_r / size
@@ -57,10 +56,10 @@ def put_bounded(W: Workspace, k: int, slopes: bool, h: float, system: int, build
         right[row + r] = -off / scale
         hinge[k].weight[r] = -1.0
         if build and system == CONDENSED:
-            freeze_row(hinge, link, local, k, r, slopes)
+            freeze_row(W, k, r, slopes)
         if not build or system == CONDENSED:
             continue
-        put_rows(link, hinge, local, k, r, slopes, 0.0, band, matrix)
+        put_rows(W, k, r, slopes, 0.0)
         if rows == 1:
             matrix[row * width + band] += 1.0
             continue

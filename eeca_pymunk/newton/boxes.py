@@ -22,7 +22,6 @@ import math
 from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..compiled.records import Rows
-from ..model.joint_steps import BodyStep, JointStep
 from ..model.joints import BOXED, GROOVE, Coupling, Workspace
 from ..model.parameters.joints import BOX_REDUNDANT, BOX_RESIDUAL, BOX_ROUNDS, BOX_SWEEPS, DISC_WORK
 from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, on_disc
@@ -51,28 +50,25 @@ def boxed_rows(link: Rows[Coupling], joints: int) -> int:
 
 
 @nonallocating
-def unit_impulse(
-    link: Rows[Coupling], hinge: Rows[JointStep], local: Rows[BodyStep], k: int, r: int, size: int, right: FloatArray
-) -> None:
-    """Let `right` (size,) be a unit impulse along row r of joint k, scaled."""
-    for i in range(size):
-        right[i] = 0.0
+def unit_impulse(W: Workspace, k: int, r: int) -> None:
+    """Let RIGHT be a unit impulse along row r of joint k, scaled."""
+    component = W.J.COMPONENT[W.s]
+    for i in range(component.unknowns + component.impulses):
+        W.J.RIGHT[i] = 0.0
     for end in range(2):
-        i = link[k].body[end]
-        for c in range(local[i].freedoms):
-            right[local[i].column + c] += hinge[k].rows[r, 3 * end + c] * local[i].root[c]
+        body = W.J.LOCAL[W.link[k].body[end]]
+        for c in range(body.freedoms):
+            W.J.RIGHT[body.column + c] += W.J.HINGE[k].rows[r, 3 * end + c] * body.root[c]
 
 
 @nonallocating
-def rate_along(
-    link: Rows[Coupling], hinge: Rows[JointStep], local: Rows[BodyStep], k: int, r: int, change: FloatArray, at: int
-) -> float:
+def rate_along(W: Workspace, k: int, r: int, change: FloatArray, at: int) -> float:
     """The velocity along row r of joint k of the scaled change[at :]."""
     total = 0.0
     for end in range(2):
-        i = link[k].body[end]
-        for c in range(local[i].freedoms):
-            total += hinge[k].rows[r, 3 * end + c] * local[i].root[c] * change[at + local[i].column + c]
+        body = W.J.LOCAL[W.link[k].body[end]]
+        for c in range(body.freedoms):
+            total += W.J.HINGE[k].rows[r, 3 * end + c] * body.root[c] * change[at + body.column + c]
     return total
 
 
@@ -89,8 +85,8 @@ def measure_boxes(W: Workspace, w: int, u: int, n: int, h: float, fresh: bool) -
         for r in range(rows):
             if fresh:
                 for c in range(n):
-                    more[w + row * n + c] = rate_along(link, hinge, W.J.LOCAL, k, r, more, cols + c * size)
-            more[u + row] = hinge[k].value[r] * 2.0 / h + rate_along(link, hinge, W.J.LOCAL, k, r, W.J.RIGHT, 0)
+                    more[w + row * n + c] = rate_along(W, k, r, more, cols + c * size)
+            more[u + row] = hinge[k].value[r] * 2.0 / h + rate_along(W, k, r, W.J.RIGHT, 0)
             more[u + n + row] = hinge[k].lam[r]
             more[u + 2 * n + row], more[u + 3 * n + row] = low, bound
             more[u + 4 * n + row] = SINGLE if rows == 1 else FIRST_OF_DISC if r == 0 else SECOND_OF_DISC
@@ -224,12 +220,9 @@ def bound_impulses(W: Workspace, n: int, h: float, fresh: bool) -> None:
 
 
 @nonallocating
-def leave_box(
-    link: Rows[Coupling], hinge: Rows[JointStep], k: int, system: int, build: bool, band: int, matrix: FloatArray,
-    right: FloatArray,
-) -> None:  # fmt: skip
+def leave_box(W: Workspace, k: int, system: int, build: bool) -> None:
     """Put in the rows of joint k, which are boxed: no change of their impulses; of a row that does not act, to 0."""
-    for r in range(link[k].rows):
-        put_free(link, hinge, k, r, system, build, band, matrix, right)
-        if r < rows_of(link, k):
-            right[link[k].first_row + r] = 0.0
+    for r in range(W.link[k].rows):
+        put_free(W, k, r, system, build)
+        if r < rows_of(W.link, k):
+            W.J.RIGHT[W.link[k].first_row + r] = 0.0

@@ -13,9 +13,10 @@ from __future__ import annotations
 from ..arrays import FloatArray
 from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
-from ..model.joint_steps import BodyStep, JointStep
-from ..model.joints import Coupling, Workspace
+from ..model.joint_steps import JointStep
+from ..model.joints import CONDENSED, WHOLE, Workspace
 from ..model.parameters.joints import CONDENSED_BAND
+from .entries import put_condensed, put_rows
 
 
 @nonallocating
@@ -113,37 +114,40 @@ def freeze_end(
 
 
 @inlined
-def freeze_row(
-    hinge: Rows[JointStep], link: Rows[Coupling], local: Rows[BodyStep], k: int, r: int, slopes: bool
-) -> None:  # fmt: skip
+def freeze_row(W: Workspace, k: int, r: int, slopes: bool) -> None:
     """Freeze row r of joint k at both ends."""
     for end in range(2):
-        root = local[link[k].body[end]].root
-        freeze_end(hinge, k, end, r, slopes, root[0], root[1], root[2])
+        root = W.J.LOCAL[W.link[k].body[end]].root
+        freeze_end(W.J.HINGE, k, end, r, slopes, root[0], root[1], root[2])
 
 
 @inlined
-def spread(
-    hinge: Rows[JointStep], link: Rows[Coupling], local: Rows[BodyStep], k: int, r: int, amount: float,
-    right: FloatArray, at: int,
-) -> None:  # fmt: skip
+def put_row(W: Workspace, k: int, r: int, slopes: bool, system: int) -> None:
+    """Put row r of joint k, which acts, into a condensed or a whole system; arguments as of `freeze_row`."""
+    if system == CONDENSED:
+        freeze_row(W, k, r, slopes)
+        put_condensed(W, k, r)
+    elif system == WHOLE:
+        put_rows(W, k, r, slopes, 1.0)
+
+
+@inlined
+def spread(W: Workspace, k: int, r: int, amount: float, right: FloatArray, at: int) -> None:
     """Add `amount` of the frozen column J^T of row r of joint k to right[at :]."""
     for end in range(2):
-        i = link[k].body[end]
-        for c in range(local[i].freedoms):
-            right[at + local[i].column + c] += amount * hinge[k].frozen_rows[r, 3 * end + c]
+        body = W.J.LOCAL[W.link[k].body[end]]
+        for c in range(body.freedoms):
+            right[at + body.column + c] += amount * W.J.HINGE[k].frozen_rows[r, 3 * end + c]
 
 
 @inlined
-def row_times(
-    hinge: Rows[JointStep], link: Rows[Coupling], local: Rows[BodyStep], k: int, r: int, right: FloatArray, at: int
-) -> float:
+def row_times(W: Workspace, k: int, r: int, right: FloatArray, at: int) -> float:
     """The frozen row G of number r of joint k times right[at :]."""
     total = 0.0
     for end in range(2):
-        i = link[k].body[end]
-        for c in range(local[i].freedoms):
-            total += hinge[k].frozen_slopes[r, 3 * end + c] * right[at + local[i].column + c]
+        body = W.J.LOCAL[W.link[k].body[end]]
+        for c in range(body.freedoms):
+            total += W.J.HINGE[k].frozen_slopes[r, 3 * end + c] * right[at + body.column + c]
     return total
 
 
@@ -153,7 +157,7 @@ def back_condensed(
 ) -> None:
     """Solve the condensed system with the factors of its matrix in place of `right`: `size` unknowns of bodies, then
     those of rows; right[room : room + size] is scratch. A row of weight < 0 has a known change of its impulse."""
-    hinge, link, local = W.J.HINGE, W.link, W.J.LOCAL
+    hinge, link = W.J.HINGE, W.link
     for i in range(size):
         right[room + i] = right[i]
         right[i] = 0.0
@@ -161,7 +165,7 @@ def back_condensed(
         for r in range(link[k].rows):
             row = link[k].first_row + r
             if hinge[k].weight[r] < 0.0:
-                spread(hinge, link, local, k, r, right[row], right, room)
+                spread(W, k, r, right[row], right, room)
             elif hinge[k].weight[r] > 0.0:
                 hinge[k].missing[r] = right[row]
                 right[row] = 0.0
@@ -169,13 +173,12 @@ def back_condensed(
         for k in range(W.joints):
             for r in range(link[k].rows):
                 if hinge[k].weight[r] > 0.0:
-                    amount = hinge[k].weight[r] * hinge[k].missing[r]
-                    spread(hinge, link, local, k, r, amount, right, room)
+                    spread(W, k, r, hinge[k].weight[r] * hinge[k].missing[r], right, room)
         substitute(matrix, size, band, right, room)
         for k in range(W.joints):
             for r in range(link[k].rows):
                 if hinge[k].weight[r] > 0.0:
-                    hinge[k].missing[r] -= row_times(hinge, link, local, k, r, right, room)
+                    hinge[k].missing[r] -= row_times(W, k, r, right, room)
                     right[link[k].first_row + r] += hinge[k].weight[r] * hinge[k].missing[r]
         for i in range(size):
             right[i] += right[room + i]

@@ -13,8 +13,8 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import inlined
 from ..compiled.records import Rows
-from ..model.joint_steps import FULL_BEND, BodyStep, JointStep
-from ..model.joints import DUAL, GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, WHOLE, Coupling
+from ..model.joint_steps import FULL_BEND, JointStep
+from ..model.joints import DUAL, GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, WHOLE, Coupling, Workspace
 
 
 @inlined
@@ -58,11 +58,9 @@ def along(joint: JointStep, r: int, v_a: FloatArray, v_b: FloatArray) -> float:
 
 
 @inlined
-def put_rows(
-    link: Rows[Coupling], hinge: Rows[JointStep], local: Rows[BodyStep], k: int, r: int, slopes: bool, weight: float,
-    band: int, matrix: FloatArray,
-) -> None:  # fmt: skip
+def put_rows(W: Workspace, k: int, r: int, slopes: bool, weight: float) -> None:
     """Scaled row G (`slopes`, else J; times `weight`) and column -J^T of row r of joint k in a whole system."""
+    link, hinge, local, matrix, band = W.link, W.J.HINGE, W.J.LOCAL, W.J.MATRIX, W.J.COMPONENT[W.s].band
     row, scale, width = link[k].first_row + r, hinge[k].scale[r], 3 * band + 1
     G = hinge[k].slopes if slopes else hinge[k].rows
     for end in range(2):
@@ -75,10 +73,9 @@ def put_rows(
 
 
 @inlined
-def put_condensed(
-    link: Rows[Coupling], hinge: Rows[JointStep], local: Rows[BodyStep], k: int, r: int, band: int, matrix: FloatArray
-) -> None:
+def put_condensed(W: Workspace, k: int, r: int) -> None:
     """Add weight J^T G of row r of joint k, as `condensed.freeze_row` left it, to a condensed matrix."""
+    link, hinge, local, matrix, band = W.link, W.J.HINGE, W.J.LOCAL, W.J.MATRIX, W.J.COMPONENT[W.s].band
     weight, width = hinge[k].weight[r], 2 * band + 1
     for end in range(2):
         i = link[k].body[end]
@@ -93,14 +90,12 @@ def put_condensed(
 
 
 @inlined
-def put_stiffness(
-    link: Rows[Coupling], local: Rows[BodyStep], k: int, stiff: FloatArray, bend: int, h: float, system: int,
-    band: int, matrix: FloatArray,
-) -> None:  # fmt: skip
+def put_stiffness(W: Workspace, k: int, bend: int, h: float, system: int) -> None:
     """Add -(h/2) STIFF of joint k, scaled, to the matrix; of a dual system what is on the diagonal, to `inertia`.
 
-    x changes by h/2 of v1. bend: what of `stiff` (6, 6) there is, NO_BEND ... FULL_BEND.
+    x changes by h/2 of v1. bend: what of STIFF there is, NO_BEND ... FULL_BEND.
     """
+    link, local, stiff, matrix, band = W.link, W.J.LOCAL, W.J.STIFF, W.J.MATRIX, W.J.COMPONENT[W.s].band
     low = 0 if bend == FULL_BEND else 2
     width = 3 * band + 1 if system == WHOLE else 2 * band + 1
     for end in range(2):
@@ -122,32 +117,29 @@ def put_stiffness(
 
 
 @inlined
-def put_free(
-    link: Rows[Coupling], hinge: Rows[JointStep], k: int, r: int, system: int, build: bool, band: int,
-    matrix: FloatArray, right: FloatArray,
-) -> None:  # fmt: skip
+def put_free(W: Workspace, k: int, r: int, system: int, build: bool) -> None:
     """Put in row r of joint k, which does not act: its equation lets its impulse become 0, or, with 0 written over this
     right side (`boxes.leave_box`), stay as it is."""
-    row = link[k].first_row + r
+    hinge, row, band = W.J.HINGE, W.link[k].first_row + r, W.J.COMPONENT[W.s].band
     hinge[k].weight[r] = 0.0
-    right[row] = -hinge[k].lam[r] / hinge[k].scale[r]
+    W.J.RIGHT[row] = -hinge[k].lam[r] / hinge[k].scale[r]
     if build and system == WHOLE:
-        matrix[row * (3 * band + 1) + band] = 1.0
+        W.J.MATRIX[row * (3 * band + 1) + band] = 1.0
 
 
 @inlined
-def put_idle(
-    link: Rows[Coupling], hinge: Rows[JointStep], k: int, system: int, build: bool, band: int, matrix: FloatArray
-) -> None:  # fmt: skip
+def put_idle(W: Workspace, k: int, system: int, build: bool) -> None:
     """Put in the row of a limit on which joint k does not stand (`idle`): it has no impulse, and stays without."""
+    hinge, band = W.J.HINGE, W.J.COMPONENT[W.s].band
     hinge[k].weight[0] = hinge[k].lam[0] = 0.0
     if build and system == WHOLE:
-        matrix[link[k].first_row * (3 * band + 1) + band] = 1.0
+        W.J.MATRIX[W.link[k].first_row * (3 * band + 1) + band] = 1.0
 
 
 @inlined
-def scale_rows(link: Rows[Coupling], hinge: Rows[JointStep], local: Rows[BodyStep], k: int) -> None:
+def scale_rows(W: Workspace, k: int) -> None:
     """Set the `scale` of the rows of joint k, 1/sqrt(J M^-1 J^T)."""
+    link, hinge, local = W.link, W.J.HINGE, W.J.LOCAL
     for r in range(link[k].rows):
         total = 0.0
         for end in range(2):

@@ -54,7 +54,7 @@ def find_columns(W: Workspace, system: int, passes: int, boxes: int) -> None:
     at = first
     for k in range(W.joints):
         for r in range(rows_of(W.link, k)):
-            unit_impulse(W.link, W.J.HINGE, W.J.LOCAL, k, r, size, right)
+            unit_impulse(W, k, r)
             back(W, system, passes, right)
             for i in range(size):
                 more[at + i] = right[i]

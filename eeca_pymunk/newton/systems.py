@@ -31,9 +31,9 @@ from ..model.parameters.joints import FACTOR_BAND, ROW_WORK, STIFFEST
 from .banded import back_banded, factor_banded
 from .bounded import put_bounded
 from .boxes import leave_box
-from .condensed import back_condensed, factor, freeze_row
+from .condensed import back_condensed, factor, put_row
 from .dual import back_dual, factor_dual
-from .entries import along, held, idle, put_condensed, put_free, put_idle, put_rows, put_stiffness, scale_rows
+from .entries import along, held, idle, put_free, put_idle, put_stiffness, scale_rows
 from .motion import move
 from .rows import joint_rows, start_joint
 
@@ -55,17 +55,15 @@ def first_iterate(W: Workspace, what: int, h: float) -> None:
 
 
 @inlined
-def put_exact(
-    W: Workspace, what: int, k: int, h: float, give: float, system: int, build: bool, band: int, width: int
-) -> float:  # fmt: skip
+def put_exact(W: Workspace, what: int, k: int, h: float, give: float, system: int, build: bool) -> float:
     """Put in the rows of joint k that hold exactly or give way; the largest of their errors for `what`. Rows that do
     not act, and bounded ones where bodies are still, are put in as free."""
-    hinge, link, local, matrix, right = W.J.HINGE, W.link, W.J.LOCAL, W.J.MATRIX, W.J.RIGHT
+    hinge, link, local, band = W.J.HINGE, W.link, W.J.LOCAL, W.J.COMPONENT[W.s].band
     a, b = link[k].body[0], link[k].body[1]
     per, slopes, bounded, farthest = 2.0 / h, what == STEP, link[k].bounded != 0, 0.0
     for r in range(link[k].rows):
         if bounded or not held(link, k, r):
-            put_free(link, hinge, k, r, system, build, band, matrix, right)
+            put_free(W, k, r, system, build)
             continue
         scale = hinge[k].scale[r]
         if what == SPEEDS:
@@ -76,15 +74,14 @@ def put_exact(
             error = hinge[k].value[r] - hinge[k].target[r]
             if give > 0.0:
                 error += give * 0.5 * h * hinge[k].lam[r] / scale**2
-        right[link[k].first_row + r] = -error * scale * per
+        row = link[k].first_row + r
+        W.J.RIGHT[row] = -error * scale * per
         farthest = max(farthest, abs(error))
         hinge[k].weight[r] = 1.0 / give if give > 0.0 else STIFFEST
-        if build and system == CONDENSED:
-            freeze_row(hinge, link, local, k, r, slopes)
-            put_condensed(link, hinge, local, k, r, band, matrix)
-        elif build and system == WHOLE:
-            put_rows(link, hinge, local, k, r, slopes, 1.0, band, matrix)
-            matrix[(link[k].first_row + r) * width + band] += give
+        if build:
+            put_row(W, k, r, slopes, system)
+            if system == WHOLE:
+                W.J.MATRIX[row * (3 * band + 1) + band] += give
     return farthest
 
 
@@ -96,7 +93,7 @@ def assemble(W: Workspace, what: int, h: float, give: float, first: bool, system
     are taken from the present ones. Bodies' `impulse` becomes that of all joints.
     Returns how far rows are from their targets, over the size of the component; for SPEEDS, the worst G v over it.
     """
-    hinge, link, local, matrix, right = W.J.HINGE, W.link, W.J.LOCAL, W.J.MATRIX, W.J.RIGHT
+    hinge, link, local, matrix = W.J.HINGE, W.link, W.J.LOCAL, W.J.MATRIX
     worst = 0.0
     still = what in (POSES, SPEEDS)
     slopes = what == STEP
@@ -114,31 +111,28 @@ def assemble(W: Workspace, what: int, h: float, give: float, first: bool, system
                 matrix[(local[i].column + c) * width + band] = 1.0
     for k in range(W.joints):
         if not still and idle(link, k):
-            put_idle(link, hinge, k, system, build, band, matrix)
+            put_idle(W, k, system, build)
             continue
         bend = NO_BEND
         if build or what != SPEEDS:  # else nothing has moved since rows were built
             bend = joint_rows(W, k, h, build and not still)
         a, b = link[k].body[0], link[k].body[1]
         if first or hinge[k].scale[0] == 0.0:
-            scale_rows(link, hinge, local, k)
+            scale_rows(W, k)
         if not still and (link[k].rows == 0 or held(link, k, 0)):
             for c in range(3):
                 local[a].impulse[c] += hinge[k].force[c]
                 local[b].impulse[c] += hinge[k].force[c + 3]
             if build and bend != NO_BEND:
-                put_stiffness(link, local, k, W.J.STIFF, bend, h, system, band, matrix)
+                put_stiffness(W, k, bend, h, system)
         if link[k].bounded == BOUNDED and not still and held(link, k, 0):
-            off = put_bounded(W, k, slopes, h, system, build, band)
-            worst = max(worst, off / hinge[k].size)
-            continue
-        if link[k].bounded == BOXED and not still and held(link, k, 0):
-            off = put_bounded(W, k, slopes, h, system, False, band)
-            worst = max(worst, off / hinge[k].size)
-            leave_box(link, hinge, k, system, build, band, matrix, right)
-            continue
-        farthest = put_exact(W, what, k, h, give, system, build, band, width)
-        worst = max(worst, farthest / hinge[k].size)
+            off = put_bounded(W, k, slopes, h, system, build)
+        elif link[k].bounded == BOXED and not still and held(link, k, 0):
+            off = put_bounded(W, k, slopes, h, system, False)
+            leave_box(W, k, system, build)
+        else:
+            off = put_exact(W, what, k, h, give, system, build)
+        worst = max(worst, off / hinge[k].size)
     return worst
 
 
