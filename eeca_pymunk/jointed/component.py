@@ -96,8 +96,8 @@ def close_joints(
             if held(W.link, k, r) and abs(W.J.HINGE[k].value[r] - W.J.HINGE[k].target[r]) > small:
                 return math.inf
         for side in (-1, 1):
-            passed = has_bound(W.J.JOINT, W.link, k, side) and link.side != side
-            if passed and gap(W.J.JOINT, W.J.HINGE, W.link, k, side) < -small:
+            passed = has_bound(W, k, side) and link.side != side
+            if passed and gap(W, k, side) < -small:
                 return math.inf
     return stored
 

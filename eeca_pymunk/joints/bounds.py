@@ -11,34 +11,32 @@ from ..arrays import FloatArray
 from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.joint_steps import JointStep
-from ..model.joints import GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, Coupling, Joint, Workspace
+from ..model.joints import GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, Coupling, Workspace
 from ..model.parameters.joints import JOINT_TOUCH, LIMIT_HOP, LIMIT_WAY
 from ..newton.entries import along, idle
 from ..newton.rows import joint_rows
 
 
 @nonallocating
-def has_bound(joint: Rows[Joint], link: Rows[Coupling], k: int, side: int) -> bool:
+def has_bound(W: Workspace, k: int, side: int) -> bool:
     """Whether joint k has a bound at this side."""
-    kind, j = link[k].kind, link[k].joint
+    kind, joint = W.link[k].kind, W.J.JOINT[W.link[k].joint]
     if kind == RATCHET:
-        return bool(side * joint[j].tooth < 0.0)
+        return bool(side * joint.tooth < 0.0)
     if kind == SLIDE and side < 0:
-        return bool(joint[j].lower > 0.0)
+        return bool(joint.lower > 0.0)
     if kind in (SLIDE, ROTARY_LIMIT, GROOVE):
-        return bool(abs(joint[j].upper if side > 0 else joint[j].lower) < 1e300)
+        return bool(abs(joint.upper if side > 0 else joint.lower) < 1e300)
     return False
 
 
 @nonallocating
-def gap(joint: Rows[Joint], hinge: Rows[JointStep], link: Rows[Coupling], k: int, side: int) -> float:
+def gap(W: Workspace, k: int, side: int) -> float:
     """How far joint k is from its bound at this side at the end of the present iterate: length or rad, below 0 beyond
     it."""
-    j = link[k].joint
-    bound = joint[j].upper if side > 0 else joint[j].lower
-    if link[k].kind == RATCHET:
-        bound = joint[j].notch
-    return float(side * (bound - hinge[k].measure))
+    joint = W.J.JOINT[W.link[k].joint]
+    bound = joint.notch if W.link[k].kind == RATCHET else joint.upper if side > 0 else joint.lower
+    return float(side * (bound - W.J.HINGE[k].measure))
 
 
 @nonallocating
@@ -47,12 +45,12 @@ def hold_limits(W: Workspace) -> None:
 
     To close a gap of round-off in a short part would take any force. Rows must be those of the present poses.
     """
-    joint, hinge, link = W.J.JOINT, W.J.HINGE, W.link
+    hinge, link = W.J.HINGE, W.link
     for k in range(W.joints):
         side, last = link[k].side, link[k].rows - 1
         if side == 0 or link[k].bounded != 0:
             continue
-        room = gap(joint, hinge, link, k, side)
+        room = gap(W, k, side)
         if abs(room) <= JOINT_TOUCH * hinge[k].size:
             at = hinge[k].measure
             bound = at + side * room
@@ -151,7 +149,7 @@ def hops(W: Workspace, k: int, side: int, instant: float, h: float) -> bool:
     has been let go in this part: its force changes sign."""
     link, hinge = W.link, W.J.HINGE
     before, after = gap_rates(W, k, side)
-    start = gap(W.J.JOINT, hinge, link, k, side) - 0.5 * h * (before + after)
+    start = gap(W, k, side) - 0.5 * h * (before + after)
     way = max(start, 0.0) + 0.25 * before * instant
     return bool(link[k].let_go != side and before >= 0.0 and way <= LIMIT_HOP * hinge[k].size)
 
@@ -178,9 +176,9 @@ def first_bound(W: Workspace, h: float) -> tuple[int, int, float]:
             continue
         look(W, k, h)
         for side in (-1, 1):
-            if not has_bound(W.J.JOINT, link, k, side):
+            if not has_bound(W, k, side):
                 continue
-            end = gap(W.J.JOINT, hinge, link, k, side)
+            end = gap(W, k, side)
             if end >= -JOINT_TOUCH * hinge[k].size:
                 continue
             before, after = gap_rates(W, k, side)
@@ -196,7 +194,7 @@ def least_gap(W: Workspace, k: int, side: int, h: float) -> tuple[float, float]:
     an end. The distance of a slide is that of the chord d(s) = d0 + s (d1 - d0) from 0; the gaps of others change at
     rates that go evenly from b to a: they are smallest at s = b/(b - a), by b s h/2."""
     hinge = W.J.HINGE[k]
-    end = gap(W.J.JOINT, W.J.HINGE, W.link, k, side)
+    end = gap(W, k, side)
     if W.link[k].kind == SLIDE:
         x, y = hinge.apart[0], hinge.apart[1]
         way_x, way_y = 2.0 * (hinge.measure * hinge.rows[0, 3] - x), 2.0 * (hinge.measure * hinge.rows[0, 4] - y)
@@ -221,7 +219,7 @@ def passed_within(W: Workspace, h: float) -> float:
         if link[k].side != 0 or link[k].bounded != 0 or is_far(W, k):
             continue
         for side in (-1, 1):
-            if has_bound(W.J.JOINT, link, k, side):
+            if has_bound(W, k, side):
                 least, part = least_gap(W, k, side, h)
                 if part < first and least < -JOINT_TOUCH * W.J.HINGE[k].size:
                     first = part

@@ -39,8 +39,8 @@ def find_apart(W: Workspace, h: float) -> tuple[bool, bool, bool]:
         if link[k].bounded != 0 or rows == 0:
             continue
         for side in (-1, 1):
-            if has_bound(joint, link, k, side):
-                room = gap(joint, hinge, link, k, side)
+            if has_bound(W, k, side):
+                room = gap(W, k, side)
                 if room < -JOINT_APART * hinge[k].size:
                     link[k].side = side
                 elif link[k].side == side and room > JOINT_APART * hinge[k].size:

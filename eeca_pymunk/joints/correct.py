@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from ..compiled import nonallocating
 from ..compiled.records import Rows
-from ..model.joint_steps import POSES, SPEEDS, BodyStep, JointLedger, JointStep
-from ..model.joints import DUAL, Coupling, Workspace
+from ..model.joint_steps import POSES, SPEEDS, BodyStep, JointLedger
+from ..model.joints import DUAL, Workspace
 from ..model.parameters.joints import (
     CLOSING_EPSILON,
     CLOSINGS,
@@ -129,7 +129,7 @@ def let_go(W: Workspace) -> bool:
         last = link[k].rows - 1
         if last < 0 or link[k].side == 0 or link[k].bounded != 0 or link[k].let_go == link[k].side:
             continue
-        if hinge[k].pushed[last] * link[k].side > max(pull, noise(hinge, link, k, last, W.J.LOCAL)):
+        if hinge[k].pushed[last] * link[k].side > max(pull, noise(W, k, last)):
             pulling, pull = k, hinge[k].pushed[last] * link[k].side
     if pulling >= 0:
         link[pulling].side = 0
@@ -137,19 +137,19 @@ def let_go(W: Workspace) -> bool:
 
 
 @nonallocating
-def noise(hinge: Rows[JointStep], link: Rows[Coupling], k: int, r: int, local: Rows[BodyStep]) -> float:
+def noise(W: Workspace, k: int, r: int) -> float:
     """The impulse that changes the rate of row r of joint k by what is round-off of the velocities before: a limit that
     pulls no more than that is in nobody's way, and to let it go would only have it met again."""
-    return float(JOINT_SPEED_ROUND_OFF * terms(hinge, link, k, r, local) * hinge[k].scale[r] ** 2)
+    return float(JOINT_SPEED_ROUND_OFF * terms(W, k, r) * W.J.HINGE[k].scale[r] ** 2)
 
 
 @nonallocating
-def terms(hinge: Rows[JointStep], link: Rows[Coupling], k: int, r: int, local: Rows[BodyStep]) -> float:
+def terms(W: Workspace, k: int, r: int) -> float:
     """The sum of the amounts of the terms of the rate of row r of joint k, of the velocities before a correction."""
-    total = 0.0
+    a, b, total = W.J.LOCAL[W.link[k].body[0]], W.J.LOCAL[W.link[k].body[1]], 0.0
     for c in range(3):
-        total += abs(hinge[k].rows[r, c] * local[link[k].body[0]].v_kept[c])
-        total += abs(hinge[k].rows[r, c + 3] * local[link[k].body[1]].v_kept[c])
+        total += abs(W.J.HINGE[k].rows[r, c] * a.v_kept[c])
+        total += abs(W.J.HINGE[k].rows[r, c + 3] * b.v_kept[c])
     return total
 
 
@@ -165,17 +165,13 @@ def hold_closing(W: Workspace, kept: bool) -> bool:
     for k in range(W.joints):
         if link[k].side == 0 and link[k].bounded == 0:
             for side in (-1, 1):
-                closed = (
-                    has_bound(W.J.JOINT, link, k, side)
-                    and gap(W.J.JOINT, hinge, link, k, side) <= JOINT_TOUCH * hinge[k].size
-                )
-                if not closed:
+                if not (has_bound(W, k, side) and gap(W, k, side) <= JOINT_TOUCH * hinge[k].size):
                     continue
                 a, b, last = local[link[k].body[0]], local[link[k].body[1]], link[k].rows - 1
                 if kept:
                     closes = gap_rate(hinge[k], link[k].rows, side, a.v_kept, b.v_kept) < 0.0
                 else:
-                    least = terms(hinge, link, k, last, local) * JOINT_SPEED_ROUND_OFF
+                    least = terms(W, k, last) * JOINT_SPEED_ROUND_OFF
                     closes = gap_rate(hinge[k], link[k].rows, side, a.v0, b.v0) < -least
                 if closes:
                     link[k].side = side

@@ -152,7 +152,7 @@ def at_limit(W: Workspace, S: Parts) -> int:
     """What comes after a solve to the instant at which a limit is thought to be met: MEETS if it is, and no other one
     before."""
     look(W, S.limit, S.when)
-    gap_now, touch = gap(W.J.JOINT, W.J.HINGE, W.link, S.limit, S.side), JOINT_TOUCH * W.J.HINGE[S.limit].size
+    gap_now, touch = gap(W, S.limit, S.side), JOINT_TOUCH * W.J.HINGE[S.limit].size
     S.secants += 1
     if S.foreseen > 0:  # perhaps it is not met now
         _, rate = gap_rates(W, S.limit, S.side)

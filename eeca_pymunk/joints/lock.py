@@ -36,12 +36,11 @@ def centre_of(local: Rows[BodyStep], bodies: int) -> tuple[bool, float, float, f
 
 
 @nonallocating
-def lock_energy(local: Rows[BodyStep], bodies: int, gain: float) -> float:
-    """Take energy `gain` > 0 from the velocities v0; how much of it could be. Nothing where supports move: these
-    work."""
-    if not supports_rest(local, bodies):
-        return 0.0
-    hangs, x, y, vx, vy, _, _ = centre_of(local, bodies)
+def spin_about(
+    local: Rows[BodyStep], bodies: int, x: float, y: float, vx: float, vy: float
+) -> tuple[float, float]:  # fmt: skip
+    """The spin that a rigid body with the angular momentum of the component about its centre of mass (x, y), of
+    velocity (vx, vy), would have, and its moment of inertia; 0 if there is none."""
     turning, inertia = 0.0, 0.0
     for i in range(bodies):
         if local[i].freedoms > 0 and local[i].mobility[0] > 0.0:
@@ -51,7 +50,17 @@ def lock_energy(local: Rows[BodyStep], bodies: int, gain: float) -> float:
         if local[i].freedoms > 2 and local[i].mobility[2] > 0.0:
             turning += local[i].v0[2] / local[i].mobility[2]
             inertia += 1.0 / local[i].mobility[2]
-    spin = turning / inertia if inertia > 0.0 else 0.0
+    return turning / inertia if inertia > 0.0 else 0.0, inertia
+
+
+@nonallocating
+def lock_energy(local: Rows[BodyStep], bodies: int, gain: float) -> float:
+    """Take energy `gain` > 0 from the velocities v0; how much of it could be. Nothing where supports move: these
+    work."""
+    if not supports_rest(local, bodies):
+        return 0.0
+    hangs, x, y, vx, vy, _, _ = centre_of(local, bodies)
+    spin, _ = spin_about(local, bodies, x, y, vx, vy)
     if hangs:
         vx = vy = spin = 0.0
     apart = relative_energy(local, bodies, x, y, vx, vy, spin, -1.0)
@@ -102,22 +111,17 @@ def move_rigidly(local: Rows[BodyStep], bodies: int, h: float) -> None:
     is exact. Bodies that joints do not turn keep their own spin.
     """
     hangs, x, y, vx, vy, ax, ay = centre_of(local, bodies)
-    chi, spin, after = 0.0, 0.0, 0.0
+    spin, inertia = spin_about(local, bodies, x, y, vx, vy)
+    chi, after = 0.0, 0.0
     for _ in range(0 if hangs else LOCK_ITERATIONS):
-        turning = inertia = torque = 0.0
+        torque, over = 0.0, 1.0 / (1.0 + 0.25 * chi * chi)
         for i in range(bodies):
             if local[i].freedoms > 0 and local[i].mobility[0] > 0.0:
                 m, dx, dy = 1.0 / local[i].mobility[0], local[i].pose[0] - x, local[i].pose[1] - y
-                turning += m * (dx * (local[i].v0[1] - vy) - dy * (local[i].v0[0] - vx))
-                inertia += m * (dx * dx + dy * dy)
-                over = 1.0 / (1.0 + 0.25 * chi * chi)
                 mx, my = over * (dx - 0.5 * chi * dy), over * (dy + 0.5 * chi * dx)
                 torque += m * (mx * (local[i].acceleration[1] - ay) - my * (local[i].acceleration[0] - ax))
             if local[i].freedoms > 2 and local[i].mobility[2] > 0.0:
-                turning += local[i].v0[2] / local[i].mobility[2]
-                inertia += 1.0 / local[i].mobility[2]
                 torque += local[i].acceleration[2] / local[i].mobility[2]
-        spin = turning / inertia if inertia > 0.0 else 0.0
         after = spin + h * torque / inertia if inertia > 0.0 else 0.0
         chi = 0.5 * h * (spin + after)
     over = 1.0 / (1.0 + 0.25 * chi * chi)

@@ -150,9 +150,9 @@ def bounded_targets(W: Workspace, h: float) -> None:
             continue
         link[k].side = 0
         for side in (-1, 1):
-            if not has_bound(joint, link, k, side) or link[k].side != 0:
+            if not has_bound(W, k, side) or link[k].side != 0:
                 continue
-            room = gap(joint, hinge, link, k, side)
+            room = gap(W, k, side)
             a, b = W.J.LOCAL[link[k].body[0]], W.J.LOCAL[link[k].body[1]]
             if room <= 0.0 or room + h * gap_rate(hinge[k], rows, side, a.v0, b.v0) < 0.0:
                 link[k].side = side
