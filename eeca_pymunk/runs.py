@@ -13,6 +13,7 @@ from tqdm import tqdm
 from .arrays import FloatArray, IntArray
 from .impacts.run_buffers import RunBuffers
 from .layout import BODY_ROW, LEFT, NOW
+from .model.run import BETWEEN
 from .packed_stepper import PackedStepper
 from .reentry import refuse_within
 from .report import RunReport
@@ -200,7 +201,7 @@ class RunningStepper(PackedStepper):
     def _write_run_end(self, world: World, buffers: RunBuffers, dt: float, status: int) -> None:
         """Write the end of the steps taken to the space."""
         RUN = buffers.progress
-        if status < 0 or buffers.halted:
+        if status < 0 or RUN.stage != BETWEEN:
             self._world = None
             moves = world.WALK[BODY_ROW] >= 0
             world.STATES[LEFT, moves, :6] = world.STATES[NOW, moves, :6]

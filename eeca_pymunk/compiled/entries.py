@@ -87,7 +87,7 @@ ENTRIES = {
     "islands.accounting:flag_pairs": "{Scene}",
     "impacts.step:step": "{Scene} {Joints} {Reading} f8 f8 f8 f8 i8",
     "impacts.run:run": "{Scene} {Joints} {RunArrays} f8[3] i8[2] f8[2] f8[1]",
-    "joints.workspace:plan_components": "{Joints} Body[1] i8[1] i8",
+    "joints.workspace:plan_components": "{Joints} Body[1] i8[1]",
     "joints.pinned:find_pinned": "Body[1] Body[1] Joint[1] i8[1] Shape[1] Link[1] i8[1] i8[2]",
     # Only tests call this, which solves single islands: some hundred times slower as plain Python.
     "contacts.interval:step_island": "{Scene} {Island} {IslandContacts} i8 f8 i8 f8 f8 f8",

@@ -9,9 +9,9 @@ from ..compiled import nonallocating
 from ..contacts.single import kinetic
 from ..geometry.sides import forget_sides
 from ..islands.accounting import flag_pairs
-from ..islands.at_rest import note_motion, stays_at_rest
+from ..islands.at_rest import stays_at_rest, unchanged
 from ..layout import ANEW, BODY_ROW, NUDGED, SPECIAL, STEERED
-from ..model.bodies import AT_REST, MOVED, UNMOVED
+from ..model.bodies import AT_REST, AWAKE, CHANGED, MOVED, UNMOVED
 from ..model.parameters.rest import REST_RETRY
 from ..model.scene import Scene
 
@@ -80,7 +80,7 @@ def begin(A: Scene, WALK: IntArray) -> None:
             even = False
             continue
         if BODY[i].inv_mass == 0.0:
-            note_motion(A, i)
+            A.MEMBER[i].rest = AWAKE if unchanged(A, i) else CHANGED
             fixed += 1
             if BODY[i].vx != 0.0 or BODY[i].vy != 0.0 or BODY[i].spin != 0.0:
                 COUNT.closing = 1

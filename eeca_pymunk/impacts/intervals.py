@@ -8,6 +8,7 @@ from ..contacts.unmet import most_work, note_unmet
 from ..islands.accounting import close_interval
 from ..islands.building import build_islands
 from ..islands.intervals import lift_here, solve
+from ..islands.local import contacts_of
 from ..jointed.ends import shorten, under_way
 from ..jointed.lifting import lift_here as lift_joined
 from ..jointed.meet import end_before
@@ -62,15 +63,6 @@ def start_waiting(A: Scene, J: Joints) -> int:
     return DONE
 
 
-@nonallocating
-def begins(A: Scene, root: int) -> float:
-    """Instant at which the interval of an island without joints has begun."""
-    for c in range(A.COUNT.pushes):
-        if A.PUSHED_BY[c].root == root:
-            return float(A.PUSHED[c].start)
-    return 0.0
-
-
 @kernel
 def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
     """End the step at instant t, that of the event of body i, since its budget is spent; so no impact is ignored."""
@@ -88,7 +80,8 @@ def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
     # (`..jointed.meet`). Those on the way of an interval go back on it; then the poses of all become those at t.
     for k in range(A.BODY.shape[0] - 1):
         if A.STATE[k].island == k and A.MEMBER[k].rest != AT_REST and A.MEMBER[k].jointed == 0 and A.MEMBER[k].open > 0:
-            close_interval(A, k, max(begins(A, k), t))
+            first, after = contacts_of(A, k)
+            close_interval(A, k, max(A.PUSHED[first].start, t) if first < after else t)
     for k in range(A.BODY.shape[0] - 1):
         root = A.STATE[k].island
         over = root >= 0 and A.MEMBER[root].rest != AT_REST and A.MEMBER[root].open == 0

@@ -11,7 +11,7 @@ from ..compiled import table_of
 from ..compiled.records import Rows, row, rows
 from ..energy.ledger import Ledger
 from ..model.contacts import Impulse
-from ..model.run import BETWEEN, Run, RunArrays
+from ..model.run import Run, RunArrays
 
 _NOBODY: IntArray = np.zeros(0, np.int64)
 _IMPACTS = 256  # rows of EVENTS at first
@@ -71,11 +71,6 @@ class RunBuffers:
     def progress(self) -> Run:
         """The progress of the run."""
         return self._arrays.RUN
-
-    @property
-    def halted(self) -> bool:
-        """Whether the run stopped within a step."""
-        return bool(self._arrays.RUN.stage != BETWEEN)
 
     def more_events(self) -> None:
         """Double the memory for impacts."""

@@ -31,7 +31,7 @@ from .new_scene import tie_components
 from .remembering import UNBOUND, Remembering
 from .run import ROOM_FOR_IMPACTS, run
 from .run_buffers import RunBuffers
-from .scene_memory import ORDER, RULE_COLUMNS, Laid, SceneMemory
+from .scene_memory import RULE_COLUMNS, Laid, SceneMemory
 from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, step
 
 if TYPE_CHECKING:
@@ -115,7 +115,7 @@ class EventLoop(Remembering):
         self._plan(self.scene.BODY)
 
     def _plan(self, BODY: Rows[Body]) -> None:
-        self.ties, self._bound = self._memory.joints.plan(BODY, self.joint, self.partner, ORDER), UNBOUND
+        self.ties, self._bound = self._memory.joints.plan(BODY, self.joint, self.partner), UNBOUND
         tie_components(self.table, self.ties)
 
     def holds_others(self) -> bool:
@@ -147,7 +147,7 @@ class EventLoop(Remembering):
     def follow(self, buffers: RunBuffers, states: tuple[AnyArray, ...]) -> int:
         """Take the steps of `buffers`; returns all bits, a negative code of `transfer.py`, or `run.ENERGY`."""
         while True:
-            call = buffers.call = buffers.call or self._bind_run(buffers, states)
+            call = buffers.call = buffers.call or run.bind(self.table, self.ties, buffers.table, *states)
             status = check("run", call())
             if status == ROOM_FOR_IMPACTS:
                 buffers.more_events()
@@ -156,10 +156,6 @@ class EventLoop(Remembering):
                 buffers.call = None
             else:
                 return status
-
-    def _bind_run(self, buffers: RunBuffers, states: tuple[AnyArray, ...]) -> Callable[..., int]:
-        """The loop over steps as machine code, bound to these arrays and to those of the scene."""
-        return run.bind(self.table, self.ties, buffers.table, *states)
 
     def _bind_to(self, reading: Table) -> Callable[..., int]:
         """The step as machine code, bound to this reading and to the arrays of the scene."""

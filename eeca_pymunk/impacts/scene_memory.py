@@ -24,7 +24,6 @@ from .memory import OF_SCENE
 from .new_scene import begin_scene
 
 RULE_COLUMNS = 6
-ORDER = 4  # of the steps of components without dissipation, drives and contacts
 _MISSED = 32  # rows of MISSED: those reported of a step
 _CONTACTS = 256  # rows of PUSHED at first, a power of 2
 _OF_A_BODY, _MANY = 32, 1 << 16  # rows for each body where contacts may persist, and all rows at most at first
@@ -108,6 +107,6 @@ class SceneMemory:
     def unjointed(self, n: int) -> Table:
         """The table `Joints` of a scene without joints, of n bodies."""
         if self._unjointed[1] < n:
-            table = JointMemory().plan(rows(Body, 2 * n), rows(Joint, 0), rows(Body, 0), ORDER)
+            table = JointMemory().plan(rows(Body, 2 * n), rows(Joint, 0), rows(Body, 0))
             self._unjointed = table, 2 * n
         return self._unjointed[0]

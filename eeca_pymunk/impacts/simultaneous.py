@@ -81,9 +81,8 @@ def gather(A: Scene, a: int, b: int, t: float) -> tuple[int, int, IntArray]:
     most = BLOCK_BODIES if in_large_island(A, a, b) else A.BLOCK.shape[0]
     for s in (a, b):
         i = A.LINK[s].owner
-        if A.BODY[i].inv_mass > 0.0:
-            if A.PLACE[i] < 0:
-                n = add_component(A, i, n, t)
+        if A.BODY[i].inv_mass > 0.0 and A.PLACE[i] < 0:
+            n = add_component(A, i, n, t)
     while q < n:
         i = BODIES[q]
         q += 1
@@ -180,14 +179,9 @@ def make_block(A: Scene, n: int, m: int, PAIRS: IntArray, hit: int, rest: bool, 
         for side in range(2):
             w = i if side == 0 else j
             if BODY[w].inv_mass == 0.0:
-                xw, yw, qw = pose(BODY, w, t)
-                POSE[place, 0], POSE[place, 1], POSE[place, 2] = xw, yw, qw
-                xw, yw, qw = rate(BODY, w, t)
-                V[place, 0], V[place, 1], V[place, 2] = xw, yw, qw
-                if side == 0:
-                    p = place
-                else:
-                    q = place
+                POSE[place, 0], POSE[place, 1], POSE[place, 2] = pose(BODY, w, t)
+                V[place, 0], V[place, 1], V[place, 2] = rate(BODY, w, t)
+                p, q = (place, q) if side == 0 else (p, place)
                 place += 1
         e, mu, sx, sy = law(A.SHAPE, A.RULE, sa, sb)
         if rest and PAIRS[z] == hit:

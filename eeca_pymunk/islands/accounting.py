@@ -8,13 +8,13 @@ have changed the angular momentum, since the arms are those of the middle of the
 from __future__ import annotations
 
 from ..compiled import Table, nonallocating
-from ..contacts.single import move_to, note
+from ..contacts.single import move_to
 from ..model.bodies import AT_REST, CHANGED
 from ..model.contacts import ENDED, LASTED
 from ..model.scene import Scene, scene_of
 from ..pairs.lists import mark_pair
 from ..rows.energy import offset_gain
-from .at_rest import mark_changed, wake_supported
+from .at_rest import log_contact, mark_changed, wake_supported
 from .excess import losses, repay
 from .membership import unite
 from .rest import spins_freely
@@ -34,7 +34,7 @@ def flag_pairs(TABLE: Table) -> None:
 @nonallocating
 def account_contact(A: Scene, c: int, t: float) -> None:
     """Enter the losses of contact c of an interval up to instant t in the ledger, log its impulse, and end it."""
-    PAR, COUNT, R = A.PAR, A.COUNT, A.PUSHED[c]
+    PAR, R = A.PAR, A.PUSHED[c]
     root, a, b = A.PUSHED_BY[c].root, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
     A.PUSHED_BY[c].root = LASTED if t == PAR.dt else ENDED
     mark_pair(A, a, b, 0)
@@ -47,13 +47,8 @@ def account_contact(A: Scene, c: int, t: float) -> None:
     PAR.restitution += normal
     PAR.frictional += tangential
     PAR.external += f * R.work
-    if f > 0.0 and COUNT.logged < A.LOG.shape[0]:
-        note(
-            A.LOG[COUNT.logged], a, b, R.start + 0.5 * f * R.length, f * R.normal + R.held, f * R.tangential,
-            R.nx, R.ny, R.px, R.py, f * R.change, R.gap,
-        )  # fmt: skip
-        A.LOG[COUNT.logged].duration = f * R.length
-        COUNT.logged += 1
+    if f > 0.0:
+        log_contact(A, c, f, f * R.length)
 
 
 @nonallocating

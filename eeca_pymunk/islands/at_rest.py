@@ -47,12 +47,6 @@ def stays_at_rest(A: Scene, i: int, last: float) -> bool:
 
 
 @nonallocating
-def note_motion(A: Scene, i: int) -> None:
-    """Set `rest` of body i, which impulses do not move: CHANGED if it was moved or has a velocity, else AWAKE."""
-    A.MEMBER[i].rest = AWAKE if unchanged(A, i) else CHANGED
-
-
-@nonallocating
 def renew_forces(A: Scene, c: int, stamp: float) -> None:
     """Set the stamp of the remembered forces of contact c, if they are of the last step, to that of the step
     `stamp`."""
@@ -74,8 +68,8 @@ def wake_supported(A: Scene) -> None:
             root = A.PUSHED_BY[c].root
             if root < 0 or MEMBER[root].rest == CHANGED:
                 continue
-            for side in range(2):
-                j = A.LINK[A.PUSHED_BY[c].b if side > 0 else A.PUSHED_BY[c].a].owner
+            for shape in (A.PUSHED_BY[c].a, A.PUSHED_BY[c].b):
+                j = A.LINK[shape].owner
                 other = A.STATE[j].island
                 if A.BODY[j].inv_mass > 0.0 and other >= 0 and MEMBER[other].rest == CHANGED:
                     MEMBER[root].rest, more = CHANGED, True
@@ -153,17 +147,24 @@ def mark_changed(A: Scene, root: int) -> None:
 
 
 @nonallocating
+def log_contact(A: Scene, c: int, part: float, duration: float) -> None:
+    """Log this part of the impulse of contact c of an interval, over this time from the start of the interval on."""
+    R, COUNT = A.PUSHED[c], A.COUNT
+    if COUNT.logged < A.LOG.shape[0]:
+        note(
+            A.LOG[COUNT.logged], A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, R.start + 0.5 * duration,
+            part * R.normal + R.held, part * R.tangential, R.nx, R.ny, R.px, R.py, part * R.change, R.gap,
+        )  # fmt: skip
+        A.LOG[COUNT.logged].duration = duration
+        COUNT.logged += 1
+
+
+@nonallocating
 def report_at_rest(A: Scene, c: int) -> None:
     """At the end of a step: log the impulse of contact c of an island at rest, and renew its remembered forces."""
-    R = A.PUSHED[c]
     renew_forces(A, c, A.PAR.stamp)
-    if A.COUNT.logged < A.LOG.shape[0] and (R.normal != 0.0 or R.tangential != 0.0):
-        note(
-            A.LOG[A.COUNT.logged], A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0.5 * A.PAR.dt, R.normal, R.tangential,
-            R.nx, R.ny, R.px, R.py, R.change, R.gap,
-        )  # fmt: skip
-        A.LOG[A.COUNT.logged].duration = A.PAR.dt
-        A.COUNT.logged += 1
+    if A.PUSHED[c].normal != 0.0 or A.PUSHED[c].tangential != 0.0:
+        log_contact(A, c, 1.0, A.PAR.dt)
 
 
 @nonallocating

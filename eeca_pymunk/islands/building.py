@@ -14,7 +14,7 @@ from ..contacts.single import move_to
 from ..geometry.flight import norm
 from ..geometry.sides import half_width
 from ..model.bodies import AT_REST
-from ..model.contacts import LASTED
+from ..model.contacts import ENDED, LASTED
 from ..model.parameters.events import RESOLUTION, WORK_JOINTED
 from ..model.parameters.intervals import INTERVAL_DEPTH_WIDTH, TOUCH
 from ..model.parameters.rest import REST_RETRY
@@ -25,6 +25,7 @@ from ..pairs.rules import barred, law
 from .accounting import end_interval
 from .at_rest import wake_changed
 from .intervals import solve
+from .local import drop_contacts
 from .membership import approach, budget_spent, fixed_support, jointed, largest_island, members, persists, unite
 from .partial_rest import rests_in_part
 from .penetration import hold_penetrating
@@ -137,12 +138,7 @@ def build_islands(A: Scene) -> int:
     wanted *= 2 if COUNT.may_support > 0 else 1
     if kept + wanted > A.PUSHED.shape[0] or 2 * (COUNT.remembered + wanted) > A.KEYS.shape[0]:
         return PUSHES_FULL
-    kept = 0
-    for c in range(COUNT.pushes):
-        if A.PUSHED_BY[c].root >= 0:
-            A.PUSHED_BY[kept], A.PUSHED[kept] = A.PUSHED_BY[c], A.PUSHED[c]
-            kept += 1
-    COUNT.pushes = kept
+    drop_contacts(A, LASTED, ENDED)
     # A solve may make another body the root of its island, which then would be solved again.
     roots = 0
     for i in range(n):

@@ -23,7 +23,7 @@ from ..pairs.lists import mark_pair
 from ..rows.energy import scale_to_lose
 from .candidates import sweeps_of
 from .depths import times_too_long
-from .local import clear_places, local_island, number_bodies, open_contacts, own_contacts
+from .local import clear_places, contacts_of, local_island, number_bodies, open_contacts, own_contacts
 
 
 @inlined
@@ -38,24 +38,23 @@ def losses(A: Scene, c: int, t: float) -> tuple[float, float]:
 
 
 @nonallocating
-def gives(A: Scene, root: int, t: float) -> bool:
-    """Whether the contacts of an island have given energy up to instant t."""
+def gives(A: Scene, first: int, end: int, t: float) -> bool:
+    """Whether contacts [first, end) of an island have given energy up to instant t."""
     lost, size = 0.0, 0.0
-    for c in range(A.COUNT.pushes):
-        if A.PUSHED_BY[c].root == root:
-            normal, tangential = losses(A, c, t)
-            lost += normal + tangential
-            size += abs(normal) + abs(tangential)
+    for c in range(first, end):
+        normal, tangential = losses(A, c, t)
+        lost += normal + tangential
+        size += abs(normal) + abs(tangential)
     return lost < -REPAY_ROUND_OFF * size
 
 
 @kernel
-def pairs_of(A: Scene, root: int) -> IntArray:
-    """(p, 2) the pairs of shapes of an island's contacts."""
-    found, p = np.empty((A.COUNT.pushes, 2), np.int64), 0
-    for c in range(A.COUNT.pushes):
+def pairs_of(A: Scene, first: int, end: int) -> IntArray:
+    """(p, 2) the pairs of shapes of contacts [first, end)."""
+    found, p = np.empty((end - first, 2), np.int64), 0
+    for c in range(first, end):
         one = A.PUSHED_BY[c]
-        if one.root == root and (p == 0 or one.a != found[p - 1, 0] or one.b != found[p - 1, 1]):
+        if p == 0 or one.a != found[p - 1, 0] or one.b != found[p - 1, 1]:
             found[p, 0], found[p, 1] = one.a, one.b
             p += 1
     return found[:p]
@@ -65,11 +64,12 @@ def pairs_of(A: Scene, root: int) -> IntArray:
 def scale_impulses(A: Scene, root: int, t: float) -> None:
     """Scale the impulses of an island, whose bodies are at the start of its interval, so that they give no energy up to
     instant t: q in the docstring of the module, or 0."""
-    BODY, PULL, lost, square, start = A.BODY, A.PULL, 0.0, 0.0, t
-    for c in range(A.COUNT.pushes):
-        if A.PUSHED_BY[c].root == root:
-            normal, tangential = losses(A, c, t)
-            lost, start = lost + normal + tangential, A.PUSHED[c].start
+    BODY, PULL, lost, square = A.BODY, A.PULL, 0.0, 0.0
+    first, end = contacts_of(A, root)
+    start = A.PUSHED[first].start
+    for c in range(first, end):
+        normal, tangential = losses(A, c, t)
+        lost = lost + normal + tangential
     i = root
     while i >= 0:
         x, y, turn = BODY[i].ax - PULL[i, 0], BODY[i].ay - PULL[i, 1], BODY[i].angular - PULL[i, 2]
@@ -84,23 +84,20 @@ def scale_impulses(A: Scene, root: int, t: float) -> None:
         BODY[i].ay = PULL[i, 1] + q * (BODY[i].ay - PULL[i, 1])
         BODY[i].angular = PULL[i, 2] + q * (BODY[i].angular - PULL[i, 2])
         i = A.MEMBER[i].following
-    for c in range(A.COUNT.pushes):
-        if A.PUSHED_BY[c].root == root:
-            R = A.PUSHED[c]
-            R.normal, R.tangential, R.work, R.change = q * R.normal, q * R.tangential, q * R.work, q * R.change
-            R.un_before, R.un_after, R.ut_before, R.ut_after = 0.0, 0.0, 0.0, 0.0
+    for c in range(first, end):
+        R = A.PUSHED[c]
+        R.normal, R.tangential, R.work, R.change = q * R.normal, q * R.tangential, q * R.work, q * R.change
+        R.un_before, R.un_after, R.ut_before, R.ut_after = 0.0, 0.0, 0.0, 0.0
 
 
 @kernel
 def repay(A: Scene, root: int, t: float) -> None:
     """Before the interval of an island ends at instant t: if its contacts have given energy up to t, solve them again
     for the time up to t; if they become more, or move too far for one interval, scale their impulses."""
-    if not gives(A, root, t):
+    first, end = contacts_of(A, root)
+    if not gives(A, first, end, t):
         return
-    found, first, count = pairs_of(A, root), -1, 0
-    for c in range(A.COUNT.pushes):
-        if A.PUSHED_BY[c].root == root:
-            first, count = c if count == 0 else first, count + 1
+    found = pairs_of(A, first, end)
     start, s = A.PUSHED[first].start, t - A.PUSHED[first].start
     MINE = number_bodies(A, root)
     n = len(MINE)
@@ -115,10 +112,10 @@ def repay(A: Scene, root: int, t: float) -> None:
     spend(A, 2 * len(found), m, OUT[0].sweeps, OUT[0].direct)
     A.COUNT.solved += n
     A.COUNT.direct += OUT[0].direct
-    if m < 0 or m > count or times_too_long(A, isle, contacts, m, s) > INTERVAL_RETRY:
+    if m < 0 or m > end - first or times_too_long(A, isle, contacts, m, s) > INTERVAL_RETRY:
         scale_impulses(A, root, t)
         return
-    for c in range(first, first + count):
+    for c in range(first, end):
         A.PUSHED_BY[c].root = ENDED
         mark_pair(A, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0)
     open_contacts(A, isle, contacts, VN, m, first, start, s, np.zeros(len(isle.WHO), np.uint8))

@@ -139,6 +139,28 @@ def open_contacts(
 
 
 @nonallocating
+def contacts_of(A: Scene, root: int) -> tuple[int, int]:
+    """First row, and row after the last, of the contacts of an island in PUSHED; (0, 0) if it has none."""
+    first, count = 0, 0
+    for c in range(A.COUNT.pushes):
+        if A.PUSHED_BY[c].root == root:
+            first, count = c if count == 0 else first, count + 1
+    return first, first + count
+
+
+@nonallocating
+def drop_contacts(A: Scene, low: int, high: int) -> None:
+    """Remove the contacts from PUSHED whose `Pair.root` is `low` to `high`. The others keep their order: those of an
+    island, and of a pair, are next to each other."""
+    kept = 0
+    for c in range(A.COUNT.pushes):
+        if not low <= A.PUSHED_BY[c].root <= high:
+            A.PUSHED_BY[kept], A.PUSHED[kept] = A.PUSHED_BY[c], A.PUSHED[c]
+            kept += 1
+    A.COUNT.pushes = kept
+
+
+@nonallocating
 def own_contacts(A: Scene, root: int, first: int, m: int) -> None:
     """Let the m contacts that `open_contacts` has written from row `first` on be those of an island."""
     for c in range(first, first + m):

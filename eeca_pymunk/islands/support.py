@@ -143,8 +143,8 @@ def support(A: Scene) -> None:
             root = A.PUSHED_BY[c].root
             if root < 0 or not (MEMBER[root].new_forces == 1 if MEMBER[root].rest == AT_REST else all_moving):
                 continue
-            for side in range(2):
-                j = A.LINK[A.PUSHED_BY[c].b if side > 0 else A.PUSHED_BY[c].a].owner
+            for shape in (A.PUSHED_BY[c].a, A.PUSHED_BY[c].b):
+                j = A.LINK[shape].owner
                 other = STATE[j].island
                 if BODY[j].inv_mass > 0.0 and other != root and other >= 0 and MEMBER[other].rest == AT_REST:
                     MEMBER[other].loaded = 1

@@ -7,6 +7,7 @@ import numpy as np
 from ..arrays import IntArray
 from ..compiled import kernel, nonallocating
 from ..islands.accounting import account_contact, move_to_end
+from ..islands.local import drop_contacts
 from ..islands.membership import members
 from ..model.joint_steps import LINEAR
 from ..model.joints import Joints
@@ -47,17 +48,11 @@ def under_way(A: Scene, root: int) -> bool:
 
 @nonallocating
 def take_back(A: Scene, root: int) -> None:
-    """Forget the contacts of the interval that an island has begun. The others keep their order: those of an island,
-    and of a pair, are next to each other."""
-    kept = 0
+    """Forget the contacts of the interval that an island has begun."""
     for c in range(A.COUNT.pushes):
         if A.PUSHED_BY[c].root == root:
             mark_pair(A, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0)
-        else:
-            if kept < c:
-                A.PUSHED[kept], A.PUSHED_BY[kept] = A.PUSHED[c], A.PUSHED_BY[c]
-            kept += 1
-    A.COUNT.pushes = kept
+    drop_contacts(A, root, root)
 
 
 @kernel

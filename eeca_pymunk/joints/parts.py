@@ -21,31 +21,21 @@ def meets_limit(component: Component) -> bool:
 
 
 @nonallocating
-def begin_as_known(W: Workspace, part: int, left: float, cold: bool) -> tuple[int, int, float]:
-    """Let a part of a step, of which `left` is left, begin as the last solution took it: the joint whose limit it met,
-    the side of that, and the length of the part; -1, 0 and `left` if it met none, or if that is not known. cold:
-    without impulses, as rows are redundant."""
-    joint, link, component = W.J.JOINT, W.link, W.J.COMPONENT[W.s]
-    if part >= component.parts:
-        return -1, 0, left
-    k, side, when = component.part_limit[part], component.part_side[part], component.part_length[part]
-    if k < 0:
-        when = left
-    elif link[k].side != 0 or not when < left:
-        return -1, 0, left
-    for i in range(W.joints):
-        j = link[i].joint
-        for c in range(6):
-            W.J.LOCAL[link[i].body[c // 3]].lead[c % 3] = joint[j].past_led[c, part]
-        for r in range(0 if cold else link[i].rows):
-            W.J.HINGE[i].lam[r] = when * joint[j].past_push[r, part]
-    return k, side, when
-
-
-@nonallocating
 def begin_next(W: Workspace, S: Parts, cold: bool) -> None:
-    """Begin the next part as the last solution took it, with the search for the limit that it met, if any."""
-    S.limit, S.side, S.when = begin_as_known(W, S.part, S.left, cold)
+    """Begin the next part as the last solution took it, if that is known: with the search for the limit that it met, at
+    its instant, or to the end of the step if it met none. cold: without impulses, as rows are redundant."""
+    link, component, part = W.link, W.J.COMPONENT[W.s], S.part
+    S.limit, S.side, S.when = -1, 0, S.left
+    if part < component.parts:
+        k, when = component.part_limit[part], component.part_length[part]
+        if k < 0 or (link[k].side == 0 and when < S.left):
+            S.limit, S.side, S.when = k, component.part_side[part], S.left if k < 0 else when
+            for i in range(W.joints):
+                joint = W.J.JOINT[link[i].joint]
+                for c in range(6):
+                    W.J.LOCAL[link[i].body[c // 3]].lead[c % 3] = joint.past_led[c, part]
+                for r in range(0 if cold else link[i].rows):
+                    W.J.HINGE[i].lam[r] = S.when * joint.past_push[r, part]
     S.foreseen = 1 if S.limit >= 0 else 0
     S.low, S.high, S.secants, S.solved, S.hopped = 0.0, S.left, 0, 0.0, 0
     S.events += S.foreseen

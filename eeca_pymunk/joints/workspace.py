@@ -53,12 +53,12 @@ def measure_plan(J: Joints, ROOM: IntArray) -> bool:
 
 
 @kernel
-def plan_components(table: Table, BODY: Rows[Body], ROOM: IntArray, order: int) -> bool:
+def plan_components(table: Table, BODY: Rows[Body], ROOM: IntArray) -> bool:
     """Plan the components of the joints of `table`, whose other arrays contain zeros, for the bodies BODY (n,) of the
-    scene; order: of their steps. See `measure_plan`."""
+    scene. See `measure_plan`."""
     J = joints_of(table)
     J.OF[:] = -1
-    J.TALLY.order = order
+    J.TALLY.order = 4
     if J.JOINT.shape[0] > 0:
         bodies = together(BODY, J.PARTNER)
         J.TALLY.components = make_plan(bodies, J.JOINT, J.COMPONENT, J.JOINED, J.COUPLING, J.OF)
@@ -83,12 +83,11 @@ class JointMemory:
         self._room: IntArray = np.ones(len(_OF_ONE), np.int64)
         self._most: tuple[int, ...] = (1, 1, 1, 1, 2, 1)  # of one component so far
 
-    def plan(self, BODY: Rows[Body], JOINT: Rows[Joint], PARTNER: Rows[Body], order: int) -> Table:
+    def plan(self, BODY: Rows[Body], JOINT: Rows[Joint], PARTNER: Rows[Body]) -> Table:
         """The table of joints, `Joints`, with their plan; the last one is lost.
 
         Args:
             BODY: (n,) those of the scene.  JOINT: (j,), kept, not copied.  PARTNER: (x,), which joints cannot move.
-            order: 4 where nothing in a component dissipates, drives, or touches something; or 2.
         """
         j = len(JOINT)
         while True:
@@ -98,6 +97,6 @@ class JointMemory:
                 "COMPONENT": j, "JOINED": 2 * j, "COUPLING": j, "KEPT": j, "STEPPED": j,
             }  # fmt: skip
             table = self._layout.lay(counts | dict(zip(_OF_ONE, self._most, strict=True)), JOINT, PARTNER)
-            if plan_components(table, BODY, self._room, order):
+            if plan_components(table, BODY, self._room):
                 return table
             self._most = tuple(map(max, self._room.tolist(), self._most))

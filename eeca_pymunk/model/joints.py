@@ -153,7 +153,7 @@ class Tally(Record):
     """Counters of the components of a scene."""
 
     components: int
-    order: int  # 2 or 4
+    order: int  # of steps without dissipation, drives and contacts: 4, or 2
     worst: int  # status of the step
     answers: int  # linear system with which the component that is ready answers impulses, -1 for none
 

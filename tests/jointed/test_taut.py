@@ -208,7 +208,7 @@ def test_what_a_groove_answers_is_positive(force: float) -> None:
 @pytest.mark.parametrize("turned", [0.0, 2.0])
 def test_taut_is_what_pulls_hard(kind: int, turned: float) -> None:
     """Two rods end to end: a pull on their joint is stiff beside their moments if (h/4) h f r > I/2."""
-    J = joints_of(JointMemory().plan(rows(Body, 3), rows(Joint, 1), rows(Body, 0), 2))._replace(LOCAL=rows(BodyStep, 2))
+    J = joints_of(JointMemory().plan(rows(Body, 3), rows(Joint, 1), rows(Body, 0)))._replace(LOCAL=rows(BodyStep, 2))
     joint, link, local = J.JOINT[0], J.COUPLING[:1], J.LOCAL
     link[0].kind, link[0].body[:] = kind, (0, 1)
     apart = 0.0 if kind == PIVOT else 0.25
