@@ -170,8 +170,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     if OUT[0].residual > WEDGED * aim(ROWS, rows) and rubs(ROWS, rows):
         sweeps, direct = OUT[0].sweeps, OUT[0].direct
         slip_freely(ROWS, rows)
-        for z in range(rows):
-            L[z, 0] = L[z, 1] = 0.0
+        L[:] = 0.0
         velocities(problem, L, FITTED, V)
         status = solve_block(problem, L, V, owed, False, OUT)
         OUT[0].sweeps += sweeps

@@ -22,33 +22,21 @@ def place_row(
     Arms that are round-off of the point's coordinates (a circle about its centre of mass) become 0, so that
     frictionless impulses exert no torque on disks.
     """
-    a, b, nx, ny, friction = A[i], B[i], ROWS[i].nx, ROWS[i].ny, ROWS[i].friction
-    xa = px - POSE[a, 0]
-    ya = py - POSE[a, 1]
-    xb = px - POSE[b, 0]
-    yb = py - POSE[b, 1]
-    noise = 1e-15 * (abs(px) + abs(py))
-    arm = xa * ny - ya * nx
-    if abs(arm) <= 1e-15 * (abs(xa) + abs(ya)) + noise:
-        arm = 0.0
-    ROWS[i].arm_na = arm
-    arm = xb * ny - yb * nx
-    if abs(arm) <= 1e-15 * (abs(xb) + abs(yb)) + noise:
-        arm = 0.0
-    ROWS[i].arm_nb = arm
-    ROWS[i].arm_ta = xa * nx + ya * ny
-    ROWS[i].arm_tb = xb * nx + yb * ny
+    a, b, row = A[i], B[i], ROWS[i]
+    nx, ny, noise = row.nx, row.ny, 1e-15 * (abs(px) + abs(py))
+    xa, ya, xb, yb = px - POSE[a, 0], py - POSE[a, 1], px - POSE[b, 0], py - POSE[b, 1]
+    na, nb, ta, tb = xa * ny - ya * nx, xb * ny - yb * nx, xa * nx + ya * ny, xb * nx + yb * ny
+    na = 0.0 if abs(na) <= 1e-15 * (abs(xa) + abs(ya)) + noise else na
+    nb = 0.0 if abs(nb) <= 1e-15 * (abs(xb) + abs(yb)) + noise else nb
+    row.arm_na, row.arm_nb, row.arm_ta, row.arm_tb = na, nb, ta, tb
     mass = IM[a] + IM[b]
-    nn = mass + II[a] * ROWS[i].arm_na ** 2 + II[b] * ROWS[i].arm_nb ** 2
-    tt = mass + II[a] * ROWS[i].arm_ta ** 2 + II[b] * ROWS[i].arm_tb ** 2
-    nt = II[a] * ROWS[i].arm_na * ROWS[i].arm_ta + II[b] * ROWS[i].arm_nb * ROWS[i].arm_tb
-    ROWS[i].a_nn, ROWS[i].a_nt, ROWS[i].a_tt = nn, nt, tt
-    ROWS[i].k_n = 1.0 / nn
-    ROWS[i].k_t = 1.0 / tt
-    if friction > 0.0:
-        invert(ROWS[i], nn, nt, tt)
-    ROWS[i].target = 0.0
-    ROWS[i].wake = np.inf
+    nn, tt = mass + II[a] * na**2 + II[b] * nb**2, mass + II[a] * ta**2 + II[b] * tb**2
+    nt = II[a] * na * ta + II[b] * nb * tb
+    row.a_nn, row.a_nt, row.a_tt = nn, nt, tt
+    row.k_n, row.k_t = 1.0 / nn, 1.0 / tt
+    if row.friction > 0.0:
+        invert(row, nn, nt, tt)
+    row.target, row.wake = 0.0, np.inf
 
 
 @nonallocating
@@ -65,32 +53,23 @@ def invert(row: Row, nn: float, nt: float, tt: float) -> None:
 @nonallocating
 def normal_rate(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, i: int) -> float:
     """u_n of contact i at velocities V (k, 3)."""
-    a, b = A[i], B[i]
-    rate: float = (
-        ROWS[i].nx * (V[b, 0] - V[a, 0])
-        + ROWS[i].ny * (V[b, 1] - V[a, 1])
-        + (ROWS[i].arm_nb * V[b, 2] - ROWS[i].arm_na * V[a, 2])
-    )
-    return rate
+    a, b, row = A[i], B[i], ROWS[i]
+    turning = row.arm_nb * V[b, 2] - row.arm_na * V[a, 2]
+    return float(row.nx * (V[b, 0] - V[a, 0]) + row.ny * (V[b, 1] - V[a, 1]) + turning)
 
 
 @nonallocating
 def slip_rate(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, i: int) -> float:
     """The part of `tangent_rate` that is of the bodies."""
-    a, b = A[i], B[i]
-    rate: float = (
-        ROWS[i].nx * (V[b, 1] - V[a, 1])
-        - ROWS[i].ny * (V[b, 0] - V[a, 0])
-        + (ROWS[i].arm_tb * V[b, 2] - ROWS[i].arm_ta * V[a, 2])
-    )
-    return rate
+    a, b, row = A[i], B[i], ROWS[i]
+    turning = row.arm_tb * V[b, 2] - row.arm_ta * V[a, 2]
+    return float(row.nx * (V[b, 1] - V[a, 1]) - row.ny * (V[b, 0] - V[a, 0]) + turning)
 
 
 @nonallocating
 def tangent_rate(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, i: int) -> float:
     """u_t of contact i at velocities V (k, 3), surface velocities included."""
-    rate: float = slip_rate(A, B, ROWS, V, i) + ROWS[i].surface
-    return rate
+    return slip_rate(A, B, ROWS, V, i) + ROWS[i].surface
 
 
 @inlined

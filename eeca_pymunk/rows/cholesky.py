@@ -65,8 +65,7 @@ def assemble(
     for j in range(n):
         for p in range(3):
             DIAGONAL[j, p, p] = 1.0
-    ja = np.empty(3)
-    jb = np.empty(3)
+    ja, jb = np.empty(3), np.empty(3)
     for i in range(m):
         a, b, nx, ny = A[i], B[i], ROWS[i].nx, ROWS[i].ny
         for kind in range(2):
@@ -74,22 +73,14 @@ def assemble(
                 if held[i] == 0:
                     continue
                 weight = R * ROWS[i].k_n
-                ja[0] = -nx
-                ja[1] = -ny
-                ja[2] = -ROWS[i].arm_na
-                jb[0] = nx
-                jb[1] = ny
-                jb[2] = ROWS[i].arm_nb
+                ja[0], ja[1], ja[2] = -nx, -ny, -ROWS[i].arm_na
+                jb[0], jb[1], jb[2] = nx, ny, ROWS[i].arm_nb
             else:
                 if stuck[i] == 0:
                     continue
                 weight = R * ROWS[i].k_t
-                ja[0] = ny
-                ja[1] = -nx
-                ja[2] = -ROWS[i].arm_ta
-                jb[0] = -ny
-                jb[1] = nx
-                jb[2] = ROWS[i].arm_tb
+                ja[0], ja[1], ja[2] = ny, -nx, -ROWS[i].arm_ta
+                jb[0], jb[1], jb[2] = -ny, nx, ROWS[i].arm_tb
             for p in range(3):
                 ja[p] *= SCALE[a, p]
                 jb[p] *= SCALE[b, p]
@@ -104,10 +95,8 @@ def assemble(
                     for q in range(3):
                         DIAGONAL[k, p, q] += weight * jb[p] * jb[q]
             if a < n and b < n:
-                low = min(place[a], place[b])
-                high = max(place[a], place[b])
-                s = columns[low]
-                e = columns[low + 1]
+                low, high = min(place[a], place[b]), max(place[a], place[b])
+                s, e = columns[low], columns[low + 1]
                 while s < e:
                     h = (s + e) // 2
                     if rows[h] < high:
@@ -126,26 +115,17 @@ def assemble(
 def factorise(n: int, factor: Factor) -> None:
     """Left-looking Cholesky factorisation in place: DIAGONAL gets lower triangles, BELOW the blocks under them."""
     columns, rows, D, X = factor.columns, factor.rows, factor.DIAGONAL, factor.BELOW
-    head = np.full(n, -1, np.int64)
-    after = np.full(n, -1, np.int64)
+    head, after, where = np.full(n, -1, np.int64), np.full(n, -1, np.int64), np.full(n, -1, np.int64)
     first = np.zeros(n, np.int64)  # next block of a column that is still to be used
-    where = np.full(n, -1, np.int64)
     for j in range(n):
         for q in range(columns[j], columns[j + 1]):
             where[rows[q]] = q
         k = head[j]
         while k != -1:
-            follower = after[k]
-            f = first[k]
-            x00 = X[f, 0, 0]
-            x01 = X[f, 0, 1]
-            x02 = X[f, 0, 2]
-            x10 = X[f, 1, 0]
-            x11 = X[f, 1, 1]
-            x12 = X[f, 1, 2]
-            x20 = X[f, 2, 0]
-            x21 = X[f, 2, 1]
-            x22 = X[f, 2, 2]
+            follower, f = after[k], first[k]
+            x00, x01, x02 = X[f, 0, 0], X[f, 0, 1], X[f, 0, 2]
+            x10, x11, x12 = X[f, 1, 0], X[f, 1, 1], X[f, 1, 2]
+            x20, x21, x22 = X[f, 2, 0], X[f, 2, 1], X[f, 2, 2]
             D[j, 0, 0] -= x00 * x00 + x01 * x01 + x02 * x02
             D[j, 1, 0] -= x10 * x00 + x11 * x01 + x12 * x02
             D[j, 1, 1] -= x10 * x10 + x11 * x11 + x12 * x12
@@ -155,9 +135,7 @@ def factorise(n: int, factor: Factor) -> None:
             for q in range(f + 1, columns[k + 1]):
                 t = where[rows[q]]
                 for p in range(3):
-                    y0 = X[q, p, 0]
-                    y1 = X[q, p, 1]
-                    y2 = X[q, p, 2]
+                    y0, y1, y2 = X[q, p, 0], X[q, p, 1], X[q, p, 2]
                     X[t, p, 0] -= y0 * x00 + y1 * x01 + y2 * x02
                     X[t, p, 1] -= y0 * x10 + y1 * x11 + y2 * x12
                     X[t, p, 2] -= y0 * x20 + y1 * x21 + y2 * x22
@@ -169,24 +147,18 @@ def factorise(n: int, factor: Factor) -> None:
             k = follower
         # B >= 1 in exact arithmetic; for large R round-off may violate that.
         d00 = math.sqrt(max(D[j, 0, 0], 1e-3))
-        d10 = D[j, 1, 0] / d00
-        d20 = D[j, 2, 0] / d00
+        d10, d20 = D[j, 1, 0] / d00, D[j, 2, 0] / d00
         d11 = math.sqrt(max(D[j, 1, 1] - d10 * d10, 1e-3))
         d21 = (D[j, 2, 1] - d20 * d10) / d11
         d22 = math.sqrt(max(D[j, 2, 2] - d20 * d20 - d21 * d21, 1e-3))
-        D[j, 0, 0] = d00
-        D[j, 1, 0] = d10
-        D[j, 2, 0] = d20
-        D[j, 1, 1] = d11
-        D[j, 2, 1] = d21
-        D[j, 2, 2] = d22
+        D[j, 0, 0], D[j, 1, 0], D[j, 2, 0] = d00, d10, d20
+        D[j, 1, 1], D[j, 2, 1], D[j, 2, 2] = d11, d21, d22
         for q in range(columns[j], columns[j + 1]):
             for p in range(3):
                 y0 = X[q, p, 0] / d00
                 y1 = (X[q, p, 1] - y0 * d10) / d11
                 X[q, p, 2] = (X[q, p, 2] - y0 * d20 - y1 * d21) / d22
-                X[q, p, 0] = y0
-                X[q, p, 1] = y1
+                X[q, p, 0], X[q, p, 1] = y0, y1
         if columns[j] < columns[j + 1]:
             first[j] = columns[j]
             r = rows[columns[j]]

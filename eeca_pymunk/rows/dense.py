@@ -68,29 +68,19 @@ def matrix_free(problem: Problem, slip: FloatArray, at: IntArray, kind: IntArray
     J = np.empty((N, 8))  # rows: n or t with arms a, b; then the columns' direction and arms
     for i in range(N):
         c = at[i]
-        nx, ny = ROWS[c].nx, ROWS[c].ny
+        row, nx, ny = ROWS[c], ROWS[c].nx, ROWS[c].ny
         if kind[i] == 0:
-            J[i, 0] = nx
-            J[i, 1] = ny
-            J[i, 2] = ROWS[c].arm_na
-            J[i, 3] = ROWS[c].arm_nb
-            J[i, 4] = nx - slip[c] * ny
-            J[i, 5] = ny + slip[c] * nx
-            J[i, 6] = ROWS[c].arm_na + slip[c] * ROWS[c].arm_ta
-            J[i, 7] = ROWS[c].arm_nb + slip[c] * ROWS[c].arm_tb
+            J[i, 0], J[i, 1], J[i, 2], J[i, 3] = nx, ny, row.arm_na, row.arm_nb
+            J[i, 4], J[i, 6] = nx - slip[c] * ny, row.arm_na + slip[c] * row.arm_ta
+            J[i, 5], J[i, 7] = ny + slip[c] * nx, row.arm_nb + slip[c] * row.arm_tb
         else:
-            J[i, 0] = -ny
-            J[i, 1] = nx
-            J[i, 2] = ROWS[c].arm_ta
-            J[i, 3] = ROWS[c].arm_tb
+            J[i, 0], J[i, 1], J[i, 2], J[i, 3] = -ny, nx, row.arm_ta, row.arm_tb
             for k in range(4):
                 J[i, 4 + k] = J[i, k]
     for i in range(N):
         for j in range(N):
+            a, b, w = A[at[i]], B[at[i]], 0.0
             along = J[i, 0] * J[j, 4] + J[i, 1] * J[j, 5]
-            a = A[at[i]]
-            b = B[at[i]]
-            w = 0.0
             if a == A[at[j]]:
                 w += IM[a] * along + II[a] * J[i, 2] * J[j, 6]
             elif a == B[at[j]]:
@@ -164,12 +154,10 @@ def unknowns(
         if shared and stuck[i] == 2:
             stuck[i] = 0
             slip[i] = -min(ROWS[i].un + ROWS[i].target, 0.0) / ROWS[i].ut
-        at[N] = i
-        kind[N] = 0
+        at[N], kind[N] = i, 0
         N += 1
         if stuck[i] != 0:
-            at[N] = i
-            kind[N] = 1
+            at[N], kind[N] = i, 1
             N += 1
         else:
             L[i, 1] = slip[i] * L[i, 0]
@@ -183,20 +171,12 @@ def newton(
     """Solve on the active contacts of L, as `polish.polish_free`, with the same arguments and results. `shared` as in
     `unknowns`."""
     A, B, ROWS, m = problem.A, problem.B, problem.ROWS, problem.m
-    held = np.empty(m, np.int64)
-    stuck = np.empty(m, np.int64)
-    slip = np.empty(m)
-    rest = np.empty(m)
-    classify(A, B, ROWS, L, V, m, held, stuck, slip, rest)
-    at = np.empty(2 * m, np.int64)
-    kind = np.empty(2 * m, np.int64)
+    held, stuck, slip, rest = classify(A, B, ROWS, L, V, m)
+    at, kind = np.empty(2 * m, np.int64), np.empty(2 * m, np.int64)
     N = unknowns(ROWS, L, m, held, stuck, slip, shared, at, kind)
-    W = np.empty((N, N))
-    order = np.empty(N, np.int64)
+    W, order, r, x = np.empty((N, N)), np.empty(N, np.int64), np.empty(N), np.empty(N)
     matrix(problem, slip, at, kind, N, W)
     decompose(W, N, order)
-    r = np.empty(N)
-    x = np.empty(N)
     velocities(problem, L, FREE, V)
     worst = np.inf
     for done in range(passes + 1):

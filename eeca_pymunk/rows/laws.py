@@ -25,8 +25,7 @@ from .columns import as_columns, breach
 from .conjugate import iterate
 from .coulomb import slip_freely
 from .homotopy import follow_homotopy
-from .inplace import copy
-from .sweeps import push, sweep, velocities
+from .sweeps import push, restore, sweep, velocities
 
 
 @nonallocating
@@ -73,8 +72,7 @@ def solve_columns(
         FREE = V.copy()
         push(problem, L, -1.0, FREE)
         if not follow_homotopy(problem, L, V, FREE, False):
-            for i in range(len(L)):
-                L[i, 0] = L[i, 1] = 0.0
+            L[:] = 0.0
             velocities(problem, L, FREE, V)
             if not follow_homotopy(problem, L, V, FREE, True):
                 break
@@ -86,20 +84,17 @@ def solve_columns(
         count_sweeps(problem, done)
         if worst < best:
             best = worst
-            copy(L0, L)
-            copy(V0, V)
+            restore(L0, V0, L, V)
         if abs(worst - before) <= 0.1 * worst:
             break
         before = worst
     if worst > tolerance:
-        copy(L, L0)
-        copy(V, V0)
+        restore(L, V, L0, V0)
         before = breach(problem, L, V)
         worst = sweep_columns(problem, L, V, tolerance, most)
         if not breach(problem, L, V) <= 2.0 * before:
             # Sweeps diverge where friction could open contacts.
-            copy(L, L0)
-            copy(V, V0)
+            restore(L, V, L0, V0)
             worst = before
     return worst
 
@@ -111,8 +106,7 @@ def solve_wedged(
     """`solve_columns` without friction, from no impulses of contacts."""
     slip_freely(problem.ROWS, problem.m)
     push(problem, L, -1.0, V)
-    for i in range(problem.m):
-        L[i, 0] = L[i, 1] = 0.0
+    L[: problem.m] = 0.0
     push(problem, L, 1.0, V)
     return solve_columns(problem, L, V, tolerance, COLUMN_SWEEPS, most, work)
 

@@ -43,9 +43,7 @@ def dissect(POSE: FloatArray, n: int, start: IntArray, other: IntArray, place: I
     """Set place (n,), the position of each body in the order of elimination, from the poses POSE (k, 3) of the bodies
     and their neighbours (`neighbours`). A set of bodies is divided at the mean of the longer side of its box; those
     left of it with a neighbour on the right are the separator, which is eliminated after both parts."""
-    ids = np.empty(n, np.int64)
-    end = n
-    count = 0
+    ids, end, count = np.empty(n, np.int64), n, 0
     for i in range(n):
         if start[i + 1] - start[i] > LATE_NEIGHBOURS:
             end -= 1
@@ -53,29 +51,18 @@ def dissect(POSE: FloatArray, n: int, start: IntArray, other: IntArray, place: I
         else:
             ids[count] = i
             count += 1
-    side = np.zeros(n, np.int64)
-    right = np.empty(n, np.int64)
-    stack = np.empty((128, 2), np.int64)
-    stack[0, 0] = 0
-    stack[0, 1] = count
+    side, right, stack = np.zeros(n, np.int64), np.empty(n, np.int64), np.empty((128, 2), np.int64)
+    stack[0, 0], stack[0, 1] = 0, count
     top, stamp = 1, 0
     while top > 0:
         # The range [low, high) of ids gets the last free places: its separator first, then its right part.
         top -= 1
-        low = stack[top, 0]
-        high = stack[top, 1]
-        x0 = y0 = np.inf
-        x1 = y1 = -np.inf
-        x = y = 0.0
+        low, high = stack[top, 0], stack[top, 1]
+        x0, y0, x1, y1, x, y = np.inf, np.inf, -np.inf, -np.inf, 0.0, 0.0
         for k in range(low, high):
-            px = POSE[ids[k], 0]
-            py = POSE[ids[k], 1]
-            x0 = min(x0, px)
-            x1 = max(x1, px)
-            y0 = min(y0, py)
-            y1 = max(y1, py)
-            x += px
-            y += py
+            px, py = POSE[ids[k], 0], POSE[ids[k], 1]
+            x0, x1, y0, y1 = min(x0, px), max(x1, px), min(y0, py), max(y1, py)
+            x, y = x + px, y + py
         if high - low <= DISSECTION_LEAF or top > 120 or not max(x1 - x0, y1 - y0) > 0.0:
             for k in range(high - 1, low - 1, -1):
                 end -= 1
@@ -86,8 +73,7 @@ def dissect(POSE: FloatArray, n: int, start: IntArray, other: IntArray, place: I
         stamp += 2
         for k in range(low, high):
             side[ids[k]] = stamp if POSE[ids[k], axis] <= mean else stamp + 1
-        left = low
-        rights = 0
+        left, rights = low, 0
         for k in range(low, high):
             i = ids[k]
             if side[i] == stamp + 1:
@@ -107,12 +93,10 @@ def dissect(POSE: FloatArray, n: int, start: IntArray, other: IntArray, place: I
         for k in range(rights):
             ids[left + k] = right[k]
         if left > low:
-            stack[top, 0] = low
-            stack[top, 1] = left
+            stack[top, 0], stack[top, 1] = low, left
             top += 1
         if rights > 0:
-            stack[top, 0] = left
-            stack[top, 1] = left + rights
+            stack[top, 0], stack[top, 1] = left, left + rights
             top += 1
 
 
@@ -123,15 +107,11 @@ def pattern(n: int, start: IntArray, other: IntArray, place: IntArray) -> tuple[
     body = np.empty(n, np.int64)
     for i in range(n):
         body[place[i]] = i
-    head = np.full(n, -1, np.int64)
-    after = np.full(n, -1, np.int64)
-    mark = np.full(n, -1, np.int64)
-    columns = np.zeros(n + 1, np.int64)
-    room = 16 * n + 64
+    head, after, mark = np.full(n, -1, np.int64), np.full(n, -1, np.int64), np.full(n, -1, np.int64)
+    columns, room = np.zeros(n + 1, np.int64), 16 * n + 64
     rows = np.empty(room, np.int64)
     for j in range(n):
-        first = columns[j]
-        last = first
+        first = last = columns[j]
         mark[j] = j
         if first + n - j > room:
             room = 2 * room + n

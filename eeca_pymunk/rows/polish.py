@@ -47,22 +47,19 @@ def share(A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, m: int) -> N
             L[j, 1] = beta * (L[j, 0] / lam)
 
 
-@nonallocating
+@kernel
 def classify(
-    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, m: int, held: IntArray, stuck: IntArray,
-    slip: FloatArray, rest: FloatArray,
-) -> None:  # fmt: skip
-    """Classify contacts by their impulses, into (m,): held[i] = 1 where lam > 0; of these stuck[i] = 1 where u_t is to
-    be 0, 2 where it is to be rest[i], length/time; else 0, and beta = slip[i] lam.
+    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, m: int
+) -> tuple[IntArray, IntArray, FloatArray, FloatArray]:
+    """held, stuck, slip and rest (m,) of contacts, by their impulses: held[i] = 1 where lam > 0; of these stuck[i] = 1
+    where u_t is to be 0, 2 where it is to be rest[i], length/time; else 0, and beta = slip[i] lam.
 
     Where energy limits friction, beta (u_t- + u_t+) = -lam (u_n- + b): rest is that u_t+.
     """
+    held, stuck, slip, rest = np.zeros(m, np.int64), np.zeros(m, np.int64), np.zeros(m), np.zeros(m)
     for i in range(m):
         lam, beta, mu = L[i, 0], L[i, 1], ROWS[i].friction
         held[i] = 1 if lam > 0.0 else 0
-        stuck[i] = 0
-        slip[i] = 0.0
-        rest[i] = 0.0
         if lam <= 0.0 or mu <= 0.0:
             continue
         if abs(beta) < mu * lam * (1.0 - 1e-12):
@@ -76,6 +73,7 @@ def classify(
                 rest[i] = -ROWS[i].ut - loss / beta
         elif beta != 0.0:
             slip[i] = mu if beta > 0.0 else -mu
+    return held, stuck, slip, rest
 
 
 @nonallocating
@@ -110,20 +108,13 @@ def polish_free(
         The residual velocity before the impulses were clamped, and how many were clamped.
     """
     A, B, ROWS, IM, II, _, n, m = problem
-    held = np.empty(m, np.int64)
-    stuck = np.empty(m, np.int64)
-    slip = np.empty(m)
-    rest = np.empty(m)
     share(A, B, ROWS, L, m)
-    classify(A, B, ROWS, L, V, m, held, stuck, slip, rest)
+    held, stuck, slip, rest = classify(A, B, ROWS, L, V, m)
     SCALE, factor = roots_of(IM, II), make_factor(A, B, m, n, held, problem.POSE)
     place = factor.place
     assemble(A, B, ROWS, m, n, held, stuck, SCALE, R, factor)
     factorise(n, factor)
-    f = np.empty((n, 3))
-    dv = np.zeros((len(IM), 3))
-    r = np.zeros((m, 2))
-    worst = np.inf
+    f, dv, r, worst = np.empty((n, 3)), np.zeros((len(IM), 3)), np.zeros((m, 2)), np.inf
     for done in range(passes + 1):
         last = worst
         worst = 0.0
