@@ -10,6 +10,7 @@ from __future__ import annotations
 from ..compiled import kernel, nonallocating
 from ..geometry.flight import norm, pose
 from ..geometry.gap import gap
+from ..geometry.sides import smaller
 from ..islands.candidates import travel_bound
 from ..islands.membership import approach, unite
 from ..model.joints import Joints
@@ -50,7 +51,7 @@ def join_all(A: Scene) -> bool:
             moves = BODY[j].inv_mass > 0.0
             if (moves and o < s) or barred(A.RULE, s, o):
                 continue
-            touch = TOUCH * min(A.SHAPE[s].extent, A.SHAPE[o].extent)
+            touch = TOUCH * smaller(A, s, o)
             g = approach(A, s, o, 0.0)[0]
             if g <= travel_bound(A, i, dt) + travel_bound(A, j, dt) + touch:
                 unite(A, i, j if moves else i)
@@ -93,7 +94,7 @@ def missed_bodies(A: Scene) -> int:
                 o = int(A.POOL[w])
                 if A.FLAG[w] != 0 or barred(A.RULE, s, o):
                     continue
-                small = min(A.SHAPE[s].extent, A.SHAPE[o].extent)
+                small = smaller(A, s, o)
                 if gap(A, s, o, dt)[0] < -TOUCH * small:
                     into += 1
         if into > 0:

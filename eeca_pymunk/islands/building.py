@@ -12,7 +12,7 @@ from ..arrays import IntArray
 from ..compiled import kernel, nonallocating
 from ..contacts.single import move_to
 from ..geometry.flight import norm
-from ..geometry.sides import half_width
+from ..geometry.sides import half_width, smaller
 from ..model.bodies import AT_REST
 from ..model.contacts import ENDED, LASTED
 from ..model.parameters.events import RESOLUTION, WORK_JOINTED
@@ -49,7 +49,7 @@ def join_neighbours(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
             busy = A.MEMBER[i].busy > 0 or A.MEMBER[j].busy > 0
             if law(A.SHAPE, A.RULE, s, o)[0] >= 1.0 and not busy:
                 continue
-            small = min(A.SHAPE[s].extent, A.SHAPE[o].extent)
+            small = smaller(A, s, o)
             reach = TOUCH * small
             if busy:
                 speed = norm(BODY[i].vx, BODY[i].vy) + norm(BODY[j].vx, BODY[j].vy)

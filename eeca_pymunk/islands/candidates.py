@@ -9,6 +9,7 @@ from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..contacts.targets import hardly_bounces
 from ..geometry.flight import norm
+from ..geometry.sides import smaller
 from ..model.contacts import Row
 from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import (
@@ -61,7 +62,7 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                     continue
                 if barred(A.RULE, s, o):
                     continue
-                small = min(A.SHAPE[s].extent, A.SHAPE[o].extent)
+                small = smaller(A, s, o)
                 busy = A.MEMBER[i].busy > 0 or A.MEMBER[j].busy > 0
                 speed = own + norm(BODY[j].vx, BODY[j].vy) + abs(BODY[j].spin) * BODY[j].extent
                 reach = 1.1 * (speed * h + A.PAR.pulled * h * h) + TOUCH * small
@@ -155,7 +156,7 @@ def interval_within_way(A: Scene, found: IntArray, h: float) -> float:
     BODY, LINK, rate = A.BODY, A.LINK, 0.0
     for c in range(found.shape[0]):
         i, j = LINK[found[c, 0]].owner, LINK[found[c, 1]].owner
-        small = min(A.SHAPE[found[c, 0]].extent, A.SHAPE[found[c, 1]].extent)
+        small = smaller(A, found[c, 0], found[c, 1])
         way = norm(BODY[j].vx - BODY[i].vx, BODY[j].vy - BODY[i].vy)
         rate = max(rate, way / (INTERVAL_WAY * small))
         for s in (found[c, 0], found[c, 1]):
@@ -174,11 +175,11 @@ def excess_way(
     Args:
         P, Q, KEY: local bodies and keys of the contacts.  V, VN: (k, 3) velocities at the start and the end.
     """
-    SHAPE, far, shapes = A.SHAPE, 0.0, len(A.SHAPE)
+    far, shapes = 0.0, len(A.SHAPE)
     for z in range(m):
         pair = KEY[z] >> 1
         a, b, p, q = pair // shapes, pair % shapes, P[z], Q[z]
-        small = min(SHAPE[a].extent, SHAPE[b].extent)
+        small = smaller(A, a, b)
         x = V[q, 0] + VN[q, 0] - V[p, 0] - VN[p, 0]
         y = V[q, 1] + VN[q, 1] - V[p, 1] - VN[p, 1]
         far = max(far, 0.5 * h * norm(x, y) / (INTERVAL_WAY * small))

@@ -8,6 +8,7 @@ from ..compiled.records import Rows
 from ..contacts.memory import find, key_of
 from ..contacts.targets import hardly_bounces
 from ..geometry.gap import gap_at
+from ..geometry.sides import smaller
 from ..model.bodies import AT_REST
 from ..model.contacts import Force
 from ..model.parameters.events import WORK_JOINTED
@@ -162,7 +163,7 @@ def persists(A: Scene, a: int, b: int, t: float, lossy: bool) -> bool:
     e = law(A.SHAPE, A.RULE, a, b)[0]
     g, u, closing, present, mass = approach(A, a, b, t)
     h = A.PAR.dt - t
-    small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
+    small = smaller(A, a, b)
     force, load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], a, b, A.PAR.stamp - 1.0)
     if e >= 1.0 and not lossy:
         limit = (ELASTIC_REST_ON if force > 0.0 else ELASTIC_REST) * A.PAR.pulled * A.PAR.dt

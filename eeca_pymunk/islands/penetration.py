@@ -4,6 +4,7 @@ island would correct the overlap; they are in one until it is corrected."""
 from __future__ import annotations
 
 from ..compiled import kernel
+from ..geometry.sides import smaller
 from ..model.parameters.events import INITIAL_PENETRATION
 from ..model.scene import Scene
 from ..pairs.lists import far_apart
@@ -35,7 +36,7 @@ def hold_penetrating(A: Scene) -> None:
                 if o < A.LIST.shape[0] and far_apart(A, s, o, 0.0, 0.0):
                     continue
                 g, u, _, _, _ = approach(A, s, o, 0.0)
-                if g >= -INITIAL_PENETRATION * min(A.SHAPE[s].extent, A.SHAPE[o].extent) or u * dt > -g:
+                if g >= -INITIAL_PENETRATION * smaller(A, s, o) or u * dt > -g:
                     continue
                 A.MEMBER[i].placed, A.COUNT.any_placed = placed, 1
                 if -u <= A.PAR.pulled * dt:

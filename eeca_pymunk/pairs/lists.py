@@ -11,6 +11,7 @@ import math
 
 from ..compiled import nonallocating
 from ..geometry.gap import gap_round_off
+from ..geometry.sides import smaller
 from ..model.parameters.impulses import FACE_ROUND_OFF, ROCKING
 from ..model.scene import Scene
 from .rules import law
@@ -125,5 +126,5 @@ def face_tolerance(A: Scene, a: int, b: int) -> float:
     to which both ends of a common face touch at once."""
     tolerance = FACE_ROUND_OFF * gap_round_off(A, a, b)
     if law(A.SHAPE, A.RULE, a, b)[0] < 1.0:
-        tolerance = max(tolerance, ROCKING * min(A.SHAPE[a].extent, A.SHAPE[b].extent))
+        tolerance = max(tolerance, ROCKING * smaller(A, a, b))
     return tolerance
