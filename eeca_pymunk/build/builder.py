@@ -66,11 +66,7 @@ class Builder:
             if not linker(name, portable):
                 raise RuntimeError(f"no linker for {name}: pip install ziglang")
         with self._bar, Workers(self.workers) as workers:
-            with self.stage("compiling kernels"):
-                import_kernels()
-                calls = {name: module.entry_call(name) for name in ENTRIES}
-                after = _MACHINE_CODE * len(names)
-                found = gather(calls.values(), workers, lambda done, known: self._show(done, known + after))
+            calls, found = self._parts(workers, _MACHINE_CODE * len(names))
             groups = split(calls, found)
             check_unchanged()
             built = []
@@ -87,11 +83,7 @@ class Builder:
     def host_object(self) -> bytes:
         """Machine code of all kernels for this processor, as one object file to be loaded into a process."""
         with self._bar, Workers(self.workers) as workers:
-            with self.stage("compiling kernels"):
-                import_kernels()
-                calls = {name: module.entry_call(name) for name in ENTRIES}
-                told = lambda done, known: self._show(done, known + _MACHINE_CODE)  # noqa: E731
-                found = gather(calls.values(), workers, told)
+            calls, found = self._parts(workers, _MACHINE_CODE)
             order = sorted(found, key=symbol)
             group = Group(
                 [(name, found[call].returned) for name, call in calls.items()], [found[c].bitcode for c in order]
@@ -104,6 +96,14 @@ class Builder:
                     code = module.host_object_of(group)
                     store.write("objects", key, code)
         return code
+
+    def _parts(self, workers: Workers, after: int) -> tuple[dict[str, Call], dict[Call, Part]]:
+        """The calls of all entries, and the parts of these and of all that they call; `after`: weight of what follows
+        in the progress bar."""
+        with self.stage("compiling kernels"):
+            import_kernels()
+            calls = {name: module.entry_call(name) for name in ENTRIES}
+            return calls, gather(calls.values(), workers, lambda done, known: self._show(done, known + after))
 
     def _show(self, done: int, total: int) -> None:
         self._bar.total, self._bar.n = total, done

@@ -26,16 +26,8 @@ STATE_FIELDS = _FIELDS.BODY_ID | _STATE
 POSITION, ANGLE, VELOCITY = slice(0, 2), 2, slice(3, 5)
 ANGULAR_VELOCITY, FORCE, TORQUE = 5, slice(6, 8), 8
 COLUMN_NAMES = (
-    "position.x",
-    "position.y",
-    "angle",
-    "velocity.x",
-    "velocity.y",
-    "angular_velocity",
-    "force.x",
-    "force.y",
-    "torque",
-)
+    "position.x", "position.y", "angle", "velocity.x", "velocity.y", "angular_velocity", "force.x", "force.y", "torque",
+)  # fmt: skip
 
 
 def moving(space: pymunk.Space) -> list[pymunk.Body]:

@@ -208,10 +208,6 @@ class Crossing:
             to, of = zip(*same, strict=True)
             self.STATES[LEFT, to] = before.STATES[LEFT, of]
 
-    def with_turns(self, status: int) -> int:
-        """Write the end of the step to ENDS with angles and spins, if they were left out; returns its status bits."""
-        return status if status & TURNS else self.write_ends(status | TURNS)
-
     def void_predictions(self) -> None:
         """Void all predictions: in the next step all bodies count as placed by the program, and may overlap others."""
         due = self.BODY["due"]

@@ -7,7 +7,6 @@ before.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import Any
 from weakref import WeakSet
 
@@ -31,10 +30,6 @@ class Edits:
         """Return the rows, and clear them."""
         edited, self.some = self.some, set()
         return edited
-
-    def add(self, rows: Iterable[int]) -> None:
-        """Record these rows as edited."""
-        self.some.update(rows)
 
     def forget(self, row: int) -> None:
         """Remove a row: the last setting was not an edit by the program."""

@@ -77,10 +77,6 @@ class JointRows(Listing):
         self._last_awake: tuple[Sequence[pymunk.Constraint], list[pymunk.Constraint]] = (), []
         self.parted: frozenset[tuple[pymunk.Body, pymunk.Body]] | None = None
 
-    def is_of(self, space: pymunk.Space) -> bool:
-        """Whether the space has these constraints now."""
-        return self.items == list(space.constraints)
-
     @cached_property
     def _at(self) -> dict[int, list[int]]:
         """The joints of each body (row)."""
@@ -98,7 +94,7 @@ class JointRows(Listing):
         try:
             found = {j: read(self.items[j]) for j in sorted(edited)}
         except ValueError:
-            self._edits.add(edited)
+            self._edits.some.update(edited)
             raise
         others = False
         for j, values in found.items():

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 import pymunk
 
 from ..reentry import BUSY
-from ..transfer import EVENTS
+from ..transfer import EVENTS, TURNS
 from .bodies import ANGULAR_VELOCITY, VELOCITY
 from .joints import JointRows
 from .private import arbiters as private_arbiters
@@ -228,8 +228,9 @@ class Sync:
             world.scatter(status)
             self.reindex()
             return
-        if world.joints is not None or self._pulls:
-            status = world.with_turns(status)  # joints change spins by round-off; gravity, where bodies sleep, by more
+        if not status & TURNS and (world.joints is not None or self._pulls):
+            # Joints change spins by round-off; gravity, where bodies sleep, by more: ENDS has to have them.
+            status = world.write_ends(status | TURNS)
         world.scatter_still(status)
         self.rest(dt)
         world.scatter_speed(status)

@@ -129,7 +129,7 @@ class World(Crossing):
         past = self.joints
         if not self.space.constraints:
             self.joints, self.parted = None, set()
-        elif anew or past is None or not past.is_of(self.space):
+        elif anew or past is None or past.items != list(self.space.constraints):
             rows = {b: r for b, r in zip(self.bodies.items, self.WALK[BODY_ROW].tolist(), strict=True) if r >= 0}
             self.joints = JointRows(self.space, rows, len(self.BODY), past)
             self.objects_read += len(self.joints.fresh)

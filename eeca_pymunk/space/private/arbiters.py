@@ -9,8 +9,7 @@ import pymunk
 from pymunk import batch
 from pymunk._chipmunk_cffi import ffi, lib
 
-from .versions import reject as reject_raw
-from .versions import take_place
+from .versions import decide
 
 OF_LIBRARY = (
     "pmSpaceArbiterIteratorFuncBatched", "cpBodyIsSleeping", "cpArbiterTotalImpulse", "cpShapeGetCollisionType",
@@ -45,7 +44,7 @@ def stamp(arbiter: pymunk.Arbiter) -> int:
 
 def reject(arbiter: pymunk.Arbiter) -> None:
     """Have the collision of an arbiter whose shapes touch not take place."""
-    reject_raw(arbiter._arbiter)
+    decide(arbiter._arbiter, False)
 
 
 def asleep(arbiter: Any) -> bool:
@@ -102,7 +101,7 @@ def make_arbiter(
     arbiter.e, arbiter.u = a.elasticity * b.elasticity, a.friction * b.friction
     arbiter.n.x, arbiter.n.y, arbiter.count, arbiter.contacts = nx, ny, len(points), contacts
     arbiter.state = lib.CP_ARBITER_STATE_FIRST_COLLISION
-    take_place(arbiter)
+    decide(arbiter, True)
     set_impulse(arbiter, impulse)
     return ffi.gc(arbiter, lambda _: contacts)  # keeps the contacts as long as the arbiter exists
 

@@ -43,17 +43,11 @@ def processed(arbiter: pymunk.Arbiter) -> bool:
     return bool(held.state != _IGNORED and (held.count > 0 or held.state == _CACHED))
 
 
-def take_place(held: Any) -> None:
-    """Have the collision of an arbiter of ours take place."""
+def decide(held: Any, takes_place: bool) -> None:
+    """Have the collision of an arbiter of Chipmunk's take place, or not unless pymunk calls `begin` when the shapes
+    touch. pymunk 6 calls `pre_solve` again in each step, and its pickles contain what `begin` has rejected."""
     if not ANSWERS:
-        held.processCollision = 1
-
-
-def reject(held: Any) -> None:
-    """Have the collision of an arbiter of Chipmunk's not take place, unless pymunk calls `begin` when the shapes touch.
-    pymunk 6 calls `pre_solve` again in each step, and its pickles contain what `begin` has rejected."""
-    if not ANSWERS:
-        held.processCollision = 0
+        held.processCollision = int(takes_place)
 
 
 def decision(held: Any, sensor: Callable[[Any], bool]) -> tuple[Any, ...]:
