@@ -4,48 +4,30 @@ from __future__ import annotations
 
 from .record import accuracy, heuristic, round_off, work
 
-GAP_ROUND_OFF = round_off(
-    1e-12,
-    "of positions and sizes",
-    "Error of a gap. Smaller: contacts that have closed are missed. Larger: impacts are early.",
-)
-CORNER_ROUND_OFF = round_off(
-    4.0, "times GAP_ROUND_OFF", "Error of corners whose place follows from the angle of a body."
-)
-DIRECTION_ROUND_OFF = round_off(
-    1e-12,
-    "of coordinates and sizes",
-    "Distance of two points below which their direction is round-off and the normal of the edge is used.",
-)
-AXIS_TIE = round_off(
-    1e-14, "of the sizes", "Separation by which the axis of a longer edge is preferred. Larger: less precise axes."
-)
-EDGE_TIE = round_off(
-    1.0 + 1e-09, "ratio of squared lengths", "Edges whose squared lengths differ by less count as equally long."
-)
-FACE_WIDTH = accuracy(
-    1e-06,
-    "of the larger shape",
-    "Width of a common face below which it is one point. Smaller: two contacts at one place, singular.",
-)
-SLENDER = heuristic(
-    0.5,
-    "area over (length / 2)^2",
-    "Polygons below it are thin and remember sides as segments do: planks in a container that turns stay inside.",
-)
+# fmt: off
+GAP_ROUND_OFF = round_off(1e-12, "of positions and sizes",
+    "Error of a gap. Smaller: contacts that have closed are missed. Larger: impacts are early.")
+CORNER_ROUND_OFF = round_off(4.0, "times GAP_ROUND_OFF",
+    "Error of corners whose place follows from the angle of a body.")
+DIRECTION_ROUND_OFF = round_off(1e-12, "of coordinates and sizes",
+    "Distance of two points below which their direction is round-off and the normal of the edge is used.")
+AXIS_TIE = round_off(1e-14, "of the sizes",
+    "Separation by which the axis of a longer edge is preferred. Larger: less precise axes.")
+EDGE_TIE = round_off(1.0 + 1e-09, "ratio of squared lengths",
+    "Edges whose squared lengths differ by less count as equally long.")
+FACE_WIDTH = accuracy(1e-06, "of the larger shape",
+    "Width of a common face below which it is one point. Smaller: two contacts at one place, singular.")
+SLENDER = heuristic(0.5, "area over (length / 2)^2",
+    "Polygons below it are thin and remember sides as segments do: planks in a container that turns stay inside.")
 CORNER_MEET = round_off(1e-9, "of the segments' size", "Distance within which ends of segments form a corner.")
 STRAIGHT = round_off(1e-6, "sine", "Angle between segments that meet below which they form one straight wall.")
-MARGIN_OF_FAST = work(
-    2.0,
-    "times the displacement in a step",
-    "Margin of a fast shape in its near list. Smaller: lists are renewed more often. Larger: more pairs.",
-)
+MARGIN_OF_FAST = work(2.0, "times the displacement in a step",
+    "Margin of a fast shape in its near list. Smaller: lists are renewed more often. Larger: more pairs.")
 FARTHEST_CELL = work(1000000000000000.0, "cells", "Longest displacement of a step for which neighbours are searched.")
 CELL_LIMIT = work(2.0**50, "cells", "Distance from the origin beyond which all positions are in one cell.")
 ALL_PAIRS = work(16, "moving shapes", "Number up to which each shape is in the near list of every other.")
-NEIGHBOURS = work(
-    8.0, "shapes", "Length of a near list for which margins are chosen; the cheapest for packings from .05 to .65."
-)
+NEIGHBOURS = work(8.0, "shapes",
+    "Length of a near list for which margins are chosen; the cheapest for packings from .05 to .65.")
 MOST_NEIGHBOURS = work(20.0, "shapes", "Mean length of near lists above which margins are halved.")
 MARGIN_HALVINGS = work(8, "number", "Halvings of margins, at most.")
 ALL_WALLS = work(16, "static shapes", "Number up to which all static shapes are tested without a grid.")

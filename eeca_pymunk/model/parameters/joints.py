@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from .record import accuracy, heuristic, round_off, work
 
+# fmt: off
 JOINT_TOUCH = round_off(1e-12, "of the component", "Gap of a limit below which it is reached.")
 BOXES_DIRECT = work(64, "bounded rows", "Number above which each row is decided on its own in each iteration.")
 BOX_SWEEPS = work(12, "sweeps", "Sweeps of bounded rows.")
@@ -15,46 +16,32 @@ CONDENSED_PASSES = work(3, "number", "Refinements of a condensed solution.")
 STIFFEST = round_off(10000000.0, "of the bodies' inertia", "Stiffness of rows in a condensed system, at most.")
 CONDENSED_BAND = work(8, "rows", "Half-width of the band from which on rows are taken as views.")
 JOINT_SPEED_ROUND_OFF = round_off(1e-14, "of the speeds", "Velocity along a joint row that is round-off.")
-JOINT_SPEED_LEFT = heuristic(
-    0.01,
-    "of the speeds along a row",
+JOINT_SPEED_LEFT = heuristic(0.01, "of the speeds along a row",
     "Velocity along a joint row up to which it is an error of steps and not an edit to be corrected: a stepper that "
-    "takes over a moving mechanism changes no energy.",
-)
-LEAST_INERTIA = work(
-    0.1,
-    "of a body's inertia",
-    "Inertia that the geometric stiffness of joints may leave in the smaller one of two systems, whose solution is the "
-    "same; below it the larger one is solved.",
-)
+    "takes over a moving mechanism changes no energy.")
+LEAST_INERTIA = work(0.1, "of a body's inertia",
+    "Inertia that the geometric stiffness of joints may leave in the smaller one of two systems, whose solution is "
+    "the same; below it the larger one is solved.")
 IMPACT_LIMITS = work(4, "solutions", "Solutions of an impact, each with the limits that the one before moves into.")
 IMPACT_ENERGY = round_off(4e-16, "of the kinetic energy", "Change of energy by an impact that is round-off.")
 LIMIT_EVENTS = work(12, "number", "Limits that are reached in one step of a component, at most.")
 LIMIT_WAY = round_off(1e-9, "of the component", "Way of a limit to its bound up to which the part before it is empty.")
-LIMIT_HOP = heuristic(
-    1e-6, "of the component", "Way by which a limit may leave its bound and return in a part of a step, and be held."
-)
+LIMIT_HOP = heuristic(1e-6, "of the component",
+    "Way by which a limit may leave its bound and return in a part of a step, and be held.")
 LIMIT_SECANTS = work(30, "iterations", "Secant steps to the instant at which a limit is reached, at most.")
 LIMIT_SECANTS_HASTE = work(2, "iterations", "Secant steps to that instant after the work HASTE.")
 LIMIT_SOLVES = work(8, "number", "Linear solves that release limits which pull, at most.")
 LOCK_ITERATIONS = work(8, "iterations", "Fixed-point iterations of the mean arms in the energy lock.")
-CONDENSE_BAND = work(
-    14, "half-width of the band", "Half-width from which on the system of a component is condensed to its bodies."
-)
+CONDENSE_BAND = work(14, "half-width of the band",
+    "Half-width from which on the system of a component is condensed to its bodies.")
 RESPONSE_PASSES = work(2, "number", "Refinements of the response of a component.")
 JOINT_TOLERANCE = round_off(3e-16, "of the component", "Error of joints and momenta at which Newton iterations end.")
 JOINT_ROUND_OFF = round_off(3e-14, "of the component", "An error below it that no longer halves is round-off.")
-JOINT_ROUND_OFF_KEPT = round_off(
-    2e-15,
-    "of the component",
-    "Error below which one that no longer halves is round-off, with factors of an earlier step.",
-)
-NEWTON_PROGRESS = work(
-    0.03,
-    "ratio of errors",
-    "Progress of an iteration with earlier factors below which they are computed again; it ends at "
-    "JOINT_TOLERANCE with either.",
-)
+JOINT_ROUND_OFF_KEPT = round_off(2e-15, "of the component",
+    "Error below which one that no longer halves is round-off, with factors of an earlier step.")
+NEWTON_PROGRESS = work(0.03, "ratio of errors",
+    "Progress of an iteration with earlier factors below which they are computed again; it ends at JOINT_TOLERANCE "
+    "with either.")
 NEWTON_FLOOR = round_off(1e-11, "of the component", "Error below which one that has not fallen twice is round-off.")
 NEWTON_ITERATIONS = work(25, "iterations", "Newton iterations of a step, at most.")
 REDUNDANT_EPSILON = round_off(1e-10, "of the diagonal", "Term added to the diagonal for rows that may be redundant.")
@@ -68,64 +55,38 @@ ELASTIC_PARTS = work(7, "number", "Parts of a step of elastic joints.")
 HASTE = work(0.25, "of the budget", "Work of a step after which limits are located roughly.")
 COMPONENT_BUDGET = work(0.5, "of what is left", "Work of one step of a component, at most.")
 NEARLY_HELD = accuracy(1e-08, "of the component", "Error of elastic joints up to which the step counts as converged.")
-REPAID = accuracy(
-    1e-3, "of the kinetic energy", "Gain of closing joints that an earlier step left apart, up to which it is locked."
-)
-JOINT_GAIN = round_off(
-    1e-10, "of the kinetic energy", "Gain of joints that hold in a step, above which it is taken from what moves."
-)
-STALLED = accuracy(
-    100.0,
-    "of all momenta, loads and forces of a component, as angular momentum",
-    "Impulse that a motor of unlimited force may have in a step: what drives against a limit stalls.",
-)
-TAUT = heuristic(
-    0.5,
-    "of a body's inertia",
+REPAID = accuracy(1e-3, "of the kinetic energy",
+    "Gain of closing joints that an earlier step left apart, up to which it is locked.")
+JOINT_GAIN = round_off(1e-10, "of the kinetic energy",
+    "Gain of joints that hold in a step, above which it is taken from what moves.")
+STALLED = accuracy(100.0, "of all momenta, loads and forces of a component, as angular momentum",
+    "Impulse that a motor of unlimited force may have in a step: what drives against a limit stalls.")
+TAUT = heuristic(0.5, "of a body's inertia",
     "Stiffness of a joint's force, times h^2/4, from which contacts take it into account where it pulls, and up to "
-    "which where it presses: beyond twice that no inertia of the body would be left. A box stays on a tight bridge.",
-)
+    "which where it presses: beyond twice that no inertia of the body would be left. A box stays on a tight bridge.")
 ARM_ITERATIONS = work(6, "iterations", "Iterations of the motion in which arms of contacts become those of its middle.")
 ARM_ERROR = round_off(1e-15, "of the component", "Error of the arms of contacts at which these iterations end.")
-MOTOR_OFF = round_off(
-    1e-9,
-    "of the speed, and of its bound",
-    "Speed of a bounded row off its target, inside its bounds, that is an error.",
-)
+MOTOR_OFF = round_off(1e-9, "of the speed, and of its bound",
+    "Speed of a bounded row off its target, inside its bounds, that is an error.")
 BOUNDED_SWEEPS = work(30, "sweeps", "Sweeps over bounded joint rows and contacts.")
-STRAIGHT_CHAIN = round_off(
-    1e-12, "of length and coordinates", "Slack of a chain of joints between fixed points up to which it cannot move."
-)
-STRUT = round_off(
-    0.001,
-    "of the free mobility",
+STRAIGHT_CHAIN = round_off(1e-12, "of length and coordinates",
+    "Slack of a chain of joints between fixed points up to which it cannot move.")
+STRUT = round_off(0.001, "of the free mobility",
     "Mobility of a contact between two bodies of one component that is the error of its response where joints are "
-    "redundant: the contact is left out.",
-)
-STRUT_BETWEEN = round_off(
-    1e-07, "of the free mobility", "Mobility of other contacts that is the error of the response."
-)
+    "redundant: the contact is left out.")
+STRUT_BETWEEN = round_off(1e-07, "of the free mobility",
+    "Mobility of other contacts that is the error of the response.")
 CORRECTION_JOINTS = accuracy(1e-11, "of the component", "Error of joints when overlaps are corrected.")
-FIT_CLOSING = round_off(
-    1e-09,
-    "of the island's speed",
-    "Speed with which contacts may close after velocities were projected onto the joints.",
-)
-FIT_RESIDUAL = accuracy(
-    1e-06,
-    "of the fastest closing contact",
-    "Residual of the impulses that keep contacts from closing in this projection.",
-)
+FIT_CLOSING = round_off(1e-09, "of the island's speed",
+    "Speed with which contacts may close after velocities were projected onto the joints.")
+FIT_RESIDUAL = accuracy(1e-06, "of the fastest closing contact",
+    "Residual of the impulses that keep contacts from closing in this projection.")
 FIT_ENERGY = round_off(1e-12, "of the energy", "Change of energy by this projection that is round-off.")
 JOINTED_CORRECTION_SWEEPS = work(40, "sweeps", "Sweeps of the penetration correction of jointed bodies.")
-STEP_WORK = work(
-    50000000.0, "operations", "Work of a step with joints besides STEP_WORK_BODY; 5e9 operations take about a second."
-)
-INTERVAL_SHARE = work(
-    0.25,
-    "of what is left of the budget",
-    "Work of an interval after which it is solved again, shorter, if it has not converged.",
-)
+STEP_WORK = work(50000000.0, "operations",
+    "Work of a step with joints besides STEP_WORK_BODY; 5e9 operations take about a second.")
+INTERVAL_SHARE = work(0.25, "of what is left of the budget",
+    "Work of an interval after which it is solved again, shorter, if it has not converged.")
 STEP_WORK_BODY = work(250000.0, "operations", "Work of a step with joints for each body of the scene.")
 MEET = round_off(1e-13, "of the smaller shape", "Gap at the located instant of an impact on a component.")
 MEET_LOADED = accuracy(1e-06, "of the smaller shape", "Gap at that instant if contacts push on the component.")
@@ -134,28 +95,21 @@ MEET_DOUBLINGS = work(20, "number", "Impacts up to which an interval in which jo
 MEET_SECANTS = work(5, "iterations", "Secant steps to the instant of an impact on a component, at most.")
 MEET_HALVINGS = work(40, "iterations", "Halvings of the time to an instant before shapes pass each other, at most.")
 MEET_SECANTS_LOADED = work(2, "iterations", "Secant steps to that instant if contacts push on the component.")
-MEET_INSTANT = round_off(
-    1e-9, "of the step", "Length below which an interval before an impact, or a part before a limit, is empty."
-)
-COLUMN_CONTACTS = work(
-    40, "contacts", "Number up to which islands are solved by homotopies, with joints always: exactly; others roughly."
-)
+MEET_INSTANT = round_off(1e-9, "of the step",
+    "Length below which an interval before an impact, or a part before a limit, is empty.")
+COLUMN_CONTACTS = work(40, "contacts",
+    "Number up to which islands are solved by homotopies, with joints always: exactly; others roughly.")
 COLUMN_SWEEPS = work(12, "sweeps", "Sweeps over components before the first homotopy.")
 COLUMN_SWEEPS_AFTER = work(4, "sweeps", "Sweeps over components after each homotopy, at most.")
 COLUMN_HOMOTOPIES = work(8, "homotopies", "Homotopies to the solution, at most.")
-COLUMN_PROXIMAL = round_off(
-    10000000000.0, "over the effective mass", "Stiffness of the proximal term of redundant contacts of components."
-)
+COLUMN_PROXIMAL = round_off(10000000000.0, "over the effective mass",
+    "Stiffness of the proximal term of redundant contacts of components.")
 OUTER = work(20, "steps of the components", "Iterations between contacts and components, at most.")
 OUTER_MANY = work(2, "steps of the components", "These iterations with more than COLUMN_CONTACTS contacts.")
-OUTER_PART = work(
-    1, "steps of the components", "These iterations in an interval of many contacts that ends within the step."
-)
-AGREE = accuracy(
-    1e-06,
-    "of |a| h and the speed",
-    "Difference of the velocities of contacts and components at which their iterations end.",
-)
+OUTER_PART = work(1, "steps of the components",
+    "These iterations in an interval of many contacts that ends within the step.")
+AGREE = accuracy(1e-06, "of |a| h and the speed",
+    "Difference of the velocities of contacts and components at which their iterations end.")
 AGREE_REST = accuracy(1e-11, "of |a| h and the speed", "This difference near rest.")
 AGREE_ELASTIC = accuracy(1e-13, "of |a| h and the speed", "This difference in elastic islands.")
 PRESS_SWEEPS = work(40, "sweeps", "Sweeps over contacts of components.")
@@ -165,40 +119,28 @@ PRESS_RESIDUAL = accuracy(1e-09, "of |a| h and the speed", "Residual of sweeps o
 PRESS_RESIDUAL_REST = accuracy(1e-12, "of |a| h and the speed", "Residual of these sweeps near rest.")
 PRESS_LOCKS = work(10, "number", "Attempts of the energy lock of components, at most.")
 JOINTS_NEAR = accuracy(1e-09, "of the component", "Error of joints while many contacts have not converged.")
-FIT_ROUND_OFF = round_off(
-    1e-12, "of the size of a body", "Way in an interval up to which columns are not made to fit what they missed."
-)
-OUTER_FLOOR = round_off(
-    1e-08, "of the speed", "Difference of the velocities that is round-off of stiff components if it does not fall."
-)
+FIT_ROUND_OFF = round_off(1e-12, "of the size of a body",
+    "Way in an interval up to which columns are not made to fit what they missed.")
+OUTER_FLOOR = round_off(1e-08, "of the speed",
+    "Difference of the velocities that is round-off of stiff components if it does not fall.")
 PRESS_WORK_ROUND_OFF = round_off(4e-14, "of impulses times speed", "Round-off of the work of contacts of components.")
 SWEEP_WORK = work(40.0, "operations", "Work of a sweep over contacts for each entry of their columns.")
 DISC_WORK = work(1000.0, "operations", "Work of a sweep over bounded rows for each two of a disc.")
-HOMOTOPY_WORK = work(
-    25.0, "operations", "Work of the matrix of a homotopy for each of its entries; a change of state takes one."
-)
+HOMOTOPY_WORK = work(25.0, "operations",
+    "Work of the matrix of a homotopy for each of its entries; a change of state takes one.")
 SOLUTION_WORK = work(1000.0, "operations", "Work of a solution for each entry of its columns.")
-PRESS_WORK_TAUT = round_off(
-    1e-09, "of impulses times speed", "Round-off of the work of contacts on taut joints, at most."
-)
+PRESS_WORK_TAUT = round_off(1e-09, "of impulses times speed",
+    "Round-off of the work of contacts on taut joints, at most.")
 CHORD = work(5, "steps of the components", "Iterations after which the response is computed anew.")
-CLOSES = round_off(
-    1e-12, "of the fastest contact", "Speed with which contacts may close after an elastic impact on components."
-)
+CLOSES = round_off(1e-12, "of the fastest contact",
+    "Speed with which contacts may close after an elastic impact on components.")
 
 LEAST_SOLUTIONS = work(40, "solutions", "Newton iterations that a step of a component may take whatever work is left.")
-LINEAR_APART = accuracy(
-    1e-4,
-    "of the component",
-    "How far one linear system may leave joints: what would be farther moves as one body. An interval that ends at an "
-    "impact is shorter where elastic joints would give way farther.",
-)
-EXCESSIVE_IMPULSE = round_off(
-    1e4, "of the island's mass and speed", "Impulse beyond which a solution is replaced by sweeps from zero."
-)
+LINEAR_APART = accuracy(1e-4, "of the component",
+    "How far one linear system may leave joints: what would be farther moves as one body. An interval that ends at "
+    "an impact is shorter where elastic joints would give way farther.")
+EXCESSIVE_IMPULSE = round_off(1e4, "of the island's mass and speed",
+    "Impulse beyond which a solution is replaced by sweeps from zero.")
 GENTLE_SWEEPS = work(20, "sweeps", "Sweeps that replace an excessive solution.")
-OUTER_PROGRESS = work(
-    0.3,
-    "ratio of differences",
-    "Progress of the iterations between contacts and components below which they are given up; they end at AGREE.",
-)
+OUTER_PROGRESS = work(0.3, "ratio of differences",
+    "Progress of the iterations between contacts and components below which they are given up; they end at AGREE.")
