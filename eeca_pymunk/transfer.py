@@ -48,14 +48,8 @@ def finite(a: float, b: float, c: float, d: float, e: float, f: float) -> bool:
     """Whether all six numbers are finite."""
     # Comparing is what numba does fastest; NaN is not less than anything.
     least, most = -math.inf, math.inf
-    return (
-        least < a < most
-        and least < b < most
-        and least < c < most
-        and least < d < most
-        and least < e < most
-        and least < f < most
-    )
+    place = least < a < most and least < b < most and least < c < most
+    return place and least < d < most and least < e < most and least < f < most
 
 
 @nonallocating

@@ -103,7 +103,7 @@ def gather(
                     THEN[z, q] = NOW[z, q]
                 THEN[z, 2] += x
                 THEN[z, 3] += y
-        elasticity, friction, sx, sy = law(SHAPE, S.RULE, s, r)
+        elasticity, friction, sx, sy = law(S, s, r)
         for z in range(count):
             i = m + z
             A[i], B[i] = a, b

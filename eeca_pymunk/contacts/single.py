@@ -78,7 +78,7 @@ def alone(A: Scene, i: int, other: int, t: float) -> bool:
                 far = 1.001 * (BODY[i].extent + BODY[o].extent) + 1e-9 * (abs(x) + abs(y))
                 if dx * dx + dy * dy > far * far:
                     continue
-            if touches(A, s, o, t) and not barred(A.RULE, s, o):
+            if touches(A, s, o, t) and not barred(A, s, o):
                 return False
     return True
 
@@ -127,7 +127,7 @@ def strike_disk(A: Scene, i: int, o: int, t: float) -> None:
         _, nx, ny, px, py = gap_at(A, i, x, y, BODY[i].angle, o, BODY[j].x, BODY[j].y, BODY[j].angle)
     e, mu, sx, sy = law_of_disks(BODY, i, j)
     if not disk or mu > 0.0 or A.RULE.shape[0] > 0:
-        e, mu, sx, sy = law(A.SHAPE, A.RULE, i, o)
+        e, mu, sx, sy = law(A, i, o)
     vx, vy = BODY[j].vx - BODY[i].vx, BODY[j].vy - BODY[i].vy
     u = nx * vx + ny * vy
     free = BODY[i].inv_mass + BODY[j].inv_mass

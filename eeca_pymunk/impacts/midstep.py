@@ -49,7 +49,7 @@ def join_all(A: Scene) -> bool:
             o = int(A.POOL[w])
             j = LINK[o].owner
             moves = BODY[j].inv_mass > 0.0
-            if (moves and o < s) or barred(A.RULE, s, o):
+            if (moves and o < s) or barred(A, s, o):
                 continue
             touch = TOUCH * smaller(A, s, o)
             g = approach(A, s, o, 0.0)[0]
@@ -92,7 +92,7 @@ def missed_bodies(A: Scene) -> int:
         for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
             for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
                 o = int(A.POOL[w])
-                if A.FLAG[w] != 0 or barred(A.RULE, s, o):
+                if A.FLAG[w] != 0 or barred(A, s, o):
                     continue
                 small = smaller(A, s, o)
                 if gap(A, s, o, dt)[0] < -TOUCH * small:

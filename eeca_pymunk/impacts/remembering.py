@@ -29,19 +29,8 @@ _LOCK, _STAMP = _STEP.index("lock"), _STEP.index("stamp")
 _UNMET, _SOLVES, _BLOCKS, _LOGGED = map(_COUNT.index, ("unmet", "solves", "blocks", "logged"))
 _IMPULSE = Impulse.TYPE.itemsize // 8
 UNBOUND: tuple[Table, Callable[..., int]] = None, int
-_OF_PROCESS = (
-    "table",
-    "ties",
-    "_bound",
-    "own",
-    "fresh",
-    "_first",
-    "_par",
-    "_count",
-    "log",
-    "_laid",
-    "_memory",
-)  # attributes that no copy has
+# Attributes that no copy has.
+_OF_PROCESS = "table", "ties", "_bound", "own", "fresh", "_first", "_par", "_count", "log", "_laid", "_memory"
 
 
 class Remembering:

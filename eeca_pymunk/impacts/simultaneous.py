@@ -33,14 +33,14 @@ from ..rows.inplace import sort
 @nonallocating
 def takes_part(A: Scene, s: int, o: int, t: float) -> bool:
     """Whether shapes s and o touch at instant t, or are a loaded contact of an island."""
-    if barred(A.RULE, s, o):
+    if barred(A, s, o):
         return False
     if touches(A, s, o, t):
         return True
     i, j = A.LINK[s].owner, A.LINK[o].owner
     if A.STATE[i].island < 0 or not (A.STATE[j].island == A.STATE[i].island or fixed_support(A, j)):
         return False
-    return remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], s, o, A.PAR.stamp)[0] > 0.0
+    return remembered(A, s, o, A.PAR.stamp)[0] > 0.0
 
 
 @nonallocating
@@ -183,10 +183,10 @@ def make_block(A: Scene, n: int, m: int, PAIRS: IntArray, hit: int, rest: bool, 
                 V[place, 0], V[place, 1], V[place, 2] = rate(BODY, w, t)
                 p, q = (place, q) if side == 0 else (p, place)
                 place += 1
-        e, mu, sx, sy = law(A.SHAPE, A.RULE, sa, sb)
+        e, mu, sx, sy = law(A, sa, sb)
         if rest and PAIRS[z] == hit:
             e = 0.0
-        load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], sa, sb, A.PAR.stamp - 1.0)[1]
+        load = remembered(A, sa, sb, A.PAR.stamp - 1.0)[1]
         count = face(A, sa, sb, POSE, p, q, face_tolerance(A, sa, sb), found)
         if count > 0:
             note_side(A, sa, sb, found[0, 0], found[0, 1], True)

@@ -110,7 +110,7 @@ def wake_changed(A: Scene) -> None:
         root = STATE[i].island
         if root < 0 or MEMBER[root].rest == AT_REST:
             continue
-        slow = speed(A, i, 0.0) <= candidate_speed(MEMBER[root].with_supports) * most
+        slow = speed(A, i) <= candidate_speed(MEMBER[root].with_supports) * most
         A.RESTING[i].rest_timer = A.RESTING[i].rest_timer + 1.0 if slow else 0.0
         if MEMBER[i].rest != AWAKE:
             # On its path at rest a body has no acceleration (`put_to_rest`).

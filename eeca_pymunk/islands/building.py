@@ -44,10 +44,10 @@ def join_neighbours(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
         for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
             o = int(A.POOL[w])
             j = LINK[o].owner
-            if fixed_support(A, j) or STATE[j].island == STATE[i].island or barred(A.RULE, s, o):
+            if fixed_support(A, j) or STATE[j].island == STATE[i].island or barred(A, s, o):
                 continue
             busy = A.MEMBER[i].busy > 0 or A.MEMBER[j].busy > 0
-            if law(A.SHAPE, A.RULE, s, o)[0] >= 1.0 and not busy:
+            if law(A, s, o)[0] >= 1.0 and not busy:
                 continue
             small = smaller(A, s, o)
             reach = TOUCH * small
@@ -101,7 +101,7 @@ def build_islands(A: Scene) -> int:
     wake_changed(A)
     for c in range(COUNT.pushes):
         a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
-        if A.PUSHED_BY[c].root != LASTED or barred(A.RULE, a, b):
+        if A.PUSHED_BY[c].root != LASTED or barred(A, a, b):
             continue
         if c > 0 and a == A.PUSHED_BY[c - 1].a and b == A.PUSHED_BY[c - 1].b:
             continue  # the other end of a face
@@ -111,7 +111,7 @@ def build_islands(A: Scene) -> int:
             continue
         if STATE[i].island >= 0 and STATE[i].island == STATE[j].island:
             continue  # together already
-        if persists(A, a, b, 0.0, law(A.SHAPE, A.RULE, a, b)[0] < 1.0):
+        if persists(A, a, b, 0.0, law(A, a, b)[0] < 1.0):
             unite(A, i, j)
     for i in range(n):
         if A.MEMBER[i].tied >= 0:
@@ -167,7 +167,7 @@ def comes_to_rest(A: Scene, a: int, b: int, t: float) -> bool:
         move_to(A.BODY, i, t)
     if A.BODY[j].inv_mass > 0.0:
         move_to(A.BODY, j, t)
-    e = law(A.SHAPE, A.RULE, a, b)[0]
+    e = law(A, a, b)[0]
     _, u, closing, _, _ = approach(A, a, b, t)
     end = A.PAR.dt
     met = max(A.STATE[i].events, A.STATE[j].events)
@@ -197,7 +197,7 @@ def hits_of(A: Scene, a: int, b: int) -> int:
 def most_hits(A: Scene, a: int, b: int) -> int:
     """Largest number of hits in a step on the islands of shapes a and b: RESOLUTION; of lossy ones that divided by the
     number of bodies, or by half of it where bodies hang together by joints, which a hit moves all at once."""
-    if law(A.SHAPE, A.RULE, a, b)[0] >= 1.0:
+    if law(A, a, b)[0] >= 1.0:
         return RESOLUTION
     hung = jointed(A, A.LINK[a].owner) or jointed(A, A.LINK[b].owner)
     return max(1, (WORK_JOINTED if hung else 1) * RESOLUTION // max(1, largest_island(A, a, b)))
@@ -209,7 +209,7 @@ def passed_over(A: Scene, a: int, b: int, t: float) -> bool:
     spent and they would not get deep within the step. Bodies of a lossy one then are `busy` for REST_RETRY steps."""
     STATE = A.STATE
     i, j = A.LINK[a].owner, A.LINK[b].owner
-    hits, most, lossy = hits_of(A, a, b), most_hits(A, a, b), law(A.SHAPE, A.RULE, a, b)[0] < 1.0
+    hits, most, lossy = hits_of(A, a, b), most_hits(A, a, b), law(A, a, b)[0] < 1.0
     spent = budget_spent(A, STATE[i].island) or budget_spent(A, STATE[j].island)
     if hits < most and not spent:
         return False

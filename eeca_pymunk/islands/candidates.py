@@ -60,7 +60,7 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                 j = LINK[o].owner
                 if j < i if STATE[j].island == root else not fixed_support(A, j):
                     continue
-                if barred(A.RULE, s, o):
+                if barred(A, s, o):
                     continue
                 small = smaller(A, s, o)
                 busy = A.MEMBER[i].busy > 0 or A.MEMBER[j].busy > 0
@@ -72,7 +72,7 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                     continue
                 force, load = 0.0, 0.0
                 if lossy and not together:
-                    force, load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], s, o, A.PAR.stamp - 1.0)
+                    force, load = remembered(A, s, o, A.PAR.stamp - 1.0)
                 # In a large island all loaded contacts remain candidates: a hit acts on a few bodies at once, and
                 # reaches the others through the interval.
                 if n < LARGE_ISLAND or force <= 0.0:
@@ -84,7 +84,7 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                         reach = min(reach, 2.0 * INTERVAL_WAY * small)
                     if g > reach:
                         continue
-                    e = law(A.SHAPE, A.RULE, s, o)[0]
+                    e = law(A, s, o)[0]
                     if together:
                         pass
                     elif e >= 1.0 and not lossy:

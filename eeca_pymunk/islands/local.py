@@ -80,11 +80,8 @@ def local_island(A: Scene, MINE: IntArray, n: int, found: IntArray, t: float) ->
         WHO[q] = i
         s = t - BODY[i].since
         V[q, 0], V[q, 1], V[q, 2] = BODY[i].vx, BODY[i].vy, BODY[i].spin
-        POSE[q, 0], POSE[q, 1], POSE[q, 2] = (
-            BODY[i].x + V[q, 0] * s,
-            BODY[i].y + V[q, 1] * s,
-            BODY[i].angle + V[q, 2] * s,
-        )
+        POSE[q, 0], POSE[q, 1] = BODY[i].x + V[q, 0] * s, BODY[i].y + V[q, 1] * s
+        POSE[q, 2] = BODY[i].angle + V[q, 2] * s
         IMS[q], IIS[q], SIZES[q] = BODY[i].inv_mass, BODY[i].inv_inertia, BODY[i].extent
         if q >= n and IMS[q] > 0.0:
             # A body at rest that supports the island is fixed.

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from ..arrays import IntArray
 from ..compiled import nonallocating
-from ..compiled.records import Rows
 from ..contacts.memory import find, key_of
 from ..contacts.targets import hardly_bounces
 from ..geometry.gap import gap_at
 from ..geometry.sides import smaller
 from ..model.bodies import AT_REST
-from ..model.contacts import Force
 from ..model.parameters.events import WORK_JOINTED
 from ..model.parameters.intervals import ELASTIC_REST, ELASTIC_REST_ON, LARGE_ISLAND, SOLVES_BEFORE_HASTE, TOUCH
 from ..model.scene import Scene
@@ -75,7 +73,7 @@ def largest_island(A: Scene, a: int, b: int) -> int:
 @nonallocating
 def in_large_island(A: Scene, a: int, b: int) -> bool:
     """Whether a lossy impact of shapes a and b is on a large island: it acts at once on the nearest bodies only."""
-    if law(A.SHAPE, A.RULE, a, b)[0] >= 1.0:
+    if law(A, a, b)[0] >= 1.0:
         return False
     return bool(largest_island(A, a, b) >= LARGE_ISLAND)
 
@@ -113,16 +111,16 @@ def lossy(A: Scene, root: int) -> bool:
 
 
 @nonallocating
-def remembered(KEYS: IntArray, FORCES: Rows[Force], shapes: int, a: int, b: int, since: float) -> tuple[float, float]:
+def remembered(A: Scene, a: int, b: int, since: float) -> tuple[float, float]:
     """Normal force and load (mass length/time²) of a pair of shapes a and b, summed over its points, as of the steps
-    from number `since` on; 0 if there is none. shapes: number of all shapes."""
-    key = key_of(shapes, a, b)
+    from number `since` on; 0 if there is none."""
+    key = key_of(A.SHAPE.shape[0], a, b)
     force, load = 0.0, 0.0
     for z in range(2):
-        row = find(KEYS, key + z)
-        if row >= 0 and FORCES[row].stamp >= since:
-            force += FORCES[row].normal
-            load += FORCES[row].load
+        row = find(A.KEYS, key + z)
+        if row >= 0 and A.FORCES[row].stamp >= since:
+            force += A.FORCES[row].normal
+            load += A.FORCES[row].load
     return force, load
 
 
@@ -146,9 +144,8 @@ def approach(A: Scene, a: int, b: int, t: float) -> tuple[float, float, float, f
     closing += arm_i * PULL[i, 2] - arm_j * PULL[j, 2]
     present = nx * (BODY[i].ax - BODY[j].ax) + ny * (BODY[i].ay - BODY[j].ay)
     present += arm_i * BODY[i].angular - arm_j * BODY[j].angular
-    mass = 1.0 / (
-        BODY[i].inv_mass + BODY[j].inv_mass + BODY[i].inv_inertia * arm_i * arm_i + BODY[j].inv_inertia * arm_j * arm_j
-    )
+    turned = BODY[i].inv_inertia * arm_i * arm_i
+    mass = 1.0 / (BODY[i].inv_mass + BODY[j].inv_mass + turned + BODY[j].inv_inertia * arm_j * arm_j)
     return g, u, closing, present, mass
 
 
@@ -160,11 +157,11 @@ def persists(A: Scene, a: int, b: int, t: float, lossy: bool) -> bool:
     with u <= P, or carried a force and closes again. e = 1, unless the contact is `lossy`: it touches with almost no
     speed, and a contact with a body without mobility is pressed together, perhaps by joints or other contacts.
     """
-    e = law(A.SHAPE, A.RULE, a, b)[0]
+    e = law(A, a, b)[0]
     g, u, closing, present, mass = approach(A, a, b, t)
     h = A.PAR.dt - t
     small = smaller(A, a, b)
-    force, load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], a, b, A.PAR.stamp - 1.0)
+    force, load = remembered(A, a, b, A.PAR.stamp - 1.0)
     if e >= 1.0 and not lossy:
         limit = (ELASTIC_REST_ON if force > 0.0 else ELASTIC_REST) * A.PAR.pulled * A.PAR.dt
         i, j = A.LINK[a].owner, A.LINK[b].owner

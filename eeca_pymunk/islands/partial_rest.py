@@ -103,7 +103,7 @@ def freeze(A: Scene, MINE: IntArray, n: int) -> None:
     """Stop the n bodies MINE of a large island if all are slow and static forces hold them. They remain awake."""
     V0 = np.empty((n, 3))
     for q in range(n):
-        if speed(A, MINE[q], 0.0) > IMPACT_SPEED * A.PAR.pulled * A.PAR.dt:
+        if speed(A, MINE[q]) > IMPACT_SPEED * A.PAR.pulled * A.PAR.dt:
             return
         body = A.BODY[MINE[q]]
         V0[q, 0], V0[q, 1], V0[q, 2] = body.vx, body.vy, body.spin
@@ -116,7 +116,7 @@ def split_slow(A: Scene, MINE: IntArray, n: int, STAND: IntArray, MOVE: IntArray
     number of the first."""
     stand, limit = 0, candidate_speed(n) * A.PAR.pulled * A.PAR.dt
     for q in range(n):
-        if A.RESTING[MINE[q]].rest_timer >= 1.0 and speed(A, MINE[q], 0.0) <= limit:
+        if A.RESTING[MINE[q]].rest_timer >= 1.0 and speed(A, MINE[q]) <= limit:
             STAND[stand] = MINE[q]
             stand += 1
         else:

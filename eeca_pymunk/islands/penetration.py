@@ -31,7 +31,7 @@ def hold_penetrating(A: Scene) -> None:
                 j = LINK[o].owner
                 if (BODY[j].inv_mass > 0.0 and A.MEMBER[j].tied >= 0) or (fixed_support(A, i) and fixed_support(A, j)):
                     continue
-                if barred(A.RULE, s, o) or law(A.SHAPE, A.RULE, s, o)[0] >= 1.0:
+                if barred(A, s, o) or law(A, s, o)[0] >= 1.0:
                     continue
                 if o < A.LIST.shape[0] and far_apart(A, s, o, 0.0, 0.0):
                     continue

@@ -21,11 +21,10 @@ def spins_freely(A: Scene, i: int) -> bool:
 
 
 @nonallocating
-def speed(A: Scene, i: int, s: float) -> float:
-    """Bound of the speed (length/time) of points of body i after a time s; of its centre if it spins freely."""
-    BODY = A.BODY
-    vx, vy = BODY[i].vx + s * BODY[i].ax, BODY[i].vy + s * BODY[i].ay
-    return point_speed(vx, vy, 0.0 if spins_freely(A, i) else BODY[i].spin + s * BODY[i].angular, BODY[i].extent)
+def speed(A: Scene, i: int) -> float:
+    """Bound of the speed (length/time) of points of body i; of its centre if it spins freely."""
+    body = A.BODY[i]
+    return point_speed(body.vx, body.vy, 0.0 if spins_freely(A, i) else body.spin, body.extent)
 
 
 @nonallocating
@@ -71,7 +70,7 @@ def rest_threshold(
         for q in range(n):
             if A.RESTING[MINE[q]].rest_timer < 1.0 or A.MEMBER[MINE[q]].busy > 0:
                 return 0.0
-            if not lossy and speed(A, MINE[q], 0.0) > REST_SPEED * A.PAR.pulled * A.PAR.dt:
+            if not lossy and speed(A, MINE[q]) > REST_SPEED * A.PAR.pulled * A.PAR.dt:
                 return 0.0
     postpone_test(A, MINE, n)
     return candidate_speed(with_supports)

@@ -87,7 +87,7 @@ def supports_load(A: Scene, root: int) -> bool:
             continue
         a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
         p, q = A.PLACE[A.LINK[a].owner], A.PLACE[A.LINK[b].owner]
-        e, mu, _, _ = law(A.SHAPE, A.RULE, a, b)
+        e, mu, _, _ = law(A, a, b)
         P[m], Q[m] = p if p >= 0 else n, q if q >= 0 else n
         row = ROWS[m]
         row.nx, row.ny, row.gap, row.elasticity, row.friction, row.surface = R.nx, R.ny, 0.0, e, mu, 0.0
@@ -95,15 +95,8 @@ def supports_load(A: Scene, root: int) -> bool:
         L[m, 0], L[m, 1], OF[m] = R.normal, R.tangential, c
         m += 1
     clear_places(A, MINE, n)
-    found, factors = equilibrium(
-        Problem(P, Q, ROWS, IMS, IIS, POSE, n, m),
-        L,
-        START,
-        FELT,
-        REST_SPEED * A.PAR.pulled * dt,
-        SUPPORT_FACTORS,
-        False,
-    )
+    problem, slow = Problem(P, Q, ROWS, IMS, IIS, POSE, n, m), REST_SPEED * A.PAR.pulled * dt
+    found, factors = equilibrium(problem, L, START, FELT, slow, SUPPORT_FACTORS, False)
     A.COUNT.direct += factors
     if not found:
         postpone_test(A, MINE, n)

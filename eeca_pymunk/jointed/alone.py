@@ -38,7 +38,7 @@ def meets_nobody(A: Scene, root: int) -> bool:
     while i >= 0:
         for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
             for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
-                if not barred(A.RULE, s, int(A.POOL[w])):
+                if not barred(A, s, int(A.POOL[w])):
                     return False
         i = A.MEMBER[i].following
     return True

@@ -39,7 +39,7 @@ def may_meet(A: Scene, i: int, way: float, t: float, h: float, KEY: IntArray, m:
             o = int(A.POOL[w])
             b = A.BODY[A.LINK[o].owner]
             speed = norm(b.vx, b.vy) + abs(b.spin) * b.extent
-            if barred(A.RULE, s, o) or far_apart(A, s, o, t, 2.0 * (way + speed * h + A.PAR.pulled * h * h)):
+            if barred(A, s, o) or far_apart(A, s, o, t, 2.0 * (way + speed * h + A.PAR.pulled * h * h)):
                 continue
             known = False
             for z in range(m):

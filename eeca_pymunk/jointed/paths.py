@@ -45,7 +45,7 @@ def passes(A: Scene, root: int, t: float) -> float:
             for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
                 o = int(A.POOL[w])
                 twice = o < s and A.STATE[A.LINK[o].owner].island == A.STATE[i].island  # in the list of o, too
-                if twice or A.FLAG[w] != 0 or barred(A.RULE, s, o):
+                if twice or A.FLAG[w] != 0 or barred(A, s, o):
                     continue
                 began = max(A.BODY[i].since, A.BODY[A.LINK[o].owner].since)
                 g = math.inf if far_apart(A, s, o, t, 0.0) else gap(A, s, o, t)[0]

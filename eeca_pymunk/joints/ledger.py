@@ -113,8 +113,7 @@ def close_ledger(local: Rows[BodyStep], bodies: int, ledger: JointLedger) -> Non
             if local[i].mobility[c] > 0.0:
                 before, after = local[i].saved_velocity[c], local[i].v0[c]
                 way = local[i].travel[c] - local[i].shift[c]
-                gained += (0.5 * (after * after - before * before) - local[i].acceleration[c] * way) / local[
-                    i
-                ].mobility[c]
+                specific = 0.5 * (after * after - before * before) - local[i].acceleration[c] * way
+                gained += specific / local[i].mobility[c]
     change = gained + ledger.stored + ledger.damped + ledger.clamped + ledger.projected - ledger.motors
     ledger.supports, ledger.closed, ledger.limited = 0.0, max(change, 0.0), max(-change, 0.0)

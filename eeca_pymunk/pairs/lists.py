@@ -58,12 +58,8 @@ def may_meet(A: Scene, a: int, b: int) -> bool:
     it."""
     BODY, LINK = A.BODY, A.LINK
     i, j = LINK[a].owner, LINK[b].owner
-    if i == j or (
-        BODY[i].inv_mass == 0.0
-        and BODY[j].inv_mass == 0.0
-        and BODY[i].inv_inertia == 0.0
-        and BODY[j].inv_inertia == 0.0
-    ):
+    still = BODY[i].inv_mass == 0.0 and BODY[i].inv_inertia == 0.0
+    if i == j or (still and BODY[j].inv_mass == 0.0 and BODY[j].inv_inertia == 0.0):
         return False
     if LINK[a].group != 0 and LINK[a].group == LINK[b].group:
         return False
@@ -125,6 +121,6 @@ def face_tolerance(A: Scene, a: int, b: int) -> float:
     """The `tolerance` (length) of `..geometry.manifold.face` in an impact of shapes a and b: the difference of gaps up
     to which both ends of a common face touch at once."""
     tolerance = FACE_ROUND_OFF * gap_round_off(A, a, b)
-    if law(A.SHAPE, A.RULE, a, b)[0] < 1.0:
+    if law(A, a, b)[0] < 1.0:
         tolerance = max(tolerance, ROCKING * smaller(A, a, b))
     return tolerance

@@ -6,8 +6,7 @@ from __future__ import annotations
 
 from ..arrays import FloatArray
 from ..compiled import nonallocating
-from ..compiled.records import Rows
-from ..model.shapes import Shape
+from ..model.scene import Scene
 
 
 @nonallocating
@@ -29,22 +28,18 @@ def row_of(RULE: FloatArray, a: int, b: int) -> int:
 
 
 @nonallocating
-def barred(RULE: FloatArray, a: int, b: int) -> bool:
+def barred(A: Scene, a: int, b: int) -> bool:
     """Whether shapes a and b do not collide in this step, because of a handler or a joint."""
-    r = row_of(RULE, a, b)
-    return bool(r >= 0 and RULE[r, 2] < 0.0)
+    r = row_of(A.RULE, a, b)
+    return bool(r >= 0 and A.RULE[r, 2] < 0.0)
 
 
 @nonallocating
-def law(SHAPE: Rows[Shape], RULE: FloatArray, a: int, b: int) -> tuple[float, float, float, float]:
+def law(A: Scene, a: int, b: int) -> tuple[float, float, float, float]:
     """Elasticity, friction, and surface velocity (x, y) of b relative to a."""
-    r = row_of(RULE, a, b)
+    RULE, one, two, r = A.RULE, A.SHAPE[a], A.SHAPE[b], row_of(A.RULE, a, b)
     if r >= 0:
         sign = 1.0 if a < b else -1.0
         return RULE[r, 2], RULE[r, 3], sign * RULE[r, 4], sign * RULE[r, 5]
-    return (
-        SHAPE[a].elasticity * SHAPE[b].elasticity,
-        SHAPE[a].friction * SHAPE[b].friction,
-        SHAPE[b].surface_x - SHAPE[a].surface_x,
-        SHAPE[b].surface_y - SHAPE[a].surface_y,
-    )
+    surface_x, surface_y = two.surface_x - one.surface_x, two.surface_y - one.surface_y
+    return one.elasticity * two.elasticity, one.friction * two.friction, surface_x, surface_y

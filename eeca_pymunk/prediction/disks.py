@@ -63,7 +63,7 @@ def first_meeting(
             j = body_of(A, o)
             if A.PLACE[j] >= 0 and j < i:
                 continue
-        if ruled and barred(A.RULE, i, o):
+        if ruled and barred(A, i, o):
             continue
         if o < disks and even:
             CHOSEN[chosen] = o

@@ -113,7 +113,7 @@ def predict(A: Scene, i: int, now: float, end: float, until: float) -> None:
             o = int(A.POOL[q])
             if A.PLACE[LINK[o].owner] >= 0 and LINK[o].owner < i:
                 continue
-            if A.RULE.shape[0] > 0 and barred(A.RULE, s, o):
+            if A.RULE.shape[0] > 0 and barred(A, s, o):
                 continue
             t, certain = meet(A, s, o, min(horizon, horizon_of(A, LINK[o].owner, end)))
             if t < best or (t == best and other >= 0 and (s < own or (s == own and o < other))):

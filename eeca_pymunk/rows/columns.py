@@ -25,13 +25,8 @@ def as_columns(problem: Problem) -> JointedProblem:
         AT[i] = 2 * i
         for side in range(2):
             w, q, sign = 2 * i + side, B[i] if side == 1 else A[i], 2.0 * side - 1.0
-            BODY[w], nx, ny = q, ROWS[i].nx, ROWS[i].ny
-            N[w, 0], N[w, 1], T[w, 0], T[w, 1] = (
-                sign * IM[q] * nx,
-                sign * IM[q] * ny,
-                -sign * IM[q] * ny,
-                sign * IM[q] * nx,
-            )
+            BODY[w], x, y = q, sign * IM[q] * ROWS[i].nx, sign * IM[q] * ROWS[i].ny
+            N[w, 0], N[w, 1], T[w, 0], T[w, 1] = x, y, -y, x
             N[w, 2] = sign * II[q] * (ROWS[i].arm_nb if side == 1 else ROWS[i].arm_na)
             T[w, 2] = sign * II[q] * (ROWS[i].arm_tb if side == 1 else ROWS[i].arm_ta)
     AT[m] = 2 * m

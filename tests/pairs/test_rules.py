@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from eeca_pymunk.compiled.records import put, rows
+from eeca_pymunk.model.scene import scene_with
 from eeca_pymunk.model.shapes import Shape
 from eeca_pymunk.pairs.rules import barred, law
 from eeca_pymunk.space.decisions import Rules
@@ -23,10 +24,11 @@ def test_rules_are_found_as_in_a_dictionary(count: int) -> None:
     parted = set(chosen[count // 3 : count // 2])
     told = rules.of_pairs(SHAPE, parted)
     RULE = np.array([(*pair, *what) for pair, what in told.items()], float).reshape(-1, 6)
+    scene = scene_with(SHAPE=SHAPE, RULE=RULE)
     for a, b in every:
-        assert barred(RULE, a, b) == barred(RULE, b, a) == ((a, b) in parted.union(ignored))
-        e, mu, sx, sy = law(SHAPE, RULE, a, b)
-        assert law(SHAPE, RULE, b, a) == (e, mu, -sx, -sy)
+        assert barred(scene, a, b) == barred(scene, b, a) == ((a, b) in parted.union(ignored))
+        e, mu, sx, sy = law(scene, a, b)
+        assert law(scene, b, a) == (e, mu, -sx, -sy)
         if (a, b) not in told:
             assert (e, mu) == (
                 SHAPE["elasticity"][a] * SHAPE["elasticity"][b],
