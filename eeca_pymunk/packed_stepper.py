@@ -137,7 +137,7 @@ class PackedStepper(HookedStepper):
             if status < 0 and status != OTHER_BODIES:
                 self._raise_failure(world, dt, status)
             if status >= 0:
-                outcome = self._outcome(dt)
+                outcome = self._outcome(world, dt)
                 if status & FORCES:
                     world.reset_forces()
                 status = status if left_out else status & EVENTS | world.write_whole()
