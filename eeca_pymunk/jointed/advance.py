@@ -133,34 +133,46 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
 
 
 @nonallocating
+def apart(row: Row, x: float, y: float) -> tuple[float, float]:
+    """How far the points of a contact on both bodies are apart, along its normal n and across, where one body is at
+    (x, y) from the other: arms are r = (arm_t) n - (arm_n) t."""
+    along = x * row.nx + y * row.ny + (row.arm_tb - row.arm_ta)
+    return along, x * row.ny - y * row.nx + (row.arm_nb - row.arm_na)
+
+
+@nonallocating
+def join_points(row: Row, along: float, across: float) -> None:
+    """Let the points of a contact that are so far `apart` be one: halfway, but a disk keeps an arm of 0."""
+    part = 0.0 if row.arm_na == 0.0 else 1.0 if row.arm_nb == 0.0 else 0.5
+    row.arm_na += part * across
+    row.arm_ta += part * along
+    row.arm_nb -= (1.0 - part) * across
+    row.arm_tb -= (1.0 - part) * along
+
+
+@nonallocating
 def align(
     isle: Island, P: IntArray, Q: IntArray, ROWS: Rows[Row], m: int, motion: Motion, change: bool
 ) -> float:  # fmt: skip
     """How far the arms r of contacts between moving bodies are from being about one point where their forces act, over
     the size of bodies and places; and `change` them so, unless a body is off by more than its size.
 
-    An impulse p spread over a step changes the angular momentum of a body by (x + r) x p, x its mean place;
-    r = (arm_t) n - (arm_n) t. A disk keeps an arm of 0.
+    An impulse p spread over a step changes the angular momentum of a body by (x + r) x p, x its mean place.
     """
     worst = 0.0
     for i in range(m):
-        a, b, nx, ny = P[i], Q[i], ROWS[i].nx, ROWS[i].ny
+        a, b = P[i], Q[i]
         if isle.IM[a] == 0.0 or isle.IM[b] == 0.0:
             continue
         x, y = motion.MID[b, 0] - motion.MID[a, 0], motion.MID[b, 1] - motion.MID[a, 1]
-        along = x * nx + y * ny + (ROWS[i].arm_tb - ROWS[i].arm_ta)
-        across = x * ny - y * nx + (ROWS[i].arm_nb - ROWS[i].arm_na)
+        along, across = apart(ROWS[i], x, y)
         off, size = abs(along) + abs(across), min(isle.EXTENT[a], isle.EXTENT[b])
         if not off <= size:
             continue
         worst = max(worst, off / (size + abs(motion.MID[a, 0]) + abs(motion.MID[a, 1])))
         if not change:
             continue
-        part = 0.0 if ROWS[i].arm_na == 0.0 else 1.0 if ROWS[i].arm_nb == 0.0 else 0.5
-        ROWS[i].arm_na += part * across
-        ROWS[i].arm_ta += part * along
-        ROWS[i].arm_nb -= (1.0 - part) * across
-        ROWS[i].arm_tb -= (1.0 - part) * along
+        join_points(ROWS[i], along, across)
     return worst
 
 

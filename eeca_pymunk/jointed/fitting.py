@@ -16,12 +16,12 @@ from ..model.scene import Scene
 from ..rows.bounded import room_for_rows
 from ..rows.build import normal_rate
 from ..rows.inplace import add
-from .advance import Interval, find_hit
+from .advance import Interval, apart, find_hit, join_points
 from .columns import fill_free, fill_group, weigh
 from .component import fit_speeds, ready
 from .gathered import find_places, gather_component
 from .lifting import raise_gaps
-from .motors import keeps_speed
+from .motors import acts_at_once
 
 
 @kernel
@@ -29,8 +29,8 @@ def fit(A: Scene, J: Joints, interval: Interval, L: FloatArray, end: float, scal
     """Make the velocities at the end of a lossy interval fit the joints of the components that contacts push.
 
     Bodies that land leave velocities which violate joints, and those would ring for ever: a midpoint rule turns their
-    sign in every step. What this costs enters the ledger. Of a few contacts, those that push do not close by it: see
-    `stop_closing`, which would change the speeds of motors.
+    sign in every step. What this costs enters the ledger. Of a few contacts, those that push do not close by it
+    (`stop_closing`). Bounded impulses, as motors have, act over times and take no part in this.
     `scale` is a speed of the island. C is overwritten.
 
     Returns:
@@ -43,11 +43,10 @@ def fit(A: Scene, J: Joints, interval: Interval, L: FloatArray, end: float, scal
     for i in range(m):
         if L[i, 0] > 0.0:
             PUSHED[groups.GROUP[interval.P[i]] + 1] = PUSHED[groups.GROUP[interval.Q[i]] + 1] = 1
-    first, driven = -1, False
+    first = -1
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
-        driven = driven or (s >= 0 and keeps_speed(J, s))
-        if s < 0 or PUSHED[g + 1] == 0:
+        if s < 0 or PUSHED[g + 1] == 0 or not acts_at_once(J, s):
             continue
         first = s if first < 0 else first
         length = gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, end, interval.h)
@@ -60,7 +59,7 @@ def fit(A: Scene, J: Joints, interval: Interval, L: FloatArray, end: float, scal
             if body < A.PLACE.shape[0] and A.PLACE[body] >= 0:
                 for c in range(3):
                     motion.V[A.PLACE[body], c] = J.LOCAL[w].v0[c]
-    if first < 0 or driven or m > COLUMN_CONTACTS:
+    if first < 0 or m > COLUMN_CONTACTS:
         return np.zeros(m)
     RATES, fastest = np.full(m, np.inf), 0.0
     for i in range(m):
@@ -76,14 +75,9 @@ def fit(A: Scene, J: Joints, interval: Interval, L: FloatArray, end: float, scal
 def bring_arms(P: IntArray, Q: IntArray, ROWS: Rows[Row], END: FloatArray, m: int) -> None:
     """Let the arms of m contacts be about one point of both bodies at END: these have moved apart since."""
     for i in range(m):
-        x, y, a, b = ROWS[i].nx, ROWS[i].ny, P[i], Q[i]
-        # An arm is (r x t) n - (r x n) t.
-        along = 0.5 * (x * (END[b, 0] - END[a, 0]) + y * (END[b, 1] - END[a, 1]) - ROWS[i].arm_ta + ROWS[i].arm_tb)
-        across = 0.5 * (x * (END[b, 1] - END[a, 1]) - y * (END[b, 0] - END[a, 0]) + ROWS[i].arm_na - ROWS[i].arm_nb)
-        ROWS[i].arm_ta += along
-        ROWS[i].arm_na -= across
-        ROWS[i].arm_tb -= along
-        ROWS[i].arm_nb += across
+        x, y = END[Q[i], 0] - END[P[i], 0], END[Q[i], 1] - END[P[i], 1]
+        along, across = apart(ROWS[i], x, y)
+        join_points(ROWS[i], along, across)
 
 
 @kernel

@@ -48,11 +48,10 @@ def work_error(interval: Interval, L: FloatArray, slow: float, pull: float, know
 def lock(
     A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, free: bool, elastic: bool, owed: float,
     error: float,
-) -> float:  # fmt: skip
-    """Scale the impulses L of contacts until these lose `owed` at least, or if `elastic` just that, but for `error`;
-    the factor. The loss is a quadratic function of it, D(s) = s p - s^2 q."""
+) -> None:  # fmt: skip
+    """Scale the impulses L of contacts by s until these lose `owed` at least, or if `elastic` just that, but for
+    `error`. The loss is a quadratic function, D(s) = s p - s^2 q."""
     _, _, P, Q, ROWS, motion, C, m, _, _, h = interval
-    scaled = 1.0
     for tries in range(PRESS_LOCKS + 1):
         loss = lost(P, Q, ROWS, L, motion.WAY, m, h)
         if loss >= owed - error and (not elastic or loss <= owed + error):
@@ -82,7 +81,5 @@ def lock(
             L[i, 0] = s * L[i, 0] if s > 0.0 else 0.0
             L[i, 1] = s * L[i, 1] if s > 0.0 else 0.0
         advance_aligned(A, J, interval, L, B, free)
-        scaled *= s
         if s == 0.0:
             break
-    return scaled

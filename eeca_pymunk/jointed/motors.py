@@ -17,6 +17,15 @@ def keeps_speed(J: Joints, s: int) -> bool:
 
 
 @nonallocating
+def acts_at_once(J: Joints, s: int) -> bool:
+    """Whether component s has joints without bounds; with none its bodies are free at an instant."""
+    for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
+        if J.COUPLING[k].bounded == 0:
+            return True
+    return False
+
+
+@nonallocating
 def let_slip(J: Joints, s: int, slips: bool, limits: bool) -> None:
     """Let bounded impulses count as given in answers, or no longer: those of joints with a max_force, where they are
     few enough for `..newton.boxes`, and, if `limits`, those of limits that hold."""

@@ -213,5 +213,6 @@ def press(
     known = PRESS_WORK_ROUND_OFF
     if some_give(J, groups) or some_taut(J, groups):
         known = max(known, min(2.0 * reached / (slow + pull * h), PRESS_WORK_TAUT))
-    scaled = lock(A, J, interval, L, B, free, elastic, owed, work_error(interval, L, slow, pull, known))
-    return converged and abs(scaled - 1.0) * scale <= max(agree, AGREE * scale)
+    copy(FORESEEN, motion.MEAN)
+    lock(A, J, interval, L, B, free, elastic, owed, work_error(interval, L, slow, pull, known))
+    return converged and farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n) <= max(agree, AGREE * scale)
