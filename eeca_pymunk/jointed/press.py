@@ -17,7 +17,7 @@ from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..contacts.targets import target
 from ..islands.candidates import before_end, sweeps_of
-from ..model.contacts import JointedProblem
+from ..model.contacts import Bounded, JointedProblem
 from ..model.joints import Joints
 from ..model.parameters.impulses import WEDGED
 from ..model.parameters.intervals import LARGE_ISLAND
@@ -29,6 +29,7 @@ from ..model.parameters.joints import (
     CHORD,
     COLUMN_CONTACTS,
     COLUMN_SWEEPS,
+    GUESS_SPEED,
     JOINTS_NEAR,
     OUTER,
     OUTER_FLOOR,
@@ -87,6 +88,30 @@ def aims(change: float, slow: float, fast: float, elastic: bool) -> tuple[float,
     return scale, (AGREE_REST if rests else AGREE) * scale, (PRESS_RESIDUAL_REST if rests else PRESS_RESIDUAL) * scale
 
 
+@nonallocating
+def clear(L: FloatArray) -> bool:
+    """Let impulses be 0; whether they were not."""
+    some = False
+    for k in range(L.shape[0]):
+        some = some or L[k, 0] != 0.0 or L[k, 1] != 0.0
+        L[k, 0] = L[k, 1] = 0.0
+    return some
+
+
+@kernel
+def accelerations(interval: Interval, L: FloatArray, B: Bounded, EFFECT: FloatArray) -> float:
+    """EFFECT (k, 3), out: accelerations of the bodies without the impulses L of contacts, under which they have moved,
+    by the columns; the largest one of a point."""
+    isle, motion, h = interval.isle, interval.motion, interval.h
+    copy(EFFECT, motion.MEAN)
+    push_columns(interval.C, L, interval.m, -1.0, EFFECT)
+    settle_bounded(B, EFFECT)
+    for q in range(len(EFFECT)):
+        for c in range(3):
+            EFFECT[q, c] = (EFFECT[q, c] - isle.V[q, c]) / h
+    return farthest_apart(EFFECT, np.zeros_like(EFFECT), isle.EXTENT, interval.n)
+
+
 @kernel
 def press(
     A: Scene, J: Joints, interval: Interval, L: FloatArray, EXPECTED: FloatArray, slow: float, fast: float, pull: float,
@@ -101,7 +126,7 @@ def press(
     isle, groups, P, Q, ROWS, motion, C, m, n, _, h = interval
     fill_free(groups, C, Q, ROWS, isle.IM, isle.II, m)
     rates(P, Q, ROWS, isle.V, m)
-    SLIP, limited = take_slips(ROWS, m), False
+    SLIP, limited, quick = take_slips(ROWS, m), False, fast + pull * h
     elastic = conserves(ROWS, m)
     scale, agree, fine = aims(pull * h, slow, fast, elastic)
     most = PRESS_SWEEPS_ELASTIC if elastic else (PRESS_SWEEPS_FEW if m <= COLUMN_CONTACTS else PRESS_SWEEPS)
@@ -155,16 +180,16 @@ def press(
         if anew and free:
             fill_free(groups, C, Q, ROWS, isle.IM, isle.II, m)
         J.PROGRESS.effort += SOLUTION_WORK * C.AT[m] if anew else 0.0
+        if outer == 0:
+            most_pull = accelerations(interval, L, B, EFFECT)
+            if most_pull * h > GUESS_SPEED * quick and clear(L):
+                # Its impulses are no loads: the bodies have not moved by the columns.
+                advance(A, J, interval, L, B, True, UNKNOWN)
+                most_pull = accelerations(interval, L, B, EFFECT)
+            # Springs and motors accelerate bodies, too.
+            pull = max(pull, most_pull)
         weigh(groups, C, P, Q, ROWS, m)
         if outer == 0:
-            EFFECT = motion.MEAN.copy()
-            push_columns(C, L, m, -1.0, EFFECT)
-            settle_bounded(B, EFFECT)
-            for q in range(len(EFFECT)):
-                for c in range(3):
-                    EFFECT[q, c] = (EFFECT[q, c] - isle.V[q, c]) / h
-            # Springs and motors accelerate bodies, too.
-            pull = max(pull, farthest_apart(EFFECT, np.zeros_like(EFFECT), isle.EXTENT, n))
             scale, agree, fine = aims(pull * h, slow, fast, elastic)
             target(P, Q, ROWS, m, EFFECT, EXPECTED, pull, h)
         copy(FORESEEN, motion.MEAN)
@@ -204,8 +229,7 @@ def press(
         solve_gently(A, J, interval, L, B, free)
         converged, bent = False, np.inf if free else 0.0
         if excessive(L, m, isle.IM, n, quick):
-            for k in range(L.shape[0]):
-                L[k, 0] = L[k, 1] = 0.0
+            clear(L)
             advance(A, J, interval, L, B, False, UNKNOWN)
     if bent > ARM_ERROR:
         advance_aligned(A, J, interval, L, B, free)

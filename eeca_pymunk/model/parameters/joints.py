@@ -141,6 +141,8 @@ LINEAR_APART = accuracy(1e-4, "of the component",
     "an impact is shorter where elastic joints would give way farther.")
 EXCESSIVE_IMPULSE = round_off(1e4, "of the island's mass and speed",
     "Impulse beyond which a solution is replaced by sweeps from zero.")
+GUESS_SPEED = round_off(1e2, "of the island's speed and |a| h",
+    "Velocity without impulses, by the answers to a guess, from which on the guess is none.")
 GENTLE_SWEEPS = work(20, "sweeps", "Sweeps that replace an excessive solution.")
 OUTER_PROGRESS = work(0.3, "ratio of differences",
     "Progress of the iterations between contacts and components below which they are given up; they end at AGREE.")
