@@ -17,7 +17,7 @@ from ..rows.bounded import room_for_rows
 from ..rows.build import normal_rate
 from ..rows.inplace import add
 from .advance import Interval, apart, find_hit, join_points
-from .columns import fill_free, fill_group, weigh
+from .columns import fill_free, fill_group, make_columns, weigh
 from .component import fit_speeds, ready
 from .gathered import find_places, gather_component
 from .lifting import raise_gaps
@@ -31,7 +31,7 @@ def fit(A: Scene, J: Joints, interval: Interval, L: FloatArray, end: float, scal
     Bodies that land leave velocities which violate joints, and those would ring for ever: a midpoint rule turns their
     sign in every step. What this costs enters the ledger. Of a few contacts, those that push do not close by it
     (`stop_closing`). Bounded impulses, as motors have, act over times and take no part in this.
-    `scale` is a speed of the island. C is overwritten.
+    `scale` is a speed of the island.
 
     Returns:
         (m,) normal impulses of contacts that keep these from closing, which the ledger has.
@@ -61,13 +61,14 @@ def fit(A: Scene, J: Joints, interval: Interval, L: FloatArray, end: float, scal
                     motion.V[A.PLACE[body], c] = J.LOCAL[w].v0[c]
     if first < 0 or m > COLUMN_CONTACTS:
         return np.zeros(m)
-    RATES, fastest = np.full(m, np.inf), 0.0
+    ASKED, asked, fastest = np.empty(m, np.int64), 0, 0.0
     for i in range(m):
         if L[i, 0] > 0.0 and interval.C.OUT[i] == 0:
-            RATES[i] = normal_rate(interval.P, interval.Q, interval.ROWS, motion.V, i)
-            fastest = max(fastest, -RATES[i])
+            ASKED[asked] = i
+            asked += 1
+            fastest = max(fastest, -normal_rate(interval.P, interval.Q, interval.ROWS, motion.V, i))
     if fastest > FIT_CLOSING * scale:
-        return stop_closing(A, J, interval, end, RATES, FIT_RESIDUAL * fastest, first)
+        return stop_closing(A, J, interval, end, ASKED[:asked], FIT_RESIDUAL * fastest, first)
     return np.zeros(m)
 
 
@@ -82,16 +83,21 @@ def bring_arms(P: IntArray, Q: IntArray, ROWS: Rows[Row], END: FloatArray, m: in
 
 @kernel
 def stop_closing(
-    A: Scene, J: Joints, interval: Interval, end: float, RATES: FloatArray, fine: float, book: int
+    A: Scene, J: Joints, interval: Interval, end: float, ASKED: IntArray, fine: float, book: int
 ) -> FloatArray:
-    """Normal impulses mu (m,), 0 <= mu _|_ u + G S G^T mu >= 0, on contacts whose rates u (m,) are RATES, infinite for
-    those that are not asked: velocities that fit the joints go on to do so, and contacts do not close. Energy only
-    falls, by -mu.(u + G S G^T mu / 2), also where sweeps are cut short; it is lost by component `book`."""
-    isle, groups, P, Q, _, motion, C, m, n, _, h = interval
-    KEEP, NOTHING = interval.ROWS[:m].copy(), np.zeros_like(isle.V)
-    bring_arms(P, Q, KEEP, motion.END, m)
-    fill_free(groups, C, Q, KEEP, isle.IM, isle.II, m)
-    INDEX, HIT = np.full(len(isle.IM), -1, np.int64), find_hit(groups, P, Q, m)
+    """Normal impulses mu (m,), 0 <= mu _|_ u + G S G^T mu >= 0, on the contacts ASKED, whose rates are u: velocities
+    that fit the joints go on to do so, and contacts do not close. Energy only falls, by -mu.(u + G S G^T mu / 2), also
+    where sweeps are cut short; it is lost by component `book`."""
+    isle, groups, _, _, _, motion, _, m, n, _, h = interval
+    asked = len(ASKED)
+    P, Q, KEEP = np.empty(asked, np.int64), np.empty(asked, np.int64), interval.ROWS[:asked].copy()
+    for i in range(asked):
+        P[i], Q[i], KEEP[i] = interval.P[ASKED[i]], interval.Q[ASKED[i]], interval.ROWS[ASKED[i]]
+    bring_arms(P, Q, KEEP, motion.END, asked)
+    C = make_columns(groups, P, Q, asked)
+    fill_free(groups, C, Q, KEEP, isle.IM, isle.II, asked)
+    NOTHING, INDEX = np.zeros_like(isle.V), np.full(len(isle.IM), -1, np.int64)
+    HIT = find_hit(groups, P, Q, asked)
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
         if s < 0 or HIT[g] == 0:
@@ -100,15 +106,16 @@ def stop_closing(
         size = find_places(A, J, s, INDEX)
         if not ready(J, s, 2.0, False):
             return np.zeros(m)
-        fill_group(J, groups, C, g, INDEX, False, P, Q, KEEP, m, np.empty((size, 3)), 1)
-    weigh(groups, C, P, Q, KEEP, m)
-    for i in range(m):
-        if RATES[i] < np.inf:
-            RATES[i] = normal_rate(P, Q, KEEP, motion.V, i)
+        fill_group(J, groups, C, g, INDEX, False, P, Q, KEEP, asked, np.empty((size, 3)), 1)
+    weigh(groups, C, P, Q, KEEP, asked)
+    RATES = np.empty(asked)
+    for i in range(asked):
+        RATES[i] = normal_rate(P, Q, KEEP, motion.V, i)
     D, before = np.zeros_like(motion.V), kinetic_energy(motion.V, isle.IM, isle.II, n)
-    MU = raise_gaps(JointedProblem(P, Q, KEEP, C, room_for_rows(0, 0), m), RATES, D, fine)
-    loss = 0.0
-    for i in range(m):
+    MU = raise_gaps(JointedProblem(P, Q, KEEP, C, room_for_rows(0, 0), asked), RATES, D, fine)
+    HELD, loss = np.zeros(m), 0.0
+    for i in range(asked):
+        HELD[ASKED[i]] = MU[i]
         if MU[i] > 0.0:
             loss -= MU[i] * (RATES[i] + 0.5 * normal_rate(P, Q, KEEP, D, i))
     add(motion.V, D)
@@ -119,4 +126,4 @@ def stop_closing(
         J.STEPPED[book].supports += gained + loss
     else:
         J.STEPPED[book].projected -= gained
-    return MU
+    return HELD
