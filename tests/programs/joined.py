@@ -13,6 +13,7 @@ import pymunk
 HOLDS = 1e-8  # of the component (`reach`), of joints in a step that has converged: NEARLY_HELD of the method
 OFF = 1e-3  # of the length of the scene, whatever converges
 BOUND = 1e-9  # over max_force dt
+ANCHORS = "anchor_a", "anchor_b", "groove_a", "groove_b"
 KINDS = (
     "pivot", "pin", "slide", "groove", "spring", "rotary spring", "rotary limit", "ratchet", "gear", "motor",
 )  # fmt: skip
@@ -86,15 +87,17 @@ def apart(joint: pymunk.Constraint, length: float) -> float:
 
 
 def reach(joint: pymunk.Constraint) -> float:
-    """The farthest coordinate of what hangs together with a joint, which its errors are measured by."""
-    seen, front = {joint.a, joint.b}, [joint.a, joint.b]
+    """The size of the component of a joint, which its errors are measured by: its farthest coordinate or anchor."""
+    seen, front, far = {joint.a, joint.b}, [joint.a, joint.b], 0.0
     while front:
         body = front.pop()
         if body.body_type == pymunk.Body.DYNAMIC:
             found = {end for other in body.constraints for end in (other.a, other.b)} - seen
             seen |= found
             front += found
-    return max(abs(place) for body in seen for place in body.position)
+            anchors = (getattr(other, name, (0.0, 0.0)) for other in body.constraints for name in ANCHORS)
+            far = max(far, *(abs(x) for anchor in anchors for x in anchor))
+    return max(far, *(abs(place) for body in seen for place in body.position))
 
 
 def overdone(joint: pymunk.Constraint, dt: float) -> float:

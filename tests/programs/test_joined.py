@@ -35,11 +35,11 @@ def test_what_is_apart_and_what_is_overdone_is_seen() -> None:
     assert apart(gear, 2.0) == pytest.approx(0.75)
     assert apart(groove, 2.0) == pytest.approx(0.1)
     assert apart(limit, 2.0) == pytest.approx(0.25)
-    assert reach(pin) == 2.0
+    assert reach(pin) == 4.0  # the groove's end
     c = pymunk.Body(1.0, 1.0)
-    c.position = 0.0, -3.0
+    c.position = 0.0, -5.0
     space.add(c, pymunk.PivotJoint(b, c, (1.0, -1.0)))
-    assert reach(pin) == 3.0
+    assert reach(pin) == 5.0
     pin.max_force = 1.0
     ep.EECA(space).step(1 / 60)
     assert overdone(pin, 1 / 60) <= 1.0 + 1e-9
