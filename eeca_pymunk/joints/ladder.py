@@ -108,8 +108,8 @@ def repaid(W: Workspace, h: float, own: bool) -> bool:
     for i in range(W.bodies):
         for c in range(3):
             if W.J.LOCAL[i].mobility[c] > 0.0:
-                v, dv = W.J.LOCAL[i].saved_velocity[c], 0.0 if own else h * W.J.LOCAL[i].acceleration[c]
-                had += 0.5 * (v * v + dv * dv) / W.J.LOCAL[i].mobility[c]
+                v, after = W.J.LOCAL[i].saved_velocity[c], 0.0 if own else W.J.LOCAL[i].v0[c]
+                had += 0.5 * (v * v + after * after) / W.J.LOCAL[i].mobility[c]
     if own and not gain <= REPAID * had:
         return False
     if own or gain > JOINT_GAIN * had:

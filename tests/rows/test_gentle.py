@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from eeca_pymunk.model.contacts import Problem
+from eeca_pymunk.model.parameters.joints import EXCESSIVE_IMPULSE
 from eeca_pymunk.rows.build import normal_rate
 from eeca_pymunk.rows.columns import as_columns, breach
 from eeca_pymunk.rows.gentle import excessive, unwedge
@@ -50,7 +51,8 @@ def test_a_corner_holds_what_moves_into_it_without_self_stress(unit: float) -> N
 
 def test_excessive_impulses_are_not_finite_or_many_times_the_momenta() -> None:
     inverse = np.array([0.5, 2.0])  # masses 2 and 1/2
-    for normal, expected in ((1e4 * 2.5 * 3.0 * 0.999, False), (1e4 * 2.5 * 3.0 * 1.001, True), (np.nan, True)):
+    most = EXCESSIVE_IMPULSE * 2.5 * 3.0
+    for normal, expected in ((0.999 * most, False), (1.001 * most, True), (np.nan, True)):
         assert excessive(np.array([[normal, 0.0]]), 1, inverse, 2, 3.0) == expected
 
 

@@ -57,7 +57,7 @@ COMPONENT_BUDGET = work(0.5, "of what is left", "Work of one step of a component
 NEARLY_HELD = accuracy(1e-08, "of the component", "Error of elastic joints up to which the step counts as converged.")
 REPAID = accuracy(1e-3, "of the kinetic energy",
     "Gain of closing joints that an earlier step left apart, up to which it is locked.")
-JOINT_GAIN = round_off(1e-10, "of the kinetic energy",
+JOINT_GAIN = round_off(1e-12, "of the kinetic energy before and after",
     "Gain of joints that hold in a step, above which it is taken from what moves.")
 STALLED = accuracy(100.0, "of all momenta, loads and forces of a component, as angular momentum",
     "Impulse that a motor of unlimited force may have in a step: what drives against a limit stalls.")
@@ -139,7 +139,7 @@ LEAST_SOLUTIONS = work(40, "solutions", "Newton iterations that a step of a comp
 LINEAR_APART = accuracy(1e-4, "of the component",
     "How far one linear system may leave joints: what would be farther moves as one body. An interval that ends at "
     "an impact is shorter where elastic joints would give way farther.")
-EXCESSIVE_IMPULSE = round_off(1e4, "of the island's mass and speed",
+EXCESSIVE_IMPULSE = round_off(1e3, "of the island's mass and speed",
     "Impulse beyond which a solution is replaced by sweeps from zero.")
 GUESS_SPEED = round_off(1e2, "of the island's speed and |a| h",
     "Velocity without impulses, by the answers to a guess, from which on the guess is none.")
