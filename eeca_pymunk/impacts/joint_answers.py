@@ -106,3 +106,38 @@ def keep_allowed(
         if groups.GROUP[q] == g:
             for c in range(3):
                 V[q, c] = PUSH[INDEX[q], c]
+
+
+@kernel
+def bear(A: Scene, J: Joints, block: Block, groups: Groups, L: FloatArray, FREE: FloatArray, t: float) -> None:
+    """Add to the joints' `struck` what they have answered to the impulses L of an impact at instant t, and to the part
+    of the velocities FREE before it that they do not allow."""
+    P, Q, ROWS = block.A, block.B, block.ROWS
+    INDEX = np.full(len(block.IM), -1, np.int64)
+    for g in range(len(groups.COMPONENT)):
+        s = groups.COMPONENT[g]
+        if s < 0:
+            continue
+        gather_component(A, J, s, block.POSE, FREE, np.zeros_like(FREE), block.IM, block.II, t, 0.0)
+        PUSH = np.zeros((find_places(A, J, s, INDEX), 3))
+        if not ready(J, s, 2.0, False):
+            continue
+        for q in range(len(FREE)):
+            if groups.GROUP[q] == g:
+                for c in range(3):
+                    mobility = block.II[q] if c == 2 else block.IM[q]
+                    PUSH[INDEX[q], c] = FREE[q, c] / mobility if mobility > 0.0 else 0.0
+        for i in range(len(ROWS)):
+            for q, side in ((P[i], -1.0), (Q[i], 1.0)):
+                if groups.GROUP[q] == g:
+                    row, n, f = ROWS[i], side * L[i, 0], side * L[i, 1]
+                    arm_n, arm_t = (row.arm_nb, row.arm_tb) if side > 0.0 else (row.arm_na, row.arm_ta)
+                    PUSH[INDEX[q], 0] += n * row.nx - f * row.ny
+                    PUSH[INDEX[q], 1] += n * row.ny + f * row.nx
+                    PUSH[INDEX[q], 2] += n * arm_n + f * arm_t
+        answer(J, s, False, PUSH)
+        W = workspace(J, s)
+        for k in range(W.joints):
+            for r in range(W.link[k].rows):
+                impulse = W.J.RIGHT[W.link[k].first_row + r] * W.J.HINGE[k].scale[r]
+                W.J.JOINT[W.link[k].joint].struck[r] += impulse

@@ -32,7 +32,7 @@ from ..rows.energy import offset_gain, scale_to_lose
 from ..rows.gentle import excessive, sweep_gently
 from ..rows.inplace import copy
 from ..rows.sweeps import velocities
-from .joint_answers import answer_impact, begin_impact, hold_limits
+from .joint_answers import answer_impact, bear, begin_impact, hold_limits
 from .resolution import finish, rejoin
 from .simultaneous import Block, energy_owed, gather, make_block
 
@@ -193,6 +193,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     if fits:
         velocities(problem, L, FITTED, V)
     settle_energy(A, block, n, L, BEFORE, FITTED if fits else BEFORE, driven, owed, exact, OUT)
+    bear(A, J, block, groups, L, BEFORE if fits else 0.0 * BEFORE, t)
     lost = OUT[0].restitution + OUT[0].friction - owed
     finish(A, block, n, m, L, OUT, status, t)
     A.STATE[i].version += 1

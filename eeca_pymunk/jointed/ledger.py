@@ -55,6 +55,8 @@ def start_joints(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray, dt: fl
     J.PROGRESS.budget = (STEP_WORK + STEP_WORK_BODY * A.BODY.shape[0]) * max(1.0, dt / BUDGET_TIME)
     for s in range(len(J.STEPPED)):
         clear_interval(J.STEPPED[s])
+    for j in range(J.JOINT.shape[0]):
+        J.JOINT[j].struck[0] = J.JOINT[j].struck[1] = 0.0
 
 
 @nonallocating

@@ -48,6 +48,7 @@ class Joint(Record):
     side: int  # of a limit that holds: -1 the lower, 1 the upper, lam side <= 0; 0 between them
     touched: int  # 0, EDITED, APART, LEFT_APART or GIVES_WAY
     impulse: Annotated[FloatArray, 2]  # of the last step along the rows; of a spring along d, of a rotary one on b
+    struck: Annotated[FloatArray, 2]  # impulses by which the joint has answered impacts of the last step
     last_step: float  # its dt; 0 if none
     work: float  # energy that the joint gave to its bodies in the last step
     led: Annotated[FloatArray, 2, 3]  # accelerations that joints gave to bodies a and b last
@@ -69,7 +70,7 @@ EDITED, APART, LEFT_APART, GIVES_WAY = 1, 2, 3, 4
 
 # Fields that steps change.
 OF_STEPS = (
-    "side", "impulse", "last_step", "work", "led", "known_parts", "known_step", "past_led", "past_push",
+    "side", "impulse", "struck", "last_step", "work", "led", "known_parts", "known_step", "past_led", "past_push",
     "owed", "compliance",
 )  # fmt: skip
 

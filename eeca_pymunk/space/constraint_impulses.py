@@ -52,10 +52,10 @@ class Impulses:
         space = self._space()
         if space is not None and private.timestamp(space)() != self._stamp:
             return None
-        first, second = self._joint[j].impulse
+        (first, second), (x, y) = self._joint[j].impulse, self._joint[j].struck
         if self._joint[j].kind in (SPRING, ROTARY_SPRING):
             return float(first)
-        return math.hypot(first, second)
+        return math.hypot(first + x, second + y)
 
 
 _shown: WeakKeyDictionary[pymunk.Constraint, tuple[Impulses | None, int]] = WeakKeyDictionary()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pymunk
@@ -10,6 +11,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import eeca_pymunk as ep
+from scenes.scene import add_disk
 
 from .measures import angular_momentum, apart, energy, momentum
 
@@ -192,3 +194,33 @@ def test_what_a_limit_pushes_to_a_wall_is_not_in_it_when_another_impact_ends_its
     for _ in range(3):
         assert stepper.step(1 / 60).converged
         assert light.position.x + 0.1 < 0.0052
+
+
+HOLDS: dict[str, Callable[[pymunk.Body, pymunk.Body], pymunk.Constraint]] = {
+    "pin": pymunk.PinJoint,
+    "slide": lambda a, b: pymunk.SlideJoint(a, b, (0, 0), (0, 0), 0.0, 1.0),
+    "pivot": lambda a, b: pymunk.PivotJoint(a, b, (0, -1), (0, 0)),
+}
+
+
+@pytest.mark.parametrize("elasticity", [0.2, 1.0])
+@pytest.mark.parametrize("links", [1, 3])
+@pytest.mark.parametrize("kind", HOLDS)
+def test_impulses_of_joints_have_their_answers_to_impacts(kind: str, links: int, elasticity: float) -> None:
+    """A ball of mass m and speed v hits the last one of a chain: along taut joints each bears (1 + e) m v, across them
+    none, but a pivot off the centre of a body, which turns with it."""
+    dt, mass, speed = 1e-5, 2.0, 3.0
+    for way, expected in (((0.0, -1.0), (1.0 + elasticity) * mass * speed), ((1.0, 0.0), 0.0)):
+        if kind == "pivot" and expected == 0.0:
+            continue
+        space, last = pymunk.Space(), pymunk.Body(body_type=pymunk.Body.STATIC)
+        for k in range(links):
+            ball = add_disk(space, (0.0, -k - 1.0), 0.1)
+            space.add(HOLDS[kind](last, ball))
+            last = ball
+        hits = add_disk(space, last.position - (0.2 + dt) * pymunk.Vec2d(*way), 0.1, mass, speed * pymunk.Vec2d(*way))
+        next(iter(hits.shapes)).elasticity = elasticity
+        report = ep.EECA(space).step(dt)
+        assert len(report.contacts) == 1
+        told = [joint.impulse for joint in space.constraints]
+        assert told == pytest.approx([expected] * links, abs=2.0 * speed**2 * dt)
