@@ -5,5 +5,5 @@ In: a world that was just read. Out: the method that steps its arrays, with ener
 Open first `time_of_impact.py`, the default, and `midstep.py`: both only choose compiled kernels (`..impacts`,
 `..jointed`). `dashpot.py`, the paper's closure, moves single disks on numpy arrays; `motion.py` (start, near pairs,
 motion of a step) and `refusals.py` (unsupported features) are shared with `..baselines`. `simultaneous.py` is its step
-with one impulse for each contact, `locked.py` restitution and the motion with the energy lock.
+with one impulse for each contact.
 """

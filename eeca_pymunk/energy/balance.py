@@ -99,7 +99,7 @@ def impulse_time(psi2: FloatArray, dt: float) -> FloatArray:
 @dataclass(frozen=True)
 class Lock:
     """The energy lock: `scale` (m,) for each contact's impulse; `valid` (m,), whether a positive scale exists. Without
-    one the caller has to use other impulses (`..closures.locked`)."""
+    one the caller has to use other impulses (`..closures.dashpot`)."""
 
     scale: FloatArray
     valid: BoolArray
