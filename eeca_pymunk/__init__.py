@@ -14,8 +14,7 @@ from .closures.time_of_impact import TimeOfImpact
 from .datasets import Rollouts
 from .eeca import EECA, Closure
 from .energy.invariants import Invariants
-from .energy.ledger import Ledger
-from .energy.ledger_trace import LedgerTrace
+from .energy.ledger import Ledger, LedgerTrace
 from .errors import UnsupportedFeature
 from .events import Events
 from .recorder import record

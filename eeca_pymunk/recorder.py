@@ -11,7 +11,7 @@ from tqdm import tqdm
 
 from .arrays import FloatArray, IntArray
 from .energy.invariants import traces
-from .energy.ledger_trace import LedgerTrace, entries
+from .energy.ledger import LedgerTrace, entries
 from .events import Events
 from .recording import Recording
 from .report import StepReport

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from .arrays import FloatArray
-from .energy.ledger_trace import LedgerTrace
+from .energy.ledger import LedgerTrace
 from .events import Events
 from .files import arrays_of, load_arrays, save_arrays, take_part
 from .space.outlines import Outlines

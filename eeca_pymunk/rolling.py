@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from .arrays import FloatArray, IntArray
-from .energy.ledger_trace import entries
+from .energy.ledger import entries
 from .errors import NotFiniteError
 from .events import Events
 from .impacts.run_buffers import RunBuffers

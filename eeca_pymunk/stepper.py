@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from tqdm import tqdm
 
-from .energy.ledger import Ledger
-from .energy.ledger_trace import entries
+from .energy.ledger import Ledger, entries
 from .report import RunReport, StepReport
 
 if TYPE_CHECKING:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from ..compiled import nonallocating
+from ..model.parameters.events import MISS_DISTANCE
 
 
 @nonallocating
@@ -52,7 +53,7 @@ def ball_point(dx: float, dy: float, ux: float, uy: float, extent: float) -> flo
     cross = abs(dx * uy - dy * ux)
     squared = ux * ux + uy * uy
     # Most miss each other, which needs no root.
-    if cross * cross > 1.000001 * extent * extent * squared:
+    if cross * cross > MISS_DISTANCE * extent * extent * squared:
         return math.inf
     reach = math.sqrt(squared) * extent
     if cross >= reach:
