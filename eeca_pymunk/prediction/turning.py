@@ -9,8 +9,8 @@ Shapes meet if, along every axis on which the gap is closed, a point approaches.
 
 A look is one evaluation of the gap in a search.
 
-Side effect: `begin_side` and `search` note the sides of thin shapes in SIDE; of these notes `general` leaves
-only that of `begin_side`.
+Side effect: `begin_side` and `search` note the sides of thin shapes in SIDE; of these notes only those of
+`begin_side` are left when `general` has ended.
 """
 
 from __future__ import annotations
@@ -65,16 +65,6 @@ def time_to_contact_again(
     return 2.0 * max(u, 0.0) / closing if closing > 0.0 else math.inf
 
 
-@nonallocating
-def parting_velocity(
-    BODY: Rows[Body], i: int, j: int, t: float, nx: float, ny: float, px: float, py: float
-) -> tuple[float, float]:  # fmt: skip
-    """Velocity u (length/time) with which bodies part at the point p along the normal n from i to j, and the
-    acceleration of their centres (length/time²) that presses them together."""
-    u = opening(motion(BODY, i, t), motion(BODY, j, t), nx, ny, px, py)
-    return u, nx * (BODY[i].ax - BODY[j].ax) + ny * (BODY[i].ay - BODY[j].ay)
-
-
 @inlined
 def in_one_island(A: Scene, i: int, j: int) -> bool:
     """Whether forces may hold bodies i and j in contact: both are in one island, or one is and impulses do not move the
@@ -104,7 +94,8 @@ def begin_side(A: Scene, a: int, b: int, start: float, duration: float, toleranc
     if d > near_side(A, a, b):
         note_side(A, a, b, nx, ny, False)
     elif not known_side(A, a, b):
-        parting, pressing = parting_velocity(A.BODY, i, j, start, nx, ny, px, py)
+        parting = opening(motion(A.BODY, i, start), motion(A.BODY, j, start), nx, ny, px, py)
+        pressing = nx * (A.BODY[i].ax - A.BODY[j].ax) + ny * (A.BODY[i].ay - A.BODY[j].ay)
         resting = abs(parting) * duration <= tolerance
         other = (resting and pressing < 0.0) or (not resting and d <= tolerance and parting < 0.0)
         sign = -1.0 if p == 2 and q == 2 and other else 1.0
