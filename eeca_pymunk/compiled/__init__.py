@@ -11,8 +11,7 @@ Open first `backend.py`, which chooses among the three. `entries.py` declares th
 """
 
 from .backend import start
-from .kernels import Choice, Kernel, inlined, kernel, nonallocating, prepare
-from .prefetch import fetch
+from .kernels import Choice, Kernel, fetch, inlined, kernel, nonallocating, prepare
 from .tables import Opener, Table, replaced, table_of
 
 __all__ = [

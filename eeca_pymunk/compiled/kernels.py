@@ -14,6 +14,7 @@ from typing import Any, Generic, ParamSpec, TypeVar
 
 import numpy as np
 
+from ..arrays import AnyArray
 from .backend import Backend, start
 
 P = ParamSpec("P")
@@ -34,6 +35,21 @@ class Compilable:
         if _types is None:
             raise AttributeError("no compiler is active")
         return _types(self)
+
+
+class Fetch(Compilable):
+    """`fetch(TABLE, row, column)`: load the cache line that holds this element of a (rows, columns) or (rows,) array;
+    of records, the field at that place of the row. Nothing happens where there is none, or in plain Python.
+
+    Scenes of thousands of bodies exceed a processor's caches, and the next event is usually elsewhere in memory. A
+    kernel that knows its place lets that row be loaded while it computes. No result depends on it.
+    """
+
+    def __call__(self, table: AnyArray, row: int, column: int) -> None:
+        """Plain Python loads nothing ahead."""
+
+
+fetch = Fetch()
 
 
 class Kernel(Compilable, Generic[P, R]):

@@ -25,8 +25,7 @@ import numba
 import numpy as np
 
 from ..entries import ENTRIES, TABLES, table_fields
-from ..kernels import Choice, Kernel, kernels
-from ..prefetch import Fetch
+from ..kernels import Choice, Fetch, Kernel, kernels
 from ..sources import cache_folder
 from ..tables import Opener
 from .calls import Call, annotated

@@ -18,8 +18,7 @@ from numba.extending import infer_getattr, intrinsic, models, register_model
 from numba.np.numpy_support import from_dtype
 
 from ..entries import is_array, split, table_fields
-from ..kernels import Compilable
-from ..prefetch import Fetch
+from ..kernels import Compilable, Fetch
 from ..tables import WORDS, Opener
 
 
