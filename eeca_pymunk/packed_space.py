@@ -44,9 +44,7 @@ class Method(Protocol):
         """Values of collision handlers for pairs of shapes (a < b) in the next step: elasticity (negative: no
         collision), friction, and surface velocity of b relative to a."""
 
-    def details(
-        self, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray
-    ) -> Details | Callable[[], Details]:  # fmt: skip
+    def details(self, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray) -> Details | Callable[[], Details]:
         """The arrays of the report of the last step, or a function that makes them; `owner` (k,): index in `bodies` of
         the body of each shape."""
 

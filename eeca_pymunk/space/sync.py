@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import pymunk
 
@@ -40,12 +40,11 @@ if TYPE_CHECKING:
 FEW, SOME = 12, 32
 _RENEW = 32  # steps after which reindexing gives way to a rest step
 
-
-Choice = Callable[[Sequence[pymunk.Constraint]], list[pymunk.Constraint]]
+Awake: TypeAlias = Callable[[Sequence[pymunk.Constraint]], list[pymunk.Constraint]]  # those whose bodies are all awake
 
 
 def rest_step(
-    space: pymunk.Space, dt: float, joints: JointRows | None = None, stored: bool = True, awake: Choice | None = None
+    space: pymunk.Space, dt: float, joints: JointRows | None = None, stored: bool = True, awake: Awake | None = None
 ) -> None:
     """Update pymunk's shapes by its own step, with all velocities 0, which moves nothing.
 
@@ -56,8 +55,8 @@ def rest_step(
     Args:
         joints: the constraints of the space, which call no functions meanwhile, and exert no forces.
         stored: whether pymunk may have impulses of joints from earlier steps, which would push too.
-        awake: where bodies sleep, function for which of constraints have no such body. A change of gravity would wake
-            them: gravity stays, and changes velocities, which are overwritten.
+        awake: where bodies sleep: gives those of constraints whose bodies are all awake. A change of gravity would wake
+            bodies: gravity stays, and changes velocities, which are overwritten.
     """
     asleep = awake is not None
     if joints is None:
@@ -198,7 +197,7 @@ class Sync:
             for arbiter in private.raw_arbiters(self.space):
                 private_arbiters.set_impulse(arbiter, None)
         slept = self._asleep and world.bodies.in_order()
-        how = self.space, dt, world.joints, stored, self._choice() if self._asleep else None
+        how = self.space, dt, world.joints, stored, self._awake() if self._asleep else None
         if world.hooks.some:
             with world.hooks.silent:
                 rest_step(*how)
@@ -212,9 +211,8 @@ class Sync:
         if not self.renews and self._world.carried <= FEW:
             self._touched = bool(private.raw_arbiters(self.space))
 
-    def _choice(self) -> Choice:
-        """Function for which of constraints have no body that sleeps: bodies that sleep at the start of a step do so at
-        its end, unless functions have woken them."""
+    def _awake(self) -> Awake:
+        """See `rest_step`: bodies that sleep at the start of a step do so at its end, unless functions wake them."""
         joints = self._world.joints
         if joints is None or self._world.hooks.some or joints.calling or joints.own:
             return private_joints.awake
