@@ -22,6 +22,7 @@ import eeca_pymunk as ep
 import scenes
 from comparisons.output import Output, Row
 from eeca_pymunk.arrays import FloatArray, IntArray
+from eeca_pymunk.compiled import table_of
 from eeca_pymunk.compiled.records import columns
 from eeca_pymunk.model.bodies import POSE
 from eeca_pymunk.model.scene import scene_with
@@ -148,7 +149,7 @@ def check(world: World, lists: Lists, twin: Twin, slack: Twin) -> None:
     ours = lists.pairs()
     anew = Lists(world, moving)
     anew.near.MARK["margin"] = lists.margin
-    anew.near = setup.rebuilt(anew.near, 0.0)
+    anew.near = setup.with_more_room(anew.near, 0.0)
     for found, held, what in ((slack.find(pose), ours, "kept"), (twin.find(pose), anew.pairs(), "new")):
         if missing := {p for p in as_set(found, moving) if _meet(world, *p)} - held:
             raise ValueError(f"{what} lists lack {sorted(missing)[:5]}")
@@ -188,7 +189,7 @@ def case(name: str, build: Build, steps: int = STEPS, dt: float = DT, looks: int
             check(world, lists, twin, slack)
     for _ in range(looks):
         begin = time.process_time()
-        setup.rebuilt(lists.near, 0.0)
+        grid.build(table_of(lists.near), 0.0)
         builds.append(time.process_time() - begin)
     listed, pairs = lists.pairs(), as_set(twin.find(pose), moving)
     find, build_all = statistics.median(finds), statistics.median(builds)

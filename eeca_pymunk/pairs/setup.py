@@ -71,16 +71,15 @@ def _with_more_room(table: Table) -> Table:
     return table_of(with_more_room(scene_of(table), 0.0, table), table)
 
 
-def rebuilt(scene: Scene, t: float, like: Table | None = None) -> Scene:
-    """The scene with its lists built at instant t, with a larger pool if necessary; `like`: a table of the scene, as it
-    was, if there is one."""
-    return scene if build(table_of(scene, like), t) else with_more_room(scene, t, like)
-
-
 def with_more_room(scene: Scene, t: float, like: Table | None = None) -> Scene:
-    """The scene with its lists built at instant t, with a pool at least twice as long (recursion with `rebuilt`)."""
-    room = more_room(len(scene.POOL))
-    return rebuilt(scene._replace(POOL=np.zeros(room, np.int32), FLAG=np.zeros(room, np.uint8)), t, like)
+    """The scene with its lists built at instant t, with a pool at least twice as long; `like`: a table of the scene, as
+    it was, if there is one."""
+    built = False
+    while not built:
+        room = more_room(len(scene.POOL))
+        scene = scene._replace(POOL=np.zeros(room, np.int32), FLAG=np.zeros(room, np.uint8))
+        built = build(table_of(scene, like), t)
+    return scene
 
 
 def more_room(room: int) -> int:

@@ -206,7 +206,7 @@ def test_the_grid_of_walls_holds_what_looking_at_all_finds(spread: str) -> None:
     assert len(gridded.near.CSR) < 40 * len(ground) + 2
     gridded.check()
     gridded.near.GRID.columns = 0
-    plain = setup.rebuilt(gridded.near, 0.0)
+    plain = setup.with_more_room(gridded.near, 0.0)
     assert [sorted(found) for found in Crowd(world, plain).listed()] == [sorted(found) for found in gridded.listed()]
 
 
