@@ -19,7 +19,6 @@ from eeca_pymunk.energy.invariants import Invariants
 from eeca_pymunk.errors import NotFiniteError
 from eeca_pymunk.recorder import step_count
 from eeca_pymunk.space.bodies import Bodies
-from eeca_pymunk.space.measure import invariants
 from scenes import Scene
 
 FloatArray = npt.NDArray[np.float64]
@@ -109,7 +108,7 @@ def run(
     def now() -> Invariants:
         state = bodies.gather()
         assert state is not None  # scenes keep their bodies
-        return invariants(bodies, state, scene.space.gravity)
+        return bodies.invariants(state, scene.space.gravity)
 
     start = now()
     scale_p = float(np.sum(bodies.mass[bodies.dynamic] * speeds(scene))) or 1.0

@@ -21,7 +21,7 @@ from .recorder import record
 from .recording import Recording
 from .report import Contacts, RunReport, StepReport
 from .rollouts import certify, rollout
-from .space.measure import measure
+from .space.bodies import measure
 from .stepper import Stepper
 from .sweep import SweepError, sweep
 from .unmet import Unmet

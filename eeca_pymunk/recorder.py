@@ -17,7 +17,6 @@ from .recording import Recording
 from .report import StepReport
 from .runs import RunningStepper
 from .space.bodies import ANGLE, ANGULAR_VELOCITY, POSITION, VELOCITY, Bodies, moving
-from .space.measure import invariants
 from .space.outlines import Outlines
 from .stepper import Stepper, check_dt
 
@@ -154,7 +153,7 @@ class _Moments:
             assert state is not None  # read from these very bodies
             if set(self.bodies.row) - set(self.kept) - {b for b in self.bodies.row if b.body_type == b.STATIC}:
                 raise ValueError("a body was added while recording: record the stretch that begins there by itself")
-        now, to = invariants(self.bodies, state, self.space.gravity), self.recording
+        now, to = self.bodies.invariants(state, self.space.gravity), self.recording
         for array, column in (
             (to.position, POSITION), (to.angle, ANGLE), (to.velocity, VELOCITY), (to.spin, ANGULAR_VELOCITY)
         ):  # fmt: skip

@@ -7,14 +7,14 @@ Open first `world.py`, the space as packed arrays, and `checks.py`, the unsuppor
 
 | subject | files |
 |---|---|
-| reading bodies and shapes | `bodies.py`, `outlines.py` (also for pictures), `packing.py` |
+| reading bodies and shapes | `bodies.py` (also energy and momenta), `outlines.py` (also for pictures), `packing.py` |
 | reading joints | `joints.py`, `constraints.py`, `listing.py`, `partners.py`, `spring_functions.py` |
 | states in and out | `crossing.py` |
 | edits by the program | `edits.py` (shapes, bodies), `joint_edits.py`, `patching.py` (rows after edits in place) |
 | functions of the program | `hooks.py`; of handlers `rehearsal.py`, `hearing.py`, `watched.py`, `decisions.py` |
 | pymunk's own state after a step | `sync.py` (shapes), `arbiters.py` (contacts), `constraint_impulses.py` |
 | sleeping bodies | `sleeping.py`, `sleep_groups.py` |
-| other readers | `measure.py` (energy), `describe.py` (one line of text) |
+| a line of text | `describe.py` |
 | private names of pymunk | the room `private` |
 
 Four files replace methods or properties of pymunk's classes, which then act as before for all other spaces:

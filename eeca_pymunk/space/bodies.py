@@ -12,6 +12,7 @@ from pymunk import batch
 
 from ..arrays import BoolArray, FloatArray, IntArray, rotated
 from ..compiled.records import Rows, columns, from_bytes, put
+from ..energy.invariants import Invariants, sums
 from ..errors import NotFiniteError
 from ..layout import STATE_COLUMNS
 from ..model.values import DYNAMIC, STATIC, BodyValues
@@ -209,6 +210,12 @@ class Bodies:
             center = center + rotated(self.center_of_gravity, state[:, ANGLE])
         return center
 
+    def invariants(self, state: FloatArray, gravity: tuple[float, float]) -> Invariants:
+        """Energy and momenta in an (N, 9) state."""
+        d = self.dynamic
+        velocity, spin = state[d, VELOCITY], state[d, ANGULAR_VELOCITY]
+        return sums(self.mass[d], self.moment[d], self.centers(state)[d], velocity, spin, gravity)
+
     def scatter(self, state: FloatArray, *, unchanged: bool = False) -> None:
         """Write the whole (N, 9) state to the bodies of these rows that are still in the space.
 
@@ -227,3 +234,9 @@ class Bodies:
         # pymunk places a body with another centre of mass by its present angle: a second time, by the new angle.
         for _ in range(2 if self.center_of_gravity.any() else 1):
             batch.set_space_bodies(self.space, _STATE, out)
+
+
+def measure(space: pymunk.Space) -> Invariants:
+    """Energy and momenta of the space now."""
+    bodies = Bodies(space)
+    return bodies.invariants(bodies.start, space.gravity)
