@@ -296,14 +296,16 @@ class Composition:
         g = abs(self.space.gravity[1])
         scale = sum(b.mass for b in self.bodies) * g * 10 * self.length + abs(now.kinetic) + abs(ledger.external)
         scale += ledger.restitution + ledger.friction + ledger.damping + abs(energies[-1])
-        # The energy of velocities that round-off of positions gives: all that there is at rest without gravity.
-        least = sum(b.mass for b in self.bodies) * (ROUND_OFF * self.half / self.dt) ** 2
+        # At rest without gravity there is no other energy than of velocities that round-off of places gives, and their
+        # work against what joints press each other with.
+        slow = ROUND_OFF * self.half / self.dt
+        noise = slow * (slow * sum(b.mass for b in self.bodies) + sum(abs(c.impulse) for c in self.space.constraints))
         work = outside.most(report, self.dt, True)  # of motors, which exact joints may take up
-        if abs(ledger.residual) > least + CLOSES * (scale + (work if math.isfinite(work) else 0.0)):
+        if abs(ledger.residual) > noise + CLOSES * (scale + (work if math.isfinite(work) else 0.0)):
             raise Broken(f"step {k}: the ledger is open by {ledger.residual / scale:.1e}")
         least = min(ledger.restitution, ledger.friction, ledger.damping) / max(scale, 1e-300)
         found.below = min(found.below, least)
-        if least < -CLOSES:
+        if least < -CLOSES and least * scale < -noise:
             raise Broken(f"step {k}: a loss of {least:.1e}, converged {report.converged}")
         change = now.energy - energies[-1]
         if not self.space.constraints and abs(ledger.change - change) > CHANGES * scale:
