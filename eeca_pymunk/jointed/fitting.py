@@ -21,7 +21,7 @@ from .columns import fill_free, fill_group, make_columns, weigh
 from .component import fit_speeds, ready
 from .gathered import find_places, gather_component
 from .lifting import raise_gaps
-from .motors import acts_at_once
+from .motors import acts_at_once, is_driven
 
 
 @kernel
@@ -30,7 +30,8 @@ def fit(A: Scene, J: Joints, interval: Interval, L: FloatArray, end: float, scal
 
     Bodies that land leave velocities which violate joints, and those would ring for ever: a midpoint rule turns their
     sign in every step. What this costs enters the ledger. Of a few contacts, those that push do not close by it
-    (`stop_closing`). Bounded impulses, as motors have, act over times and take no part in this.
+    (`stop_closing`), unless that would change the speed of a motor of unlimited force. Bounded impulses act over times
+    and take no part in this.
     `scale` is a speed of the island.
 
     Returns:
@@ -43,9 +44,10 @@ def fit(A: Scene, J: Joints, interval: Interval, L: FloatArray, end: float, scal
     for i in range(m):
         if L[i, 0] > 0.0:
             PUSHED[groups.GROUP[interval.P[i]] + 1] = PUSHED[groups.GROUP[interval.Q[i]] + 1] = 1
-    first = -1
+    first, DRIVEN = -1, np.zeros(len(groups.COMPONENT) + 1, np.int64)
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
+        DRIVEN[g + 1] = 1 if s >= 0 and is_driven(J, s) else 0
         if s < 0 or PUSHED[g + 1] == 0 or not acts_at_once(J, s):
             continue
         first = s if first < 0 else first
@@ -63,7 +65,8 @@ def fit(A: Scene, J: Joints, interval: Interval, L: FloatArray, end: float, scal
         return np.zeros(m)
     ASKED, asked, fastest = np.empty(m, np.int64), 0, 0.0
     for i in range(m):
-        if L[i, 0] > 0.0 and interval.C.OUT[i] == 0:
+        driven = DRIVEN[groups.GROUP[interval.P[i]] + 1] + DRIVEN[groups.GROUP[interval.Q[i]] + 1] > 0
+        if L[i, 0] > 0.0 and interval.C.OUT[i] == 0 and not driven:
             ASKED[asked] = i
             asked += 1
             fastest = max(fastest, -normal_rate(interval.P, interval.Q, interval.ROWS, motion.V, i))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..compiled import nonallocating
-from ..model.joints import BOXED, PRESCRIBED, Joints
+from ..model.joints import BOXED, MOTOR, PRESCRIBED, Joints
 from ..newton.entries import is_limit
 
 
@@ -12,6 +12,15 @@ def keeps_speed(J: Joints, s: int) -> bool:
     """Whether joints of component s have rows of speeds at the end of an interval: motors, joints with a max_force."""
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         if J.COUPLING[k].bounded != 0:
+            return True
+    return False
+
+
+@nonallocating
+def is_driven(J: Joints, s: int) -> bool:
+    """Whether component s has a motor of unlimited force, whose speed an impulse of contacts alone would change."""
+    for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
+        if J.COUPLING[k].kind == MOTOR and J.JOINT[J.COUPLING[k].joint].bounded == 0:
             return True
     return False
 

@@ -158,8 +158,7 @@ def test_a_walker_walks_the_same_way_again(make: Make, way: str) -> None:
     """LeggedRobotPyMunk: two seconds of walking, then the robot is put back or made anew, and walks once more.
 
     Native's contacts and joints remember impulses of the place where the robot was taken from; ours walks bitwise the
-    same. Its hinges hold, no foot is in the ground, and its motors turn as they are told: an impact, at whose instant they
-    do nothing, changes their speed until the next step.
+    same. Its hinges hold, its motors turn as they are told, and no foot is in the ground.
     """
     space = pymunk.Space()
     space.gravity = (0.0, 980.0)
@@ -168,16 +167,15 @@ def test_a_walker_walks_the_same_way_again(make: Make, way: str) -> None:
     space.add(ground)
     bodies, motors = spider(space)
     starts = [(b.position, b.angle) for b in bodies]
-    stepper, ends, off, late, loose, deep = make(space), [], 0.0, 0.0, 0.0, 0.0
+    stepper, ends, off, loose, deep = make(space), [], 0.0, 0.0, 0.0
     for _ in range(2):
         for motor, rate in zip(motors, (2.0, -3.0, -2.5, 1.0), strict=True):
             motor.rate = rate
         for _ in range(1000):
             stepper.step(1 / 500)
-            off += max(abs(m.b.angular_velocity - m.a.angular_velocity + m.rate) for m in motors) / 2000
+            off = max(off, *(abs(m.b.angular_velocity - m.a.angular_velocity + m.rate) for m in motors))
             loose = max(loose, *(apart(c) for c in space.constraints if isinstance(c, pymunk.PinJoint)))
             deep = max(deep, *(s.bb.top - 445.0 for b in bodies for s in b.shapes))
-        late = max(late, *(abs(m.b.angle - m.a.angle + 2.0 * m.rate) for m in motors))
         ends.append([(*b.position, b.angle) for b in bodies])
         if way == "put back":
             for body, (position, angle) in zip(bodies, starts, strict=True):
@@ -190,8 +188,7 @@ def test_a_walker_walks_the_same_way_again(make: Make, way: str) -> None:
     if make is OURS or way == "made anew":
         assert ends[0] == ends[1]
     if make is OURS:
-        found = loose, off, late, deep
-        assert (loose < 1e-9, off < 1e-3, late < 0.02, deep < 1e-3) == (True, True, True, True), found
+        assert (loose < 1e-9, off < 0.1, deep < 1e-3) == (True, True, True), (loose, off, deep)
 
 
 @both
