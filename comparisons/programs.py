@@ -1,7 +1,7 @@
 """What real programs cost: pymunk's examples and scenes of public programs, step by step beside `Space.step`.
 
 Each program runs as it is, with keys and mouse by script (`play`), in a process of its own: as it is and with
-`Space.step` replaced by ours, default settings, three times in turn, and once with clocks around the parts of a step.
+`Space.step` replaced by ours, default settings, five times in turn, and once with clocks around the parts of a step.
 Of each step counts the least processor time; the first one, in which steppers are made, is left out.
 """
 
@@ -28,7 +28,7 @@ from .program_scenes import PROGRAMS
 from .pymunk_examples import EXAMPLES
 
 FRAMES = 300
-REPEATS = 3
+REPEATS = 5
 LIMIT = 600.0  # seconds for one run
 CHOICES = dict.fromkeys((*EXAMPLES, *PROGRAMS))
 
