@@ -76,8 +76,9 @@ def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
     if J.TALLY.components > 0:
         # The shortened intervals are solved again below, beyond the budget that is spent.
         J.PROGRESS.budget = J.PROGRESS.effort + STEP_WORK
-    # Bodies may already be at a later instant than t, as impacts of joints come later than predicted, or earlier
-    # (`..jointed.meet`). Those on the way of an interval go back on it; then the poses of all become those at t.
+    # Impacts of jointed bodies come later than predicted, or earlier (`..jointed.meet`), so that bodies may have been
+    # brought beyond t. Islands in an interval go back to t on its path; bodies of ended intervals, and others that are
+    # beyond t, count as there at t.
     for k in range(A.BODY.shape[0] - 1):
         if A.STATE[k].island == k and A.MEMBER[k].rest != AT_REST and A.MEMBER[k].jointed == 0 and A.MEMBER[k].open > 0:
             first, after = contacts_of(A, k)

@@ -107,8 +107,8 @@ def remove_angular_momentum(A: Scene, root: int, excess: float) -> None:
 
 @nonallocating
 def wake(A: Scene, root: int, t: float) -> int:
-    """Wake an island at rest at instant t: it and the islands that it supports end their intervals and become one.
-    Returns its root."""
+    """End the rest of an island at instant t, and that of the islands that it supports, directly or through others: the
+    intervals of all end at t, and from then on they are one island. Returns its root."""
     MEMBER, one = A.MEMBER, root
     MEMBER[root].rest = CHANGED
     wake_supported(A)

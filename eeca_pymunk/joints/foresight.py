@@ -9,7 +9,11 @@ r_k with a smooth f: positions fit, velocities do to second order. So accelerati
 
 are six functions that six parts determine. WEIGHTS[p] foretells part p exactly for each of them, from the last part to
 the sixth last; impulses over the lengths of their parts go the same way. Newton's method then begins with errors
-smaller by (h rate)^2 than with the last accelerations. Sound after two steps of one length; a beginning, no more.
+smaller by (h rate)^2 than with the last accelerations. It decides where Newton's method begins, not where it ends.
+
+`ladder.take_parts` asks before each part whether six parts in steps of this length are known (`recalls`), begins with
+what is foretold if so (`foretell`), and keeps each part that was solved (`remember`); what ends the sequence, such as
+an edit or a limit, calls `forget`.
 """
 
 from __future__ import annotations

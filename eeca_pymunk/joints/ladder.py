@@ -1,10 +1,14 @@
 """The ladder of a step: Newton's method in other parts, or with joints that give way, where it does not converge.
 
 Order 2 (midpoint with discrete gradients), or 4 by Suzuki's composition (s, s, 1 - 4s, s, s) h, s = 1/(4 - 4^(1/3)),
-where nothing in the component dissipates, drives or meets a limit. The rungs: -1 order 4; 0 to 3 the step whole, in 2,
-4, 7 parts; 4 whole, with joints that give way elastically by 1e-9 of h^2/49; 5 to 9 in 7 parts, by 1e-9, 1e-8, 1e-7,
-1e-6, 1e-4. The work of all rungs together is bounded. What gives way does so in later steps with at least the same
-compliance, until it is closed.
+where nothing in the component dissipates, drives or meets a limit. The rungs, with the number of parts and the
+compliance of the joints over (h/7)^2:
+
+    ORDER_4 = -1: 5 parts, 0           WHOLE_STEP = 0: 1 part, 0     1, 2, 3: 2, 4, 7 parts, 0
+    ELASTIC_RUNG = 4: 1 part, 1e-9     5 to 9: 7 parts, 1e-9, 1e-8, 1e-7, 1e-6, 1e-4
+
+The work of all rungs together is bounded. What gives way does so in later steps with at least the same compliance,
+until it is closed.
 """
 
 from __future__ import annotations

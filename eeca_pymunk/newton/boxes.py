@@ -9,10 +9,13 @@ the change of u per boxed impulse, answered by all joints that hold exactly. The
 the work of such a row is at most max_force times the way along it. Sweeps find which rows are at their bounds, a direct
 solution on the others does the rest.
 
-In MORE, behind the scratch of a dual system, stand n columns, the scaled changes of all unknowns by unit impulses, and
-a right side; then, from number w, w (n, n) and factors (room 2 n^2); from number u seven arrays (n,): u, the impulses,
-their least and largest values, SINGLE or the place in a disc (`..rows.bounded`), steps, and 1 for what is inside its
-bounds.
+MORE has, with N unknowns of the component, one after the other:
+
+    scratch of a dual system
+    n columns and a right side (N each): the scaled changes of all unknowns by unit impulses
+    from number w:   w (n, n), factors (n, n)
+    from number u:   seven arrays (n,): u; the impulses; their least, their largest values; SINGLE or the place in a
+                     disc (`..rows.bounded`); steps; 1 for what is inside its bounds
 """
 
 from __future__ import annotations

@@ -132,8 +132,8 @@ def face_closes(
 
 @nonallocating
 def general(A: Scene, a: int, b: int, horizon: float) -> tuple[float, bool]:
-    """`search` for shapes a and b in either order. Afterwards the remembered side is again that at the start of the
-    search, since an impulse may change the paths before they get to where the search has followed them."""
+    """`search` for shapes a and b in either order. It changes the remembered side of thin ones as it follows them on
+    their paths; afterwards that is again the side at its start, since an impulse may change the paths before."""
     if a > b:
         a, b = b, a
     if not remembers(A, a, b):

@@ -2,9 +2,10 @@
 
 In the plane both are piecewise linear: contacts are open (lam = 0, u_n >= b), stick (u = (b, 0)) or slip (beta =
 s mu lam, s u_t <= 0); a bounded row has its target velocity, or its impulse is at a bound. Impulses that sweeps leave
-solve it exactly for other free velocities, q + theta p with theta = 1, where p takes their residuals away. From there
-theta goes to 0 along the solution, which is linear until a state changes; then on, with growing or falling theta, as
-the new state allows (Lemke 1965; of contacts Stewart and Trinkle 1996). A change is one pivot, also where contacts jam
+miss the law by a residual in each row. They solve it exactly if the free velocities are not q but q + p, with p such
+that each row's residual is 0. So they are the solution for q + theta p at theta = 1; that for q is at theta = 0. On the
+way there the solution is linear in theta until a state changes; then it goes on, with growing or falling theta, as the
+new state allows (Lemke 1965; of contacts Stewart and Trinkle 1996). A change is one pivot, also where contacts jam
 with redundant impulses, which sweeps carry round for ever. A homotopy that begins without impulses ends if no target is
 positive and no surface conveys (Anitescu and Potra 1997); others may run to infinity.
 """
