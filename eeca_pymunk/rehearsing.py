@@ -6,7 +6,8 @@ from __future__ import annotations
 import math
 
 from .arrays import FloatArray, IntArray
-from .compiled import Table, kernel
+from .compiled import Table, kernel, nonallocating
+from .compiled.records import Rows
 from .layout import (
     ANEW,
     BODY_ROW,
@@ -28,6 +29,7 @@ from .layout import (
     STEERED,
     UNALTERED,
 )  # fmt: skip
+from .model.bodies import Body
 from .model.values import reading_of
 from .transfer import (
     FORCES,
@@ -47,19 +49,23 @@ AHEAD = 2.0  # ways of a step for which pairs that approach are near before they
 PRESS = 1e-7  # part of its height by which a body is moved towards its support in a rehearsal
 
 
+@nonallocating
+def void_predictions(BODY: Rows[Body]) -> None:
+    """Void all predictions: functions may change anything, so that all bodies count as placed by the program. Steps
+    that call none do so as well: no path depends on which they are."""
+    for i in range(BODY.shape[0]):
+        BODY[i].due = min(BODY[i].due, ANEW)
+
+
 @kernel
 def copy_start(table: Table) -> int:
-    """Copy the state that was read to HELD[START], and void all predictions: functions may change anything, so that
-    all bodies count as placed by the program, and may overlap others.
-
-    Returns:
-        0; OTHER_BODIES, MOVED_STATIC or NOT_FINITE if the bodies are others, a static one was moved, or a number is not
-        finite.
-    """
+    """Copy the state that was read to HELD[START], and `void_predictions`; 0, or OTHER_BODIES, MOVED_STATIC or
+    NOT_FINITE if the bodies are others, a static one was moved, or a number is not finite."""
     R = reading_of(table)
     WALK, BODY, start = R.WALK, R.BODY, R.HELD[START]
     now, left = R.STATES[NOW], R.STATES[LEFT]
     status = 0
+    void_predictions(BODY)
     for i in range(WALK.shape[1]):
         if WALK[FOUND, i] != WALK[KNOWN, i]:
             return OTHER_BODIES
@@ -72,8 +78,6 @@ def copy_start(table: Table) -> int:
                 return MOVED_STATIC
         for c in range(9):
             start[i, c] = now[i, c]
-    for i in range(BODY.shape[0]):
-        BODY[i].due = min(BODY[i].due, ANEW)
     return status
 
 
@@ -163,9 +167,9 @@ def nears(STATES: FloatArray, ENDS: FloatArray, HEARD: FloatArray, PAIRS: IntArr
 def approach(
     table: Table, HEARD: FloatArray, PAIRS: IntArray, dt: float, gx: float, gy: float, half_damping: float
 ) -> int:
-    """Copy the present state to HELD[REHEARSED]. Write to ENDS, to the table END with angles and spins, the poses from
-    which a step of pymunk leads to the end of free flight. pymunk moves bodies before it accelerates them, so that they
-    start at
+    """Copy the present state to HELD[REHEARSED], and `void_predictions`. Write to ENDS, to the table END with angles
+    and spins, the poses from which a step of pymunk leads to the end of free flight. pymunk moves bodies before it
+    accelerates them, so that they start at
 
         q_free - dt v,   q_free = q + dt (d v + dt a / 2),   d = `half_damping`, the factor of half a step's damping.
 
@@ -182,6 +186,7 @@ def approach(
     R = reading_of(table)
     WALK, EXTRA, BODY, kept, now, left = R.WALK, R.EXTRA, R.BODY, R.HELD[REHEARSED], R.STATES[NOW], R.STATES[LEFT]
     N = WALK.shape[1]
+    void_predictions(BODY)
     pull = math.sqrt(gx * gx + gy * gy)
     down_x, down_y, deepest = 0.0, 0.0, -math.inf
     if pull > 0.0:
