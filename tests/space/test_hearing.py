@@ -17,8 +17,6 @@ from eeca_pymunk.rehearsing import nears
 from eeca_pymunk.space.rehearsal import Rehearsal
 from scenes.scene import add_disk
 
-from ..programs.varied import Varied
-
 DT = 1 / 60
 PHASES = "begin", "pre_solve", "post_solve", "separate"
 
@@ -218,21 +216,6 @@ def test_steps_whose_handlers_nobody_meets_are_those_without_handlers(
         assert (disk.position, disk.angle, disk.velocity) == (other.position, other.angle, other.velocity)
         assert pin.impulse == same.impulse
     assert hooked[0] < 10
-
-
-@pytest.mark.parametrize("seed", [9600640, 9600644, 9600652, 9600659])
-def test_paths_do_not_depend_on_which_steps_were_silent(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Random scenes with joints and handlers, bit by bit: a state that is set back does not say which those were."""
-    ends = []
-    for silent in (True, False):
-        with monkeypatch.context() as patched:
-            if not silent:
-                patched.setattr(ep.EECA, "_is_silent", lambda *_: False)
-            scene = Varied(seed, True)
-            assert "handlers" in scene.has
-            scene.play()
-            ends.append(scene.state())
-    assert ends[0] == ends[1]
 
 
 def test_a_step_that_fails_after_its_rehearsal_changes_nothing() -> None:
