@@ -89,6 +89,18 @@ def answer_impact(A: Scene, J: Joints, block: Block, groups: Groups, C: Columns,
 
 
 @nonallocating
+def put_momenta(
+    block: Block, groups: Groups, g: int, n: int, V: FloatArray, INDEX: IntArray, PUSH: FloatArray
+) -> None:  # fmt: skip
+    """Put the momenta of the bodies of group g at velocities V into PUSH."""
+    for q in range(n):
+        if groups.GROUP[q] == g:
+            for c in range(3):
+                mobility = block.II[q] if c == 2 else block.IM[q]
+                PUSH[INDEX[q], c] = V[q, c] / mobility if mobility > 0.0 else 0.0
+
+
+@nonallocating
 def keep_allowed(
     J: Joints, block: Block, groups: Groups, g: int, n: int, INDEX: IntArray, PUSH: FloatArray
 ) -> None:  # fmt: skip
@@ -96,11 +108,7 @@ def keep_allowed(
     rest."""
     V = block.V
     PUSH[:] = 0.0
-    for q in range(n):
-        if groups.GROUP[q] == g:
-            for c in range(3):
-                mobility = block.II[q] if c == 2 else block.IM[q]
-                PUSH[INDEX[q], c] = V[q, c] / mobility if mobility > 0.0 else 0.0
+    put_momenta(block, groups, g, n, V, INDEX, PUSH)
     answer(J, groups.COMPONENT[g], False, PUSH)
     for q in range(n):
         if groups.GROUP[q] == g:
@@ -111,7 +119,7 @@ def keep_allowed(
 @kernel
 def bear(A: Scene, J: Joints, block: Block, groups: Groups, L: FloatArray, FREE: FloatArray, t: float) -> None:
     """Add to the joints' `struck` what they have answered to the impulses L of an impact at instant t, and to the part
-    of the velocities FREE before it that they do not allow."""
+    of the velocities FREE before it that they do not allow; of what partners move, to the impulses alone."""
     P, Q, ROWS = block.A, block.B, block.ROWS
     INDEX = np.full(len(block.IM), -1, np.int64)
     for g in range(len(groups.COMPONENT)):
@@ -119,14 +127,12 @@ def bear(A: Scene, J: Joints, block: Block, groups: Groups, L: FloatArray, FREE:
         if s < 0:
             continue
         gather_component(A, J, s, block.POSE, FREE, np.zeros_like(FREE), block.IM, block.II, t, 0.0)
+        along = carried_along(J, s)
         PUSH = np.zeros((find_places(A, J, s, INDEX), 3))
         if not ready(J, s, 2.0, False):
             continue
-        for q in range(len(FREE)):
-            if groups.GROUP[q] == g:
-                for c in range(3):
-                    mobility = block.II[q] if c == 2 else block.IM[q]
-                    PUSH[INDEX[q], c] = FREE[q, c] / mobility if mobility > 0.0 else 0.0
+        if not along:
+            put_momenta(block, groups, g, len(FREE), FREE, INDEX, PUSH)
         for i in range(len(ROWS)):
             for q, side in ((P[i], -1.0), (Q[i], 1.0)):
                 if groups.GROUP[q] == g:

@@ -9,7 +9,7 @@ from ..arrays import IntArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, rows
 from ..model.bodies import Body
-from ..model.joints import CENTRE, FREE, GEAR, SLIDE, Joint, Pinned
+from ..model.joints import CENTRE, FREE, GEAR, PIN, PIVOT, SLIDE, Joint, Pinned
 from ..model.shapes import Link, Shape
 from .plan import together, turning
 from .straight import hold_chains
@@ -25,7 +25,7 @@ def may_hold(joint: Rows[Joint], still: IntArray, n: int) -> bool:
     for j in range(len(joint)):
         a, b = joint[j].body[0], joint[j].body[1]
         fixed = (a >= n and still[a - n] > 0) or (b >= n and still[b - n] > 0)
-        if fixed and joint[j].bounded == 0 and (joint[j].kind <= SLIDE or joint[j].kind == GEAR):
+        if fixed and joint[j].bounded == 0 and joint[j].kind in (PIN, PIVOT, SLIDE, GEAR):
             ends += 1
     return ends >= 2
 

@@ -224,3 +224,18 @@ def test_impulses_of_joints_have_their_answers_to_impacts(kind: str, links: int,
         assert len(report.contacts) == 1
         told = [joint.impulse for joint in space.constraints]
         assert told == pytest.approx([expected] * links, abs=2.0 * speed**2 * dt)
+
+
+@pytest.mark.parametrize("drift", [(0.0, 0.0), (7.0, -4.0)])
+def test_answers_of_joints_to_impacts_are_the_same_on_a_partner_that_moves(drift: tuple[float, float]) -> None:
+    """A ball that hangs from a kinematic body is hit along its pin, seen from another frame (Galilei)."""
+    dt, mass, speed = 1e-5, 2.0, 3.0
+    space, nail = pymunk.Space(), pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    nail.velocity = drift
+    ball = add_disk(space, (0.0, -1.0), 0.1, velocity=drift)
+    hits = add_disk(space, (0.0, -0.8 + dt), 0.1, mass, (drift[0], drift[1] - speed))
+    next(iter(hits.shapes)).elasticity = 0.5
+    space.add(nail, pymunk.PinJoint(nail, ball))
+    ep.EECA(space).step(dt)
+    (pin,) = space.constraints
+    assert pin.impulse == pytest.approx(1.5 * mass * speed, abs=2.0 * speed**2 * dt)
