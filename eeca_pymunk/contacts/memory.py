@@ -23,8 +23,9 @@ def key_of(shapes: int, a: int, b: int) -> int:
 def find(KEYS: IntArray, key: int) -> int:
     """Row of a key in KEYS (c,), or -1 - (the free row where it would be)."""
     mask = len(KEYS) - 1
-    # Fibonacci hashing of both halves.
-    row = ((key ^ (key >> 21)) * 11400714819323 >> 7) & mask
+    # Fibonacci hashing of both halves; the two contacts of a pair are next to each other.
+    pair = key >> 1
+    row = (((pair ^ (pair >> 20)) * 11400714819323 >> 6) & ~1 | key & 1) & mask
     while KEYS[row] != key:
         if KEYS[row] < 0:
             return -1 - row

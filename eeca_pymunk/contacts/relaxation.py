@@ -1,9 +1,8 @@
 """The bounded solve of an island: sweeps while it moves; sweeps and direct solves in turn while it is near rest.
 
 Sweeps pass a stack's weight to its floor slowly; a direct solve does it at once, as soon as sweeps have found the
-active contacts. In disordered moving piles these change with every step, and sweeps alone cost less; a slow island that
-waits for its next direct solve gets more of them, as what creeps comes to rest when its friction is solved. Where both
-come to no end, as with light bodies wedged between heavy ones, few contacts are solved by homotopies (`..rows.laws`).
+active contacts. In disordered moving piles these change with every step, and sweeps alone cost less. Where both come to
+no end, as with light bodies wedged between heavy ones, few contacts are solved by homotopies (`..rows.laws`).
 
 The state of an island lasts across steps (`Rest.augmentation`, `wait`, `backoff`): log10 of the augmentation R, steps
 to wait before the next direct solve, and the wait after its next failure.
@@ -25,10 +24,8 @@ from ..model.parameters.intervals import (
     LARGE_ISLAND,
     LONGEST_BACKOFF,
     SWEEPS_AFTER,
-    WAITING_SWEEPS,
 )
 from ..model.parameters.joints import COLUMN_CONTACTS
-from ..rows.build import rubs
 from ..rows.conjugate import iterate
 from ..rows.direct import refine
 from ..rows.laws import solve_few
@@ -48,15 +45,14 @@ def relax(
         fine: change of velocity in a sweep at which the solve ends.
         coarse: that with which a moving island is content, or one near rest after a direct solve.
         STATE: of the island, changed.
-        most: largest number of sweeps of a moving island; one with friction that waits gets WAITING_SWEEPS times that.
+        most: largest number of sweeps of an island that moves, or waits for its next direct solve.
 
     Returns:
         Numbers of sweeps and direct solves, and the change of velocity in the last sweep.
     """
     if rounds == 0 or STATE.wait > 0.0:
         STATE.wait = max(STATE.wait - 1.0, 0.0)
-        turns = WAITING_SWEEPS * most if rounds > 0 and rubs(problem.ROWS, problem.m) else most
-        sweeps, worst = iterate(problem, L, V, max(fine, coarse), turns)
+        sweeps, worst = iterate(problem, L, V, max(fine, coarse), most)
         return sweeps, 0, worst
     sweeps, worst = 0, np.inf
     while sweeps < FIRST_SWEEPS and worst > fine:

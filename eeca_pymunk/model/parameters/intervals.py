@@ -53,11 +53,8 @@ INTERVAL_RESIDUAL_SPEED = accuracy(0.0001, "of its speed",
 DIRECT = work(20, "direct solutions", "Direct solutions of an island near rest, or elastic, at most.")
 DIRECT_MOVING = work(6, "direct solutions",
     "Direct solutions of a moving island of few contacts, or of a hit on a pile, at most.")
-FIRST_SWEEPS = work(10, "sweeps", "Sweeps of an island before its first direct solution.")
+FIRST_SWEEPS = work(4, "sweeps", "Sweeps of an island before its first direct solution.")
 SWEEPS_AFTER = work(4, "sweeps", "Sweeps of an island after each direct solution.")
-WAITING_SWEEPS = work(3, "times those of a moving island",
-    "Sweeps of a slow island with friction that waits for its next direct solution. With 1, fewer large piles come "
-    "to rest. Without friction they slide on for ever, and more sweeps cost up to a fifth more for nothing.")
 BACKOFF_CONTACTS = work(40, "contacts",
     "Number beyond which direct solutions that did not converge are suspended for some steps.")
 FAILED_DIRECT = work(8, "direct solutions", "Direct solutions without progress after which the solve ends.")
