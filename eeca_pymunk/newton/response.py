@@ -15,8 +15,9 @@ from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.joint_steps import FULL_BEND, NO_BEND, STEP
-from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, GROOVE, Coupling, Workspace
+from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, GEAR, GROOVE, Coupling, Workspace
 from ..model.parameters.joints import CONDENSED_PASSES, REDUNDANT_EPSILON, RESPONSE_PASSES, TAUT
+from .entries import held
 from .motion import move
 from .rows import joint_rows, start_joint
 from .systems import assemble, back, decompose, first_iterate
@@ -37,18 +38,32 @@ def inertia_taken(W: Workspace, k: int, c: int, full: bool, h: float) -> float:
 
 
 @nonallocating
+def turns_over(W: Workspace, k: int) -> bool:
+    """Whether the force F of joint k, between points of two bodies, turns one of them away as it turns about its point,
+    r . F < 0 with the arm r of the point at the end: F pushes the centre of mass, whatever it does at the point."""
+    hinge = W.J.HINGE[k]
+    for end in range(2):
+        body, arm = W.J.LOCAL[W.link[k].body[end]], hinge.arm_a if end == 0 else hinge.arm_b
+        x, y = body.turn_cos * arm[0] - body.turn_sin * arm[1], body.turn_sin * arm[0] + body.turn_cos * arm[1]
+        if body.mobility[2] > 0.0 and x * hinge.force[3 * end] + y * hinge.force[3 * end + 1] < 0.0:
+            return True
+    return False
+
+
+@nonallocating
 def bend_rows(W: Workspace, k: int, h: float) -> None:
     """Let joint k have the impulse of the whole step in `lam`, so that its rows take their force along as they turn;
     none if it presses, and all that presses on one of its bodies would take more than TAUT of that body's `inertia`.
 
     What a full STIFF takes is bounded by the sums of its rows (Gershgorin), so that what is left of the inertia of all
-    bodies is positive. A groove pushes along where it turns: its STIFF has both signs, whatever its diagonal.
+    bodies is positive. A groove pushes along where it turns: its STIFF has both signs, whatever its diagonal. So has
+    that of a pin or slide that pulls, if it `turns_over` a body. Bounded impulses that are given bend as others do.
     """
     hinge, local = W.J.HINGE, W.J.LOCAL
     hinge[k].lam[0], hinge[k].lam[1] = hinge[k].total[0], hinge[k].total[1]
     kind = joint_rows(W, k, h, True)
     full = kind == FULL_BEND
-    pulls, slight = W.link[k].kind != GROOVE, True
+    pulls, slight = W.link[k].kind != GROOVE and not (full and W.link[k].kind < GEAR and turns_over(W, k)), True
     for c in range(6 if kind != NO_BEND else 0):
         if full or c % 3 == 2:
             at = W.link[k].body[c // 3]
@@ -106,7 +121,7 @@ def factor_response(W: Workspace, what: int, h: float) -> int:
             for c in range(3):
                 local[i].inertia[c] = 1.0
         for k in range(W.joints):
-            if link[k].rows > 0 and link[k].bounded == 0:
+            if link[k].rows > 0 and held(link, k, 0):
                 bend_rows(W, k, h)
     else:
         first_iterate(W, what, h)

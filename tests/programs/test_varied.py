@@ -285,6 +285,11 @@ def test_joints_that_give_way_are_measured_by_their_component() -> None:
     Varied(930597, True).play(49)
 
 
+def test_a_strut_does_not_press_a_light_rod_through_a_wall() -> None:
+    """Answers of its limit were negative, and contacts left out, in intervals that counted as solved."""
+    Varied(9102923, True).play(60)
+
+
 @pytest.mark.parametrize(("seed", "steps"), [(62645, 20), (111663, 20), (110366, 83)])
 def test_what_spins_fast_about_another_point_spends_no_more_than_the_budget(seed: int, steps: int) -> None:
     """Shapes far from their bodies' centres, up to 290 rad a step: searches for impacts count whatever comes next."""
