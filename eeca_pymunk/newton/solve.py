@@ -105,7 +105,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
         built = not ready
         worst = linearise(W, STEP, h, length, give, unscaled and iteration == 0, system, built)
         floor = JOINT_ROUND_OFF_KEPT if lasting else NEWTON_FLOOR if stalls > 1 else JOINT_ROUND_OFF
-        at_floor = iteration > since + 1 and worst > 0.5 * best and best < floor
+        at_floor = iteration > since + 1 and 0.5 * best < worst < floor
         if iteration > 0 and (worst <= max(JOINT_TOLERANCE, progress.near) or at_floor):
             component.factored = 1 if ready and system == CONDENSED and boxes == 0 else 0
             settle(local, W.bodies, h)

@@ -285,6 +285,12 @@ def test_joints_that_give_way_are_measured_by_their_component() -> None:
     Varied(930597, True).play(49)
 
 
+def test_joints_hold_as_well_as_their_last_iteration() -> None:
+    """Two pivots between two disks, whose rows depend on each other: an iteration that was worse by six digits than
+    an earlier one, which had been at round-off, was the last one."""
+    Varied(9802273, True).play(40)
+
+
 def test_a_strut_does_not_press_a_light_rod_through_a_wall() -> None:
     """Answers of its limit were negative, and contacts left out, in intervals that counted as solved."""
     Varied(9102923, True).play(60)
