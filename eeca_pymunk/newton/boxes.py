@@ -5,9 +5,10 @@ the change of u per boxed impulse, answered by all joints that hold exactly. The
 
     |lam| <= max_force h,    u = 0 inside of the bound,    u of the other sign than lam where lam is at the bound,
 
-(a pivot's two as a disc), so that lam never exceeds its bound, in no iteration and in no rung of `..joints.ladder`:
-the work of such a row is at most max_force times the way along it. Sweeps find which rows are at their bounds, a direct
-solution on the others does the rest.
+(a pivot's two as a disc; where other joints hold u, which no impulse changes, lam is at its bound unless u = 0), so
+that lam never exceeds its bound, in no iteration and in no rung of `..joints.ladder`: the work of such a row is at most
+max_force times the way along it. Sweeps find which rows are at their bounds, a direct solution on the others does the
+rest.
 
 MORE has, with N unknowns of the component, one after the other:
 
@@ -26,7 +27,7 @@ from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.joints import BOXED, GROOVE, Coupling, Workspace
-from ..model.parameters.joints import BOX_REDUNDANT, BOX_RESIDUAL, BOX_ROUNDS, BOX_SWEEPS, DISC_WORK
+from ..model.parameters.joints import BOX_REDUNDANT, BOX_RESIDUAL, BOX_ROUNDS, BOX_SWEEPS, DISC_WORK, MOTOR_OFF
 from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, on_disc
 from .condensed import factor, substitute
 from .dual import STRIDE
@@ -76,6 +77,16 @@ def rate_along(W: Workspace, k: int, r: int, change: FloatArray, at: int) -> flo
 
 
 @nonallocating
+def speed_along(W: Workspace, k: int, r: int) -> float:
+    """The speeds of which that along row r of joint k, less its target, is the sum."""
+    hinge, link = W.J.HINGE, W.link
+    total = abs(hinge[k].target[r])
+    for c in range(6):
+        total += abs(hinge[k].rows[r, c] * W.J.LOCAL[link[k].body[c // 3]].v1[c % 3])
+    return float(total)
+
+
+@nonallocating
 def measure_boxes(W: Workspace, w: int, u: int, n: int, h: float, fresh: bool) -> None:
     """Write w, if columns are `fresh`; u after the solution in RIGHT; impulses and their bounds."""
     hinge, link, component, more = W.J.HINGE, W.link, W.J.COMPONENT[W.s], W.J.MORE
@@ -90,6 +101,8 @@ def measure_boxes(W: Workspace, w: int, u: int, n: int, h: float, fresh: bool) -
                 for c in range(n):
                     more[w + row * n + c] = rate_along(W, k, r, more, cols + c * size)
             more[u + row] = hinge[k].value[r] * 2.0 / h + rate_along(W, k, r, W.J.RIGHT, 0)
+            if not more[w + row * n + row] > 0.0 and abs(more[u + row]) <= MOTOR_OFF * speed_along(W, k, r):
+                more[u + row] = 0.0  # no impulse changes round-off
             more[u + n + row] = hinge[k].lam[r]
             more[u + 2 * n + row], more[u + 3 * n + row] = low, bound
             more[u + 4 * n + row] = SINGLE if rows == 1 else FIRST_OF_DISC if r == 0 else SECOND_OF_DISC
@@ -115,7 +128,8 @@ def sweep_boxes(more: FloatArray, w: int, u: int, n: int) -> float:
         a, x = more[w + i * n + i], more[u + n + i]
         low, high = more[u + 2 * n + i], more[u + 3 * n + i]
         if more[u + 4 * n + i] == SINGLE:
-            to = min(max(x - more[u + i] / a, low), high) if a > 0.0 else min(max(x, low), high)
+            to = x - more[u + i] / a if a > 0.0 else low if more[u + i] > 0.0 else high if more[u + i] < 0.0 else x
+            to = min(max(to, low), high)
             worst = max(worst, change_box(more, w, u, n, i, to))
         elif more[u + 4 * n + i] == FIRST_OF_DISC:
             b = 0.5 * (more[w + i * n + i + 1] + more[w + (i + 1) * n + i])

@@ -272,3 +272,24 @@ def test_a_motor_of_unlimited_force_stalls_at_a_limit(kind: str, unit: float) ->
     assert lost == pytest.approx(once if kind == "limit" else 0.0, rel=1e-9, abs=1e-9 * once)
     assert worked == pytest.approx(lost, rel=1e-9, abs=1e-9 * once)
     assert other.position.x == pytest.approx(11.0 * unit, rel=1e-12)
+
+
+@pytest.mark.parametrize("force", [3.0, math.inf])
+@pytest.mark.parametrize("ratio", [1.0, 2.0, 3.0])
+def test_a_motor_stalls_where_gears_hold_what_it_turns(ratio: float, force: float) -> None:
+    """No impulse of it changes its speed: it has all that it may have, which the gear bears."""
+    space, wheel, rigid, other = empty(0.0), pymunk.Body(1.0, 0.7), pymunk.Body(1.0, math.inf), pymunk.Body(2.0, 3.0)
+    wheel.angle = 0.3
+    gear = pymunk.GearJoint(wheel, rigid, -wheel.angle, ratio)
+    motor, spring = pymunk.SimpleMotor(other, wheel, 1.7), pymunk.DampedRotarySpring(other, wheel, -0.2, 1.0, 0.1)
+    motor.max_force = force
+    other.moment = math.inf
+    space.add(wheel, rigid, other, gear, motor, spring)
+    stepper = ep.EECA(space)
+    for _ in range(10):
+        report = stepper.step(1 / 60)
+        assert report.converged, report.unmet
+        assert wheel.angle == pytest.approx(0.3, abs=1e-14)
+        assert motor.impulse > 0.0
+        if math.isfinite(force):
+            assert motor.impulse == pytest.approx(force / 60, rel=1e-12)
