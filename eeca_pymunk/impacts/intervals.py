@@ -74,8 +74,8 @@ def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
     A.PAR.dt = t
     A.COUNT.heap = 0
     if J.TALLY.components > 0:
-        # The shortened intervals are solved again below, beyond the budget that is spent.
-        J.PROGRESS.budget = J.PROGRESS.effort + STEP_WORK
+        # The shortened intervals are solved again below, beyond the budget that is spent, of events or of joints.
+        A.COUNT.work, J.PROGRESS.budget = 0, J.PROGRESS.effort + STEP_WORK
     # Impacts of jointed bodies come later than predicted, or earlier (`..jointed.meet`), so that bodies may have been
     # brought beyond t. Islands in an interval go back to t on its path; bodies of ended intervals, and others that are
     # beyond t, count as there at t.

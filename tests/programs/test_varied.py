@@ -285,6 +285,12 @@ def test_joints_that_give_way_are_measured_by_their_component() -> None:
     Varied(930597, True).play(49)
 
 
+def test_steps_that_events_cut_short_leave_no_joint_of_a_moving_partner_apart() -> None:
+    """The intervals that are cut had no work left for their contacts, so that they ended halfway, and bodies stayed
+    there while the container went on with its pin."""
+    Varied(9810915, True).play(50)
+
+
 def test_joints_hold_as_well_as_their_last_iteration() -> None:
     """Two pivots between two disks, whose rows depend on each other: an iteration that was worse by six digits than
     an earlier one, which had been at round-off, was the last one."""
