@@ -12,6 +12,7 @@ from ..islands.local import contacts_of
 from ..jointed.ends import shorten, under_way
 from ..jointed.lifting import lift_here as lift_joined
 from ..jointed.meet import end_before
+from ..jointed.partners import carry
 from ..jointed.solve import begin_interval
 from ..model.bodies import AT_REST
 from ..model.joints import Joints
@@ -83,6 +84,10 @@ def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
         if A.STATE[k].island == k and A.MEMBER[k].rest != AT_REST and A.MEMBER[k].jointed == 0 and A.MEMBER[k].open > 0:
             first, after = contacts_of(A, k)
             close_interval(A, k, max(A.PUSHED[first].start, t) if first < after else t)
+    for k in range(A.BODY.shape[0] - 1 if J.TALLY.components > 0 else 0):
+        ahead = A.MEMBER[k].open == 0 or A.BODY[k].since > t
+        if A.STATE[k].island == k and A.MEMBER[k].jointed > 0 and A.MEMBER[k].rest != AT_REST and ahead:
+            carry(A, J, k, t)
     for k in range(A.BODY.shape[0] - 1):
         root = A.STATE[k].island
         over = root >= 0 and A.MEMBER[root].rest != AT_REST and A.MEMBER[root].open == 0

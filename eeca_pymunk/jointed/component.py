@@ -66,6 +66,14 @@ def fit_speeds(J: Joints, s: int, length: float) -> None:
 
 
 @nonallocating
+def keep_apart(W: Workspace) -> None:
+    """Let what is apart at the present poses, whose rows are there, stay as far apart."""
+    for k in range(W.joints):
+        for r in range(W.link[k].rows):
+            W.J.HINGE[k].target[r] = W.J.HINGE[k].value[r]
+
+
+@nonallocating
 def close_joints(
     A: Scene, J: Joints, s: int, OLD: FloatArray, NEW: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray,
     t: float, h: float,
@@ -76,10 +84,7 @@ def close_joints(
     length = gather_component(A, J, s, OLD, V, V, IM, II, t, h)
     size_joints(W, length)
     stored = springs_of(W)
-    for k in range(W.joints):
-        # What is apart stays as far apart.
-        for r in range(W.link[k].rows):
-            W.J.HINGE[k].target[r] = W.J.HINGE[k].value[r]
+    keep_apart(W)
     gather_component(A, J, s, NEW, V, V, IM, II, t, h)
     correct(W, POSES)
     for i in range(W.bodies):

@@ -23,6 +23,7 @@ from ..model.parameters.joints import (
 from ..model.scene import Scene
 from .ends import end_here, left_apart, shorten, under_way
 from .ledger import work_left
+from .partners import carry
 from .paths import first_meeting, passes
 
 
@@ -62,8 +63,8 @@ def too_late(A: Scene, J: Joints, roots: tuple[int, int], t: float) -> float:
 def end_before(A: Scene, J: Joints, root: int, t: float, fits: bool, spent: bool) -> bool:
     """End the interval of an island, which has been shortened to instant t. Unless it is known that it `fits`: where
     joints do not hold at its end, or it has led through others, the island goes half as far, and so on, or not at all,
-    and stays there until t; or it waits there for the end of the step, whose work is `spent`. Returns whether it does
-    either."""
+    and stays there until t, or where moving partners have it (`carry`); or it waits there for the end of the step,
+    whose work is `spent`. Returns whether it does either."""
     if not under_way(A, root):
         return False
     began, then = A.BODY[root].since, t
@@ -74,6 +75,8 @@ def end_before(A: Scene, J: Joints, root: int, t: float, fits: bool, spent: bool
         then = began if tries + 1 == MEET_SECANTS else 0.5 * (began + then)
         shorten(A, J, root, then)
     end_here(A, J, root, then)
+    if not spent:
+        carry(A, J, root, t)
     i = root
     while i >= 0:
         A.BODY[i].since = then if spent else t

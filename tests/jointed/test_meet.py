@@ -5,14 +5,17 @@ from __future__ import annotations
 import math
 from itertools import pairwise
 
+import numpy as np
 import pymunk
 import pytest
 
 import eeca_pymunk as ep
+from eeca_pymunk.geometry.flight import pose
 from eeca_pymunk.jointed import meet as meetings
 from eeca_pymunk.jointed import paths
 from eeca_pymunk.jointed.ends import shorten
 from eeca_pymunk.jointed.meet import end_before, meet
+from eeca_pymunk.jointed.partners import carry
 from eeca_pymunk.jointed.paths import passes
 from eeca_pymunk.jointed.solve import open_span
 from eeca_pymunk.model.joint_steps import LINEAR
@@ -62,6 +65,57 @@ def test_an_interval_that_would_lead_through_a_wall_ends_before(h: float) -> Non
     assert 0.5 * body.vy**2 + G * body.y == pytest.approx(0.5 * SPEED**2 + G, rel=1e-12)
     if h == 0.01:
         assert body.y == pytest.approx(1.0 - SPEED * h - 0.5 * G * h * h, rel=1e-12)
+
+
+@pytest.mark.parametrize("t", [0.01, 0.07])
+def test_what_hangs_on_a_moving_body_is_where_that_has_it_as_a_step_is_cut(t: float) -> None:
+    """At an instant before or after the one to which its island has been brought: joints hold, and all that its energy
+    changes by is work of what moves, and of a force on it along its way."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -G
+    wheel, body, other = pymunk.Body(body_type=pymunk.Body.KINEMATIC), pymunk.Body(2.0, 1.0), pymunk.Body(1.0, 0.5)
+    wheel.velocity, wheel.angular_velocity = (1.0, 0.5), 2.0
+    body.position, other.position = (3.0, 0.0), (3.0, 1.0)
+    joint = pymunk.PivotJoint(wheel, body, (2.0, 0.0))
+    spring = pymunk.DampedSpring(wheel, other, (2.0, 2.0), (0.0, 0.0), 0.5, 30.0, 0.0)
+    shapes = (pymunk.Circle(one, RADIUS) for one in (wheel, body, other))
+    space.add(wheel, body, other, *shapes, joint, spring, pymunk.PinJoint(body, other))
+    stepper = ep.EECA(space)
+    body.force, body.torque = (3.0, 1.0), 0.7
+    stepper.step(0.03)
+    assert stepper.event_loop is not None
+    A, J = stepper.event_loop.scene, stepper.event_loop.joints
+    k = next(i for i in range(3) if A.STATE[i].island == i and A.MEMBER[i].jointed > 0)
+    fixed = next(i for i in range(3) if A.BODY[i].inv_mass == 0.0)
+
+    def state() -> tuple[float, float]:
+        """How far the pivot's points are apart, and the energy of the bodies and the spring."""
+        places = {2.0: body, 1.0: other}
+        energy = 0.0
+        for i in range(3):
+            row = A.BODY[i]
+            if i != fixed:
+                one = places[round(1.0 / row.inv_mass)]
+                one.position, one.angle = (row.x, row.y), row.angle
+                one.velocity, one.angular_velocity = (row.vx, row.vy), row.spin
+                energy += 0.5 * one.kinetic_energy + G * row.y / row.inv_mass  # pymunk leaves the half out
+        x, y, angle = pose(A.BODY, fixed, A.BODY[k].since)
+        wheel.position, wheel.angle = (x, y), angle
+        far = wheel.local_to_world((2.0, 2.0)).get_distance(other.position)
+        apart = wheel.local_to_world(joint.anchor_a).get_distance(body.local_to_world(joint.anchor_b))
+        return apart, energy + 15.0 * (far - 0.5) ** 2
+
+    (apart, before), here, turned = state(), body.position, body.angle
+    external = float(A.PAR.external)
+    assert apart <= 1e-12
+    carry(A, J, k, t)
+    for i in range(3):
+        A.BODY[i].since = A.BODY[i].since if i == fixed else t
+    assert state()[0] <= 1e-12
+    change = state()[1] - before
+    work = (3.0, 1.0) @ np.subtract(body.position, here) + 0.7 * (body.angle - turned)
+    assert change == pytest.approx(A.PAR.external - external + work, abs=1e-12 * G)
+    assert abs(A.PAR.external - external) > 1e-3
 
 
 def test_the_path_is_looked_at_once_however_many_instants_are_tried(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,62 @@
+"""Islands that hang on a moving body, where a step ends at another instant than the one to which they were brought."""
+
+from __future__ import annotations
+
+from ..compiled import kernel, nonallocating
+from ..joints.closing import farthest
+from ..joints.correct import correct
+from ..joints.start import springs_of
+from ..joints.workspace import workspace
+from ..model.joint_steps import POSES
+from ..model.joints import Joints
+from ..model.parameters.joints import LINEAR_APART
+from ..model.scene import Scene
+from .component import keep_apart, size_joints
+from .ends import components_of
+from .gathered import gather_alone
+
+
+@nonallocating
+def has_moving_partner(A: Scene, J: Joints, s: int) -> bool:
+    """Whether a body that moves, but not by impulses, has a joint with component s."""
+    for w in range(J.COMPONENT[s].first_body, J.COMPONENT[s].end_body):
+        body = int(J.JOINED[w].body)
+        if J.JOINED[w].freedoms == 0 and body < A.BODY.shape[0] and A.BODY[body].inv_mass == 0.0:
+            b = A.BODY[body]
+            if b.vx != 0.0 or b.vy != 0.0 or b.spin != 0.0:
+                return True
+    return False
+
+
+@kernel
+def carry(A: Scene, J: Joints, root: int, t: float) -> None:
+    """Let the bodies of an island that have been brought to another instant than t, at which the step ends, go where
+    joints with moving partners have them at t, along M^-1 G^T: these would be apart by the partners' way. Partners do
+    the work, against all forces on the bodies."""
+    began = A.BODY[root].since
+    if began == t:
+        return
+    for s in components_of(A, J, root):
+        if not has_moving_partner(A, J, s):
+            continue
+        W, first = workspace(J, s), J.COMPONENT[s].first_body
+        size_joints(W, gather_alone(A, J, s, began, A.PAR.planned))
+        stored = springs_of(W)
+        keep_apart(W)
+        gather_alone(A, J, s, t, A.PAR.planned)
+        correct(W, POSES)
+        stored = springs_of(W) - stored
+        if not farthest(W) <= LINEAR_APART:
+            continue
+        work = stored
+        for w in range(W.bodies):
+            if J.LOCAL[w].freedoms == 0:
+                continue
+            i, place = int(J.JOINED[first + w].body), J.LOCAL[w].pose
+            body = A.BODY[i]
+            work -= (A.PULL[i, 0] * (place[0] - body.x) + A.PULL[i, 1] * (place[1] - body.y)) / body.inv_mass
+            if body.inv_inertia > 0.0:
+                work -= A.PULL[i, 2] * (place[2] - body.angle) / body.inv_inertia
+            body.x, body.y, body.angle = place[0], place[1], place[2]
+        A.PAR.stored += stored
+        A.PAR.external += work
