@@ -11,6 +11,7 @@ import numpy as np
 from eeca_pymunk.compiled.records import rows
 from eeca_pymunk.geometry.corners import core_room
 from eeca_pymunk.model.bodies import Body
+from eeca_pymunk.model.parameters.events import STEP_LOOKS
 from eeca_pymunk.model.scene import scene_with
 from eeca_pymunk.model.shapes import Link, Shape
 
@@ -73,7 +74,7 @@ class World:
         self.scene = scene_with(
             BODY=self.body, SHAPE=self.shape, LINK=self.link, VERTEX=self.vertex, CORE=core_room(self.link)
         )
-        self.scene.COUNT.disks = self.disks
+        self.scene.COUNT.disks, self.scene.COUNT.budget = self.disks, STEP_LOOKS
 
 
 def disk(radius: float) -> list[tuple[Sequence[tuple[float, float]], float]]:

@@ -6,7 +6,7 @@ Work is counted in *looks*, about the time of one look at the gap of two shapes.
 from __future__ import annotations
 
 from ..compiled import nonallocating
-from ..model.parameters.events import BUDGET_TIME, DIRECT_LOOKS, EVENT_LOOKS, PAIR_LOOKS, SWEEP_LOOKS
+from ..model.parameters.events import BODY_LOOKS, BUDGET_TIME, DIRECT_LOOKS, EVENT_LOOKS, PAIR_LOOKS, SWEEP_LOOKS
 from ..model.parameters.impulses import DENSE_CONTACTS
 from ..model.scene import Scene
 
@@ -23,11 +23,11 @@ def note_unmet(A: Scene, kind: int, a: int, b: int, value: float, limit: float) 
 
 
 @nonallocating
-def spend(A: Scene, pairs: int, contacts: int, sweeps: int, direct: int) -> None:
-    """Add the work of a contact solve to that of the step: numbers of pairs of its geometry, of contacts, of sweeps
-    over them, and of direct solves, with dense matrices for few contacts."""
+def spend(A: Scene, bodies: int, pairs: int, contacts: int, sweeps: int, direct: int) -> None:
+    """Add the work of a contact solve to that of the step: numbers of its bodies, of pairs of its geometry, of
+    contacts, of sweeps over them, and of direct solves, with dense matrices for few contacts."""
     few = min(contacts, DENSE_CONTACTS)
-    one = PAIR_LOOKS * pairs + contacts * (SWEEP_LOOKS * sweeps + DIRECT_LOOKS * few * direct)
+    one = BODY_LOOKS * bodies + PAIR_LOOKS * pairs + contacts * (SWEEP_LOOKS * sweeps + DIRECT_LOOKS * few * direct)
     A.COUNT.work += EVENT_LOOKS + int(one)
 
 

@@ -16,7 +16,7 @@ from ..jointed.partners import carry
 from ..jointed.solve import begin_interval
 from ..model.bodies import AT_REST
 from ..model.joints import Joints
-from ..model.parameters.joints import STEP_WORK
+from ..model.parameters.joints import CUT_WORK
 from ..model.scene import Scene
 from ..model.step import DONE, PUSHES_FULL, SOLVES, SPENT
 from ..prediction.scheduling import predict_all
@@ -76,7 +76,7 @@ def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
     A.COUNT.heap = 0
     if J.TALLY.components > 0:
         # The shortened intervals are solved again below, beyond the budget that is spent, of events or of joints.
-        A.COUNT.work, J.PROGRESS.budget = 0, J.PROGRESS.effort + STEP_WORK
+        A.COUNT.work, J.PROGRESS.budget = 0, J.PROGRESS.effort + CUT_WORK
     # Impacts of jointed bodies come later than predicted, or earlier (`..jointed.meet`), so that bodies may have been
     # brought beyond t. Islands in an interval go back to t on its path; bodies of ended intervals, and others that are
     # beyond t, count as there at t.

@@ -49,7 +49,7 @@ def finish(A: Scene, block: Block, n: int, m: int, L: FloatArray, OUT: Rows[Solv
                 block.POINTS[z, 0], block.POINTS[z, 1], L[z, 0] / ROWS[z].k_n, math.nan,
             )  # fmt: skip
             COUNT.logged += 1
-    spend(A, m, len(ROWS), OUT[0].sweeps, OUT[0].direct)
+    spend(A, n, m, len(ROWS), OUT[0].sweeps, OUT[0].direct)
     COUNT.blocks += 1 if m > 1 else 0
 
 

@@ -109,7 +109,7 @@ def repay(A: Scene, root: int, t: float) -> None:
     contacts = make_contacts(len(found), len(isle.WHO))
     VN, OUT, owed = contacts.VN, contacts.OUT, max(-A.RESTING[root].lost, 0.0)
     m = step_island(A, isle, contacts, n, s, sweeps_of(n, start), 0.0, owed, 0.0)
-    spend(A, 2 * len(found), m, OUT[0].sweeps, OUT[0].direct)
+    spend(A, n, 2 * len(found), m, OUT[0].sweeps, OUT[0].direct)
     A.COUNT.solved += n
     A.COUNT.direct += OUT[0].direct
     if m < 0 or m > end - first or times_too_long(A, isle, contacts, m, s) > INTERVAL_RETRY:

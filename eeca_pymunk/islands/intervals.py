@@ -154,7 +154,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
             far = times_too_long(A, isle, contacts, m, h)
         if far > INTERVAL_RETRY:
             A.COUNT.solved += n
-            spend(A, 2 * p, m, OUT[0].sweeps, OUT[0].direct)
+            spend(A, n, 2 * p, m, OUT[0].sweeps, OUT[0].direct)
             return AGAIN, h / far
         if m > 0 and OUT[0].at_rest == 0 and not before_end(A, t + h):
             # An interval that ends within the step is followed by another one, which corrects the penetration.
@@ -167,7 +167,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
         note_unmet(A, CONTACTS, isle.PAIRS[0, 0], isle.PAIRS[0, 1], OUT[0].residual, OUT[0].tolerance)
     COUNT.solves += 1
     COUNT.solved += n
-    spend(A, 2 * p, m, OUT[0].sweeps, OUT[0].direct)
+    spend(A, n, 2 * p, m, OUT[0].sweeps, OUT[0].direct)
     COUNT.direct += OUT[0].direct
     TOUCHED = np.zeros(k, np.uint8)
     open_contacts(A, isle, contacts, VN, m, COUNT.pushes, t, h, TOUCHED)

@@ -13,7 +13,7 @@ from ..joints.step import take_step
 from ..joints.workspace import workspace
 from ..model.joint_steps import POSES, SPEEDS, STEP
 from ..model.joints import GEAR, Joints, Workspace
-from ..model.parameters.joints import CORRECTION_JOINTS
+from ..model.parameters.joints import COMPONENT_WORK, COMPONENT_WORK_BODY, CORRECTION_JOINTS
 from ..model.scene import Scene
 from ..newton.entries import held
 from ..newton.response import prepare, respond
@@ -26,6 +26,7 @@ def step_in_scratch(J: Joints, s: int, h: float, length: float, whole: bool) -> 
 
     `whole`: whether order 4 may be had: nothing else acts in the interval.
     """
+    J.PROGRESS.effort += COMPONENT_WORK + COMPONENT_WORK_BODY * (J.COMPONENT[s].end_body - J.COMPONENT[s].first_body)
     J.STEPPED[s].status = take_step(workspace(J, s), h, J.TALLY.order if whole else 2, length, J.STEPPED[s])
 
 

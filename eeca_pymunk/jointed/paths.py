@@ -8,6 +8,7 @@ from ..compiled import nonallocating
 from ..geometry.gap import gap
 from ..geometry.sides import remembers, smaller
 from ..islands.depths import depth_limit
+from ..model.parameters.events import ENTRY_LOOKS
 from ..model.parameters.intervals import INTERVAL_DEPTH
 from ..model.parameters.joints import MEET_MANY
 from ..model.scene import Scene
@@ -41,7 +42,7 @@ def passes(A: Scene, root: int, t: float) -> float:
     while i >= 0:
         for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
             # Near lists are looked through as in a prediction.
-            A.COUNT.work += A.LIST[s].number // 4
+            A.COUNT.work += int(ENTRY_LOOKS * A.LIST[s].number)
             for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
                 o = int(A.POOL[w])
                 twice = o < s and A.STATE[A.LINK[o].owner].island == A.STATE[i].island  # in the list of o, too

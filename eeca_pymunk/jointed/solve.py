@@ -87,7 +87,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     # As in a whole step where it is cut short: nobody looks for impacts of pairs that would be left out.
     found = pairs_within(A, root, t, A.PAR.planned - t, lossy(A, root), MINE, n)
     p = len(found)
-    spend(A, 2 * p, 0, 0, 0)  # besides what joints take
+    spend(A, n, 2 * p, 0, 0, 0)  # besides what joints take
     if p == 0 and whole:
         clear_places(A, MINE, n)
         far = begin_alone(A, J, root, t, h, last)

@@ -27,7 +27,15 @@ from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.joints import BOXED, GROOVE, Coupling, Workspace
-from ..model.parameters.joints import BOX_REDUNDANT, BOX_RESIDUAL, BOX_ROUNDS, BOX_SWEEPS, DISC_WORK, MOTOR_OFF
+from ..model.parameters.joints import (
+    BOX_REDUNDANT,
+    BOX_RESIDUAL,
+    BOX_ROUNDS,
+    BOX_SWEEPS,
+    DISC_WORK,
+    MOTOR_OFF,
+    SWEEP_WORK,
+)
 from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, on_disc
 from .condensed import factor, substitute
 from .dual import STRIDE
@@ -180,7 +188,7 @@ def direct_boxes(more: FloatArray, w: int, u: int, n: int) -> None:
 
 @nonallocating
 def discs(more: FloatArray, u: int, n: int) -> int:
-    """How many of the n rows begin a disc: sweeps over these are work, those over single rows are not much of it."""
+    """How many of the n rows begin a disc, over which sweeps are more work."""
     count = 0
     for i in range(n):
         count += int(more[u + 4 * n + i] == FIRST_OF_DISC)
@@ -232,7 +240,7 @@ def bound_impulses(W: Workspace, n: int, h: float, fresh: bool) -> None:
     w = STRIDE * component.dual_size + (n + 1) * (component.unknowns + component.impulses)
     u = w + 3 * n * n
     measure_boxes(W, w, u, n, h, fresh)
-    W.J.PROGRESS.effort += DISC_WORK * discs(W.J.MORE, u, n) * solve_boxes(W.J.MORE, w, u, n)
+    W.J.PROGRESS.effort += (SWEEP_WORK * n * n + DISC_WORK * discs(W.J.MORE, u, n)) * solve_boxes(W.J.MORE, w, u, n)
     apply_boxes(W, u, n)
 
 

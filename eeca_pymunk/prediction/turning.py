@@ -34,7 +34,7 @@ from ..geometry.sides import (
     smaller,
 )
 from ..model.bodies import Body
-from ..model.parameters.events import ADVANCES, APPROACH_ROUND_OFF, RESOLUTION
+from ..model.parameters.events import ADVANCES, APPROACH_ROUND_OFF, BUDGET_TIME, LONGEST_SEARCH, RESOLUTION
 from ..model.parameters.intervals import TOUCH
 from ..model.scene import Scene
 from ..pairs.lists import face_tolerance
@@ -155,11 +155,12 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
     horizon. Shapes that touch and approach meet at once. Shapes that touch and part do not meet: the search goes on
     where they may be as deep as TOUCH (`axes.first_close`), or ends where they touch again if that is before. After
     ADVANCES looks within the time over RESOLUTION each advances by at least their ratio. Where shapes overlap, but do
-    not close, there are ADVANCES looks in the time.
+    not close, there are ADVANCES looks in the time. The search ends where it is once LONGEST_SEARCH of the step's work
+    is spent.
 
     Args:
         a, b: a < b.
-        horizon: finite instant; lower bounds are no earlier.
+        horizon: finite instant; lower bounds are no earlier, unless the work is spent.
         until: instant from which on the search is not continued, to note the sides there; else infinite.
     """
     BODY, SHAPE = A.BODY, A.SHAPE
@@ -185,6 +186,7 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
     if remembers(A, a, b):
         begin_side(A, a, b, start, duration, tolerance)
     looks, mark, interval = 0, s, duration / RESOLUTION
+    most = LONGEST_SEARCH * A.COUNT.budget * max(1.0, A.PAR.dt / BUDGET_TIME)
     while True:
         looks += 1
         A.COUNT.work += 1
@@ -218,3 +220,5 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
         s += safe if looks < ADVANCES else max(safe, interval / ADVANCES)
         if s > duration or looks > 2.0 * ADVANCES * RESOLUTION or start + s > until:
             return horizon, False
+        if A.COUNT.work > most and until == math.inf:
+            return start + s, False

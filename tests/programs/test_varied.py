@@ -297,6 +297,11 @@ def test_joints_hold_as_well_as_their_last_iteration() -> None:
     Varied(9802273, True).play(40)
 
 
+def test_one_search_spends_no_more_than_the_work_of_a_step() -> None:
+    """A search of 130 000 looks, as shapes that turn fast are near each other in all the step."""
+    Varied(9812350, True).play(105)
+
+
 def test_a_strut_does_not_press_a_light_rod_through_a_wall() -> None:
     """Answers of its limit were negative, and contacts left out, in intervals that counted as solved."""
     Varied(9102923, True).play(60)

@@ -83,11 +83,15 @@ FIT_RESIDUAL = accuracy(1e-06, "of the fastest closing contact",
     "Residual of the impulses that keep contacts from closing in this projection.")
 FIT_ENERGY = round_off(1e-12, "of the energy", "Change of energy by this projection that is round-off.")
 JOINTED_CORRECTION_SWEEPS = work(40, "sweeps", "Sweeps of the penetration correction of jointed bodies.")
-STEP_WORK = work(50000000.0, "operations",
+STEP_WORK = work(80000000.0, "operations",
     "Work of a step with joints besides STEP_WORK_BODY; 5e9 operations take about a second.")
 INTERVAL_SHARE = work(0.25, "of what is left of the budget",
     "Work of an interval after which it is solved again, shorter, if it has not converged.")
 STEP_WORK_BODY = work(250000.0, "operations", "Work of a step with joints for each body of the scene.")
+CUT_WORK = work(10000000.0, "operations",
+    "Work for the intervals with joints that end where a step is cut short, beside its budget.")
+COMPONENT_WORK = work(8000.0, "operations", "Work of a step of a component, beside its iterations.")
+COMPONENT_WORK_BODY = work(3500.0, "operations", "What each of its bodies adds to it.")
 MEET = round_off(1e-13, "of the smaller shape", "Gap at the located instant of an impact on a component.")
 MEET_LOADED = accuracy(1e-06, "of the smaller shape", "Gap at that instant if contacts push on the component.")
 MEET_MANY = accuracy(0.0001, "of the smaller shape", "Gap at that instant if many contacts push on it.")
