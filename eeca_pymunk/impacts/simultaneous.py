@@ -32,8 +32,9 @@ from ..rows.inplace import sort
 
 @nonallocating
 def takes_part(A: Scene, s: int, o: int, t: float) -> bool:
-    """Whether shapes s and o touch at instant t, or are a loaded contact of an island."""
-    if barred(A, s, o):
+    """Whether shapes s and o touch at instant t, or are a loaded contact of an island. That of o's body does not whose
+    path begins later, as jointed bodies may meet before the last event (`..jointed.meet`)."""
+    if barred(A, s, o) or A.BODY[A.LINK[o].owner].since > t:
         return False
     if touches(A, s, o, t):
         return True

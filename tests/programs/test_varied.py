@@ -307,6 +307,11 @@ def test_a_strut_does_not_press_a_light_rod_through_a_wall() -> None:
     Varied(9102923, True).play(60)
 
 
+def test_impacts_take_nobody_back_to_before_its_last_one() -> None:
+    """A disk that had hit a wall went back on its path through it, to where jointed bodies met before that."""
+    Varied(9902209, True).play(14)
+
+
 @pytest.mark.parametrize(("seed", "steps"), [(62645, 20), (111663, 20), (110366, 83)])
 def test_what_spins_fast_about_another_point_spends_no_more_than_the_budget(seed: int, steps: int) -> None:
     """Shapes far from their bodies' centres, up to 290 rad a step: searches for impacts count whatever comes next."""
