@@ -85,16 +85,6 @@ def rate_along(W: Workspace, k: int, r: int, change: FloatArray, at: int) -> flo
 
 
 @nonallocating
-def speed_along(W: Workspace, k: int, r: int) -> float:
-    """The speeds of which that along row r of joint k, less its target, is the sum."""
-    hinge, link = W.J.HINGE, W.link
-    total = abs(hinge[k].target[r])
-    for c in range(6):
-        total += abs(hinge[k].rows[r, c] * W.J.LOCAL[link[k].body[c // 3]].v1[c % 3])
-    return float(total)
-
-
-@nonallocating
 def measure_boxes(W: Workspace, w: int, u: int, n: int, h: float, fresh: bool) -> None:
     """Write w, if columns are `fresh`; u after the solution in RIGHT; impulses and their bounds."""
     hinge, link, component, more = W.J.HINGE, W.link, W.J.COMPONENT[W.s], W.J.MORE
@@ -109,8 +99,12 @@ def measure_boxes(W: Workspace, w: int, u: int, n: int, h: float, fresh: bool) -
                 for c in range(n):
                     more[w + row * n + c] = rate_along(W, k, r, more, cols + c * size)
             more[u + row] = hinge[k].value[r] * 2.0 / h + rate_along(W, k, r, W.J.RIGHT, 0)
-            if not more[w + row * n + row] > 0.0 and abs(more[u + row]) <= MOTOR_OFF * speed_along(W, k, r):
-                more[u + row] = 0.0  # no impulse changes round-off
+            if not more[w + row * n + row] > 0.0:
+                speeds = abs(hinge[k].target[r])  # whose sum u is
+                for c in range(6):
+                    speeds += abs(hinge[k].rows[r, c] * W.J.LOCAL[link[k].body[c // 3]].v1[c % 3])
+                if abs(more[u + row]) <= MOTOR_OFF * speeds:
+                    more[u + row] = 0.0  # no impulse changes round-off
             more[u + n + row] = hinge[k].lam[r]
             more[u + 2 * n + row], more[u + 3 * n + row] = low, bound
             more[u + 4 * n + row] = SINGLE if rows == 1 else FIRST_OF_DISC if r == 0 else SECOND_OF_DISC
