@@ -120,17 +120,23 @@ def deep_at_end(
     if it is not.
 
     The pair closes by u s + c s^2 in a time s, with its velocity u at the start, and c from the way u h + c h^2 to END:
-    by its room r after s = 2 r / (u + sqrt(u^2 + 4 c r)), and the interval is h/s times too long.
+    by its room r after s = 2 r / (u + sqrt(u^2 + 4 c r)), and the interval is h/s times too long. Where the normal at
+    END is against that of the row, the way has led to the other side, as deep as the row's normal tells.
     """
     pair, p, q = KEY[z] >> 1, P[z], Q[z]
     a, b = pair // A.SHAPE.shape[0], pair % A.SHAPE.shape[0]
+    sign = 1.0
     if isle.WHO[p] != A.LINK[a].owner:
-        p, q = q, p
+        p, q, sign = q, p, -1.0
     gap = ROWS[z].gap
     for other in (z - 1, z + 1):
         if 0 <= other < m and KEY[other] >> 1 == pair:
             gap = min(gap, ROWS[other].gap)
-    closing = gap - gap_at(A, a, END[p, 0], END[p, 1], END[p, 2], b, END[q, 0], END[q, 1], END[q, 2])[0]
+    after, nx, ny, _, _ = gap_at(A, a, END[p, 0], END[p, 1], END[p, 2], b, END[q, 0], END[q, 1], END[q, 2])
+    along = sign * (nx * ROWS[z].nx + ny * ROWS[z].ny)
+    if along < 0.0:
+        after = after * along if after > 0.0 else -known_depth(A, a, b)
+    closing = gap - after
     if too_deep(A, a, b, gap, closing) == 0.0:
         return 0.0
     S, V, room = isle.POSE, isle.V, max(gap, 0.0) + depth_limit(A, a, b)

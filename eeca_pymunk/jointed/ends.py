@@ -63,7 +63,7 @@ def shorten(A: Scene, J: Joints, root: int, t: float) -> int:
         return 0
     before = A.COUNT.pushes
     take_back(A, root)
-    began = A.BODY[root].since
+    began, A.RESTING[root].strays = A.BODY[root].since, 0.0
     some = int(before - A.COUNT.pushes)
     for s in components_of(A, J, root):
         restore_joints(J, s)

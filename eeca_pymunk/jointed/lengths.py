@@ -99,7 +99,18 @@ def excess(
         i, turned = int(isle.WHO[q]), motion.END[q, 2] - isle.POSE[q, 2]
         far = max(far, strays(A, i, motion.WAY[q, 0], motion.WAY[q, 1], turned, motion.V[q], isle.ACC[q], t, h, KEY, m))
     far = max(far, closes_too_far(A, isle, P, Q, ROWS, KEY, motion.MEAN, m, h))
-    return max(far, too_deep_at_end(A, isle, motion.END, P, Q, ROWS, KEY, m, h, True))
+    return max(far, too_deep_on_way(A, isle, P, Q, ROWS, KEY, motion, m, h))
+
+
+@kernel
+def too_deep_on_way(
+    A: Scene, isle: Island, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, motion: Motion, m: int, h: float
+) -> float:
+    """How many times too long the interval h is, as one of m contacts is deeper at its end, or in its middle, than the
+    linear rows predict: what slides along a wall that turns may be past the end of the wall by the end."""
+    MIDDLE = isle.POSE + 0.25 * (h * isle.V + motion.WAY)
+    half = too_deep_at_end(A, isle, MIDDLE, P, Q, ROWS, KEY, m, 0.5 * h, True)
+    return max(2.0 * half, too_deep_at_end(A, isle, motion.END, P, Q, ROWS, KEY, m, h, True))
 
 
 @nonallocating

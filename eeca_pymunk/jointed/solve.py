@@ -39,7 +39,7 @@ from .fitting import fit
 from .gathered import keep_joints, restore_joints
 from .groups import find_groups
 from .ledger import work_left
-from .lengths import excess, led_in, sinks
+from .lengths import excess, led_in, sinks, too_deep_on_way
 from .lifting import lift_island
 from .lock import lost, slip_of
 from .press import press
@@ -131,6 +131,8 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     if not (last and held):
         strays = excess(A, isle, P, Q, ROWS, KEY, motion, m, n, t, h)
         A.RESTING[root].strays, far = 0.0 if held else strays, max(far, strays)
+    else:
+        A.RESTING[root].strays = too_deep_on_way(A, isle, P, Q, ROWS, KEY, motion, m, h)
     if not held:  # the motion is not that of a solution, and says little of how long it may be
         # Contacts that are not solved in a long interval may be in a short one, if the step has work for many of these;
         # and what sinks in by them would sink further in the next one.

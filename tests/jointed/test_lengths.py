@@ -140,3 +140,27 @@ def test_a_joint_tells_its_force_whatever_the_intervals_of_a_step() -> None:
         loop = stepper.event_loop
         assert loop is not None
         loop.scene.RESTING["longest"] = 0.25 * dt
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+@pytest.mark.parametrize("dt", [0.03, 0.04, 0.1])
+@pytest.mark.parametrize("spin", [1.0, 2.0])
+def test_what_slides_along_a_wall_that_turns_does_not_go_through_it(spin: float, dt: float, unit: float) -> None:
+    """A motor lets a plank turn with a container, on whose floor it slides 24 of its heights far, into a corner, in a
+    time s of 0.024 s. Rows are those of the start where bodies slide so far; the floor rises by spin v s^2 = 0.58 spin
+    heights. Whole steps end beyond the corner, where nothing overlaps."""
+    space = pymunk.Space()
+    box, plank = pymunk.Body(body_type=pymunk.Body.KINEMATIC), pymunk.Body(1.0, 0.4 * unit**2)
+    space.add(box, plank, pymunk.Poly.create_box(plank, (2.0 * unit, unit)), pymunk.SimpleMotor(box, plank, 0.0))
+    corners = [(-17.0, -17.0), (17.0, -17.0), (17.0, 17.0), (-17.0, 17.0), (-17.0, -17.0)]
+    for (ax, ay), (bx, by) in pairwise(corners):
+        space.add(pymunk.Segment(box, (ax * unit, ay * unit), (bx * unit, by * unit), 0.0))
+    box.angular_velocity = plank.angular_velocity = spin
+    plank.position = -8.0 * unit, -16.5 * unit
+    carried = box.velocity_at_local_point(plank.position)
+    plank.velocity = carried.x + 1000.0 * unit, carried.y
+    report = ep.EECA(space).step(dt)
+    x, y = box.world_to_local(plank.position)
+    assert report.converged
+    assert x <= 16.1 * unit
+    assert y >= -16.75 * unit
