@@ -60,6 +60,18 @@ class Found:
     off: float = 0.0
 
 
+def stored(space: pymunk.Space) -> float:
+    """Energy (J) of the springs, of which the ledger has round-off."""
+    energy = 0.0
+    for spring in space.constraints:
+        if isinstance(spring, pymunk.DampedSpring):
+            ends = spring.a.local_to_world(spring.anchor_a), spring.b.local_to_world(spring.anchor_b)
+            energy += 0.5 * spring.stiffness * (ends[0].get_distance(ends[1]) - spring.rest_length) ** 2
+        elif isinstance(spring, pymunk.DampedRotarySpring):
+            energy += 0.5 * spring.stiffness * (spring.b.angle - spring.a.angle + spring.rest_angle) ** 2
+    return energy
+
+
 class Composition:
     """The scene of a seed.
 
@@ -295,7 +307,7 @@ class Composition:
         assert ledger is not None
         g = abs(self.space.gravity[1])
         scale = sum(b.mass for b in self.bodies) * g * 10 * self.length + abs(now.kinetic) + abs(ledger.external)
-        scale += ledger.restitution + ledger.friction + ledger.damping + abs(energies[-1])
+        scale += ledger.restitution + ledger.friction + ledger.damping + abs(energies[-1]) + stored(self.space)
         # At rest without gravity there is no other energy than of velocities that round-off of places gives, and their
         # work against what joints press each other with.
         slow = ROUND_OFF * self.half / self.dt

@@ -307,6 +307,12 @@ def test_a_strut_does_not_press_a_light_rod_through_a_wall() -> None:
     Varied(9102923, True).play(60)
 
 
+@pytest.mark.parametrize("seed", [10200157, 10303296])
+def test_round_off_of_springs_between_welded_bodies_is_measured_by_what_they_store(seed: int) -> None:
+    """Springs of 1 J and 6e10 J, which no body's motion changes: nothing else has any energy."""
+    Varied(seed, True).play(20)
+
+
 def test_impacts_take_nobody_back_to_before_its_last_one() -> None:
     """A disk that had hit a wall went back on its path through it, to where jointed bodies met before that."""
     Varied(9902209, True).play(14)
