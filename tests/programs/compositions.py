@@ -39,6 +39,7 @@ CHANGES = 1e-12  # by which the change of a ledger may differ from that of the s
 OVERSPENT = 1.5  # work of a step whose budget is spent, over the budget: the last event may go beyond
 STANDS = 5
 ROUND_OFF = 2.3e-16
+SPRING_ROUND_OFF = 16.0 * ROUND_OFF
 OUT = 0.5  # of a body's least size
 
 
@@ -61,7 +62,7 @@ class Found:
 
 
 def stored(space: pymunk.Space) -> float:
-    """Energy (J) of the springs, of which the ledger has round-off."""
+    """Energy (J) of the springs."""
     energy = 0.0
     for spring in space.constraints:
         if isinstance(spring, pymunk.DampedSpring):
@@ -307,7 +308,7 @@ class Composition:
         assert ledger is not None
         g = abs(self.space.gravity[1])
         scale = sum(b.mass for b in self.bodies) * g * 10 * self.length + abs(now.kinetic) + abs(ledger.external)
-        scale += ledger.restitution + ledger.friction + ledger.damping + abs(energies[-1]) + stored(self.space)
+        scale += ledger.restitution + ledger.friction + ledger.damping + abs(energies[-1])
         # At rest without gravity there is no other energy than of velocities that round-off of places gives, and their
         # work against what joints press each other with.
         slow = ROUND_OFF * self.half / self.dt
@@ -323,10 +324,12 @@ class Composition:
         if not self.space.constraints and abs(ledger.change - change) > CHANGES * scale:
             raise Broken(f"step {k}: the ledger's change is off by {(ledger.change - change) / scale:.1e}")
         most = outside.most(report, self.dt, True) if found.off <= HOLDS else math.inf
+        # The change of what a spring stores has the round-off of all that it stores, and of its length.
+        error = CLOSES * scale + SPRING_ROUND_OFF * stored(self.space)
         taken = 0.0 if self.space.constraints else max(0.0, -ledger.external)  # joints may brake: of them, only gains
-        if max(ledger.external, taken) > most + CLOSES * scale:
+        if max(ledger.external, taken) > most + error:
             most = outside.most(report, self.dt, False)
-        if max(ledger.external, taken) > most + CLOSES * scale:
+        if max(ledger.external, taken) > most + error:
             raise Broken(f"step {k}: {ledger.external / scale:.1e} from outside, {most / scale:.1e} at most")
         if not self.gains and change > CLOSES * scale:
             raise Broken(f"step {k}: energy rises by {change / scale:.1e}")
