@@ -6,7 +6,7 @@ Work is counted in *looks*, about the time of one look at the gap of two shapes.
 from __future__ import annotations
 
 from ..compiled import nonallocating
-from ..model.parameters.events import BODY_LOOKS, BUDGET_TIME, DIRECT_LOOKS, EVENT_LOOKS, PAIR_LOOKS, SWEEP_LOOKS
+from ..model.parameters.events import BODY_LOOKS, DIRECT_LOOKS, EVENT_LOOKS, PAIR_LOOKS, SWEEP_LOOKS
 from ..model.parameters.impulses import DENSE_CONTACTS
 from ..model.scene import Scene
 
@@ -29,9 +29,3 @@ def spend(A: Scene, bodies: int, pairs: int, contacts: int, sweeps: int, direct:
     few = min(contacts, DENSE_CONTACTS)
     one = BODY_LOOKS * bodies + PAIR_LOOKS * pairs + contacts * (SWEEP_LOOKS * sweeps + DIRECT_LOOKS * few * direct)
     A.COUNT.work += EVENT_LOOKS + int(one)
-
-
-@nonallocating
-def most_work(A: Scene) -> float:
-    """Largest work of the events of this step, in looks."""
-    return float(A.COUNT.budget * max(1.0, A.PAR.dt / BUDGET_TIME))

@@ -4,7 +4,7 @@ early."""
 from __future__ import annotations
 
 from ..compiled import kernel, nonallocating
-from ..contacts.unmet import most_work, note_unmet
+from ..contacts.unmet import note_unmet
 from ..islands.accounting import close_interval
 from ..islands.building import build_islands
 from ..islands.intervals import lift_here, solve
@@ -20,6 +20,7 @@ from ..model.parameters.joints import CUT_WORK
 from ..model.scene import Scene
 from ..model.step import DONE, PUSHES_FULL, SOLVES, SPENT
 from ..prediction.scheduling import predict_all
+from ..prediction.work import most_work
 
 
 @nonallocating

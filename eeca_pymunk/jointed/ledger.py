@@ -6,17 +6,17 @@ import math
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import nonallocating
-from ..contacts.unmet import most_work, note_unmet
+from ..contacts.unmet import note_unmet
 from ..joints.ledger import clear_interval
 from ..joints.welds import pass_on, pinned_row, push_weld
 from ..layout import BODY_ROW, LEFT
 from ..layout import NOW as READ
 from ..model.joint_steps import ELASTIC
 from ..model.joints import EDITED, WELDED, Joints
-from ..model.parameters.events import BUDGET_TIME
 from ..model.parameters.joints import STEP_WORK, STEP_WORK_BODY
 from ..model.scene import Scene
 from ..model.step import JOINTS as UNMET_JOINTS
+from ..prediction.work import growth, most_work
 
 
 @nonallocating
@@ -52,7 +52,7 @@ def start_joints(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray, dt: fl
     mark_edited(A, J, STATES, WALK)
     J.TALLY.worst = 0
     J.PROGRESS.effort = 0.0
-    J.PROGRESS.budget = (STEP_WORK + STEP_WORK_BODY * A.BODY.shape[0]) * max(1.0, dt / BUDGET_TIME)
+    J.PROGRESS.budget = (STEP_WORK + STEP_WORK_BODY * A.BODY.shape[0]) * growth(dt)
     for s in range(len(J.STEPPED)):
         clear_interval(J.STEPPED[s])
     for j in range(J.JOINT.shape[0]):

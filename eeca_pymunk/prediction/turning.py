@@ -34,12 +34,13 @@ from ..geometry.sides import (
     smaller,
 )
 from ..model.bodies import Body
-from ..model.parameters.events import ADVANCES, APPROACH_ROUND_OFF, BUDGET_TIME, LONGEST_SEARCH, RESOLUTION
+from ..model.parameters.events import ADVANCES, APPROACH_ROUND_OFF, LONGEST_SEARCH, RESOLUTION
 from ..model.parameters.intervals import TOUCH
 from ..model.scene import Scene
 from ..pairs.lists import face_tolerance
 from .axes import Closing, Motion, bends, fixed_axis, motion, pulled_along, speed_bound, turning_axis
 from .bounds import carried_circles_meet, circles_meet
+from .work import most_work
 
 
 @nonallocating
@@ -186,7 +187,7 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
     if remembers(A, a, b):
         begin_side(A, a, b, start, duration, tolerance)
     looks, mark, interval = 0, s, duration / RESOLUTION
-    most = LONGEST_SEARCH * A.COUNT.budget * max(1.0, A.PAR.dt / BUDGET_TIME)
+    most = LONGEST_SEARCH * most_work(A)
     while True:
         looks += 1
         A.COUNT.work += 1
