@@ -168,7 +168,7 @@ MUTATIONS = (
     Mutation("excess: half of the gain is taken", "islands/excess.py", "scale_to_lose(lost + square,",
              "scale_to_lose(0.5 * lost + square,", "islands/test_excess.py", "scaled_impulses"),
     Mutation("laws: inactive contacts break none", "rows/columns.py",
-             "worst = max(worst, ROWS[i].wake - normal_rate(A, B, ROWS, V, i))", "worst = max(worst, 0.0)",
+             "worst = max(worst, ROWS[i].wake - normal_rate(ROWS[i], V))", "worst = max(worst, 0.0)",
              "rows/test_gentle.py", "inactive"),
     Mutation("gentle: what is no number is not excessive", "rows/gentle.py",
              "if not abs(L[i, 0]) + abs(L[i, 1]) <= EXCESSIVE_IMPULSE * mass * speed",

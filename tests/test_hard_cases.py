@@ -54,7 +54,7 @@ BROKEN = {
     ),
     "impulses at the centres of mass": (
         "build.place_row",
-        "lambda of: lambda A, B, R, i, *a: (of(A, B, R, i, *a), [R[i].__setitem__(arm, 0.0) for arm in ARMS])[0]",
+        "lambda of: lambda row, *a: (of(row, *a), [row.__setitem__(arm, 0.0) for arm in ARMS])[0]",
         "rod onto its corner",
     ),
     "nothing touches": (

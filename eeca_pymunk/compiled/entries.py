@@ -48,7 +48,7 @@ TABLES = {
         WHO:i8[1] POSE:f8[2] V:f8[2] ACC:f8[2] IM:f8[1] II:f8[1] EXTENT:f8[1] FELT:f8[1] PAIRS:i8[2]
     """,
     "IslandContacts": """
-        A:i8[1] B:i8[1] ROWS:Row[1] KEY:i8[1] L:f8[2] VN:f8[2] JUMP:f8[2] OUT:Solved[1]
+        ROWS:Row[1] L:f8[2] VN:f8[2] JUMP:f8[2] OUT:Solved[1]
     """,
     "RunArrays": """
         RUN:Run KEPT:i8[1] FRAMES:f8[2] SUMS:f8[2] EVENTS:Impulse[1] TOTAL:f8[1] INITIAL:f8[2] PUSH:f8[2]

@@ -46,13 +46,13 @@ def lifting(
         EXTENT: (k,) lengths from the bodies' centres of mass to their farthest points.
         budget: energy that the correction may cost; below 0 nothing is corrected, with 0 what costs nothing.
     """
-    A, B, ROWS, IM, II, _, n, m = problem
+    ROWS, IM, II, _, n, m = problem
     size = least_of(EXTENT, n)
     JUMP[:] = 0.0
     GAPS = np.empty(m)
     deepest = 0.0
     for i in range(m):
-        GAPS[i] = ROWS[i].gap + 0.5 * h * (ROWS[i].un + normal_rate(A, B, ROWS, VN, i))
+        GAPS[i] = ROWS[i].gap + 0.5 * h * (ROWS[i].un + normal_rate(ROWS[i], VN))
         deepest = min(deepest, GAPS[i])
     if deepest >= -OVERLAP_LEFT * size or not budget >= 0.0:
         return
@@ -72,8 +72,8 @@ def lifting(
     if len(IM) == n:
         # Bodies without contacts leave the island.
         for i in range(m):
-            touched[A[i]] = 1
-            touched[B[i]] = 1
+            touched[ROWS[i].a] = 1
+            touched[ROWS[i].b] = 1
         place(END, D, n, NEW)
         turn, x, y, spin, inertia = unturn(NEW, D, VN, IM, II, touched)
         work += turn * spin

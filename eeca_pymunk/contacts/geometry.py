@@ -42,8 +42,7 @@ def way_about(POSE: FloatArray, V: FloatArray, a: int, b: int, extent: float) ->
 def gather(
     S: Scene, isle: Island, contacts: IslandContacts, MIDDLE: FloatArray, REACH: FloatArray, h: float, free: bool
 ) -> int:  # fmt: skip
-    """Write the rows A, B, ROWS, KEY of all contacts of an island's pairs whose gap is at most the sum of both bodies'
-    REACH.
+    """Write the ROWS of all contacts of an island's pairs whose gap is at most the sum of both bodies' REACH.
 
     Args:
         S: the scene.  h: length of the interval.  isle, contacts: the island, and its contacts, out.
@@ -55,7 +54,7 @@ def gather(
     """
     SHAPE, LINK = S.SHAPE, S.LINK
     POSE, V, EXTENT, PAIRS = isle.POSE, isle.V, isle.EXTENT, isle.PAIRS
-    A, B, ROWS = contacts.A, contacts.B, contacts.ROWS
+    ROWS = contacts.ROWS
     NOW, THEN = np.empty((2, 5)), np.empty((2, 5))  # (n_x, n_y, p_x, p_y, g) of up to two points
     m = 0
     shapes = len(SHAPE)
@@ -69,7 +68,7 @@ def gather(
         count = manifold(S, s, r, POSE, a, b, reach, MANIFOLD_ROUND_OFF * small, NOW)
         if count == 0:
             continue
-        if m + count > len(A):
+        if m + count > len(ROWS):
             return -1
         note_side(S, s, r, NOW[0, 0], NOW[0, 1], True)
         # How far points of both bodies move against each other in h/2; about: in the frame of a body that rotates.
@@ -106,12 +105,11 @@ def gather(
         elasticity, friction, sx, sy = law(S, s, r)
         for z in range(count):
             i = m + z
-            A[i], B[i] = a, b
             row = ROWS[i]
+            row.a, row.b, row.key = a, b, key_of(shapes, s, r) + z
             row.nx, row.ny, row.gap = THEN[z, 0], THEN[z, 1], NOW[z, 4]
             row.elasticity, row.friction, row.surface = elasticity, friction, 0.0
-            place_row(A, B, ROWS, i, THEN[z, 2], THEN[z, 3], centre, isle.IM, isle.II)
+            place_row(row, THEN[z, 2], THEN[z, 3], centre, isle.IM, isle.II)
             row.surface = row.nx * sy - row.ny * sx
-            contacts.KEY[i] = key_of(shapes, s, r) + z
         m += count
     return m

@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import Table, kernel, nonallocating
 from ..compiled.records import Rows, empty, zeros
-from ..model.contacts import ROW, SOLVED, Force, Problem
+from ..model.contacts import ROW, SOLVED, Force, Problem, Row
 from ..model.islands import IslandContacts, contacts_of, island_of
 from ..model.parameters.impulses import WEDGED
 from ..model.parameters.intervals import (
@@ -39,7 +39,7 @@ from .works import moved
 
 @nonallocating
 def recall(
-    KEY: IntArray, m: int, KEYS: IntArray, FORCES: Rows[Force], stamp: float, h: float, forces: bool, L: FloatArray,
+    ROWS: Rows[Row], m: int, KEYS: IntArray, FORCES: Rows[Force], stamp: float, h: float, forces: bool, L: FloatArray,
     EXPECTED: FloatArray,
 ) -> None:  # fmt: skip
     """Set the initial impulses L (m, 2), and those of loads EXPECTED (m,), from remembered forces of this step, whose
@@ -52,7 +52,7 @@ def recall(
     for i in range(m):
         L[i, 0] = L[i, 1] = 0.0
         EXPECTED[i] = 0.0
-        row = find(KEYS, KEY[i])
+        row = find(KEYS, ROWS[i].key)
         if row >= 0 and FORCES[row].stamp >= stamp - 1.0:
             span = h if forces else min(h, FORCES[row].length)
             L[i, 0] = span * FORCES[row].normal
@@ -100,10 +100,7 @@ def speeds(
 def make_contacts(p: int, k: int) -> IslandContacts:
     """Empty contacts for p pairs of shapes of k bodies."""
     room = 2 * p + 1
-    return IslandContacts(
-        np.empty(room, np.int64), np.empty(room, np.int64), empty(room, ROW), np.empty(room, np.int64),
-        np.zeros((room, 2)), np.zeros((k, 3)), np.zeros((k, 6)), zeros(1, SOLVED),
-    )  # fmt: skip
+    return IslandContacts(empty(room, ROW), np.zeros((room, 2)), np.zeros((k, 3)), np.zeros((k, 6)), zeros(1, SOLVED))
 
 
 @kernel
@@ -129,7 +126,7 @@ def step_island(
             contacts or the memory of forces need more memory.
     """
     S, isle, contacts = scene_of(SCENE), island_of(ISLE), contacts_of(CONTACTS)
-    A, B, ROWS, VN, OUT = contacts.A, contacts.B, contacts.ROWS, contacts.VN, contacts.OUT
+    ROWS, VN, OUT = contacts.ROWS, contacts.VN, contacts.OUT
     V, ACC, IM, II, EXTENT = isle.V, isle.ACC, isle.IM, isle.II, isle.EXTENT
     clear_report(OUT[0])
     k = len(IM)
@@ -144,22 +141,22 @@ def step_island(
     copy(VN, FREE)
     contacts.JUMP[:] = 0.0
     if m > 0:
-        problem = Problem(A, B, ROWS, IM, II, isle.POSE, n, m)
+        problem = Problem(ROWS, IM, II, isle.POSE, n, m)
         L, EXPECTED = contacts.L[:m], np.empty(m)
-        recall(contacts.KEY, m, S.KEYS, S.FORCES, S.PAR.stamp, h, True, L, EXPECTED)
-        rates(A, B, ROWS, V, m)
-        target(A, B, ROWS, m, ACC, EXPECTED, pull, h)
+        recall(ROWS, m, S.KEYS, S.FORCES, S.PAR.stamp, h, True, L, EXPECTED)
+        rates(ROWS, V, m)
+        target(ROWS, m, ACC, EXPECTED, pull, h)
         if rest_speed != 0.0:
             found, factors = find_static_forces(problem, L, V, FREE, isle.FELT, VN, pull * h, abs(rest_speed))
             OUT[0].direct = factors
             if found:
                 OUT[0].at_rest = 1
-                remember_loads(ROWS, contacts.KEY, L, m, h, S.KEYS, S.FORCES, S.COUNT, S.PAR.stamp)
+                remember_loads(ROWS, L, m, h, S.KEYS, S.FORCES, S.COUNT, S.PAR.stamp)
                 return m
             if rest_speed < 0.0:
                 return 0
-            rates(A, B, ROWS, V, m)
-            target(A, B, ROWS, m, ACC, EXPECTED, pull, h)
+            rates(ROWS, V, m)
+            target(ROWS, m, ACC, EXPECTED, pull, h)
         velocities(problem, L, FREE, VN)
         scale = pull * h if pull > 0.0 else 1e-3 * fast
         elastic = conserves(ROWS, m)
@@ -182,7 +179,7 @@ def step_island(
         OUT[0].direct += polishes
         OUT[0].residual, OUT[0].tolerance = worst, INTERVAL_UNMET * scale if exactly else np.inf
         OUT[0].restitution, OUT[0].friction = works(problem, L, VN)
-        remember_loads(ROWS, contacts.KEY, L, m, h, S.KEYS, S.FORCES, S.COUNT, S.PAR.stamp)
+        remember_loads(ROWS, L, m, h, S.KEYS, S.FORCES, S.COUNT, S.PAR.stamp)
     else:
         OUT[0].owed = owed
     return m

@@ -7,9 +7,10 @@ are removed by `forget` when the table fills. COUNT.remembered: rows in use.
 from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import nonallocating
+from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Force, Row
+from ..model.scene import Scene
 from ..model.step import Count
 
 
@@ -17,6 +18,13 @@ from ..model.step import Count
 def key_of(shapes: int, a: int, b: int) -> int:
     """Key of the first contact of shapes a and b, in either order, out of `shapes`; that of the second is 1 more."""
     return (min(a, b) * shapes + max(a, b)) << 1
+
+
+@inlined
+def shapes_of(A: Scene, row: Row) -> tuple[int, int]:
+    """The shapes of a row, from its key."""
+    shapes, pair = A.SHAPE.shape[0], row.key >> 1
+    return pair // shapes, pair % shapes
 
 
 @nonallocating
@@ -51,16 +59,15 @@ def remember(
 
 @nonallocating
 def remember_loads(
-    ROWS: Rows[Row], KEY: IntArray, L: FloatArray, m: int, h: float, KEYS: IntArray, FORCES: Rows[Force],
-    COUNT: Count, stamp: float,
-) -> None:  # fmt: skip
+    ROWS: Rows[Row], L: FloatArray, m: int, h: float, KEYS: IntArray, FORCES: Rows[Force], COUNT: Count, stamp: float
+) -> None:
     """Write the forces of the active ones of m contacts, from their impulses L (m, 2) over h, and their loads, without
     the part that stops an approach."""
     for i in range(m):
         if L[i, 0] > 0.0:
             stopped = max(max(ROWS[i].target, 0.0) - ROWS[i].un, 0.0) * ROWS[i].k_n
             load = max(L[i, 0] - stopped, 0.0)
-            remember(KEYS, FORCES, COUNT, KEY[i], L[i, 0] / h, L[i, 1] / h, load / h, h, stamp)
+            remember(KEYS, FORCES, COUNT, ROWS[i].key, L[i, 0] / h, L[i, 1] / h, load / h, h, stamp)
 
 
 @nonallocating

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Row
@@ -30,9 +30,7 @@ def hardly_bounces(e: float, u: float, press: float) -> bool:
 
 
 @nonallocating
-def target(
-    A: IntArray, B: IntArray, ROWS: Rows[Row], m: int, ACC: FloatArray, EXPECTED: FloatArray, pull: float, h: float
-) -> None:
+def target(ROWS: Rows[Row], m: int, ACC: FloatArray, EXPECTED: FloatArray, pull: float, h: float) -> None:
     """Set the targets and activation velocities (`target`, `wake`) of m rows, from their gaps and velocities u_n.
 
     Args:
@@ -40,7 +38,7 @@ def target(
         EXPECTED: (m,) normal impulses lam_w of loads.
     """
     for i in range(m):
-        a, b, u, e = A[i], B[i], ROWS[i].un, ROWS[i].elasticity
+        a, b, u, e = ROWS[i].a, ROWS[i].b, ROWS[i].un, ROWS[i].elasticity
         close = -u - 2.0 * ROWS[i].gap / h  # end velocity that closes the gap
         bounce = -e * u if u < 0.0 else 0.0
         ROWS[i].wake = np.inf

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Row
@@ -20,9 +20,8 @@ from ..model.contacts import Row
 
 @nonallocating
 def carried(
-    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, VN: FloatArray, IM: FloatArray,
-    II: FloatArray, m: int,
-) -> float:  # fmt: skip
+    ROWS: Rows[Row], L: FloatArray, V: FloatArray, VN: FloatArray, IM: FloatArray, II: FloatArray, m: int
+) -> float:
     """External work of m contacts with impulses L (m, 2): of bodies that impulses do not move or do not turn, at the
     means of their velocities V and VN (k, 3) before and after, and of moving surfaces."""
     work = 0.0
@@ -33,7 +32,7 @@ def carried(
         work -= beta * ROWS[i].surface
         fx = lam * ROWS[i].nx - beta * ROWS[i].ny
         fy = lam * ROWS[i].ny + beta * ROWS[i].nx
-        a, b = A[i], B[i]
+        a, b = ROWS[i].a, ROWS[i].b
         if IM[b] == 0.0:
             work -= 0.5 * (fx * (V[b, 0] + VN[b, 0]) + fy * (V[b, 1] + VN[b, 1]))
         if II[b] == 0.0:

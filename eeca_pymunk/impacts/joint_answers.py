@@ -63,7 +63,7 @@ def hold_limits(A: Scene, J: Joints, block: Block, groups: Groups, t: float) -> 
 def answer_impact(A: Scene, J: Joints, block: Block, groups: Groups, C: Columns, n: int, t: float) -> bool:
     """Fill in the columns C of the contacts of the block at instant t, and take from its velocities the part that
     joints do not allow; whether partners drive a component."""
-    P, Q, ROWS, V = block.A, block.B, block.ROWS, block.V
+    ROWS, V = block.ROWS, block.V
     INDEX, driven = np.full(len(block.IM), -1, np.int64), False
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
@@ -82,16 +82,14 @@ def answer_impact(A: Scene, J: Joints, block: Block, groups: Groups, C: Columns,
                         V[q, c] = J.LOCAL[INDEX[q]].v0[c]
         if not ready(J, s, 2.0, False):
             continue
-        fill_group(J, groups, C, g, INDEX, False, P, Q, ROWS, len(ROWS), PUSH, 2)
+        fill_group(J, groups, C, g, INDEX, False, ROWS, len(ROWS), PUSH, 2)
         if not along:
             keep_allowed(J, block, groups, g, n, INDEX, PUSH)
     return driven
 
 
 @nonallocating
-def put_momenta(
-    block: Block, groups: Groups, g: int, n: int, V: FloatArray, INDEX: IntArray, PUSH: FloatArray
-) -> None:  # fmt: skip
+def put_momenta(block: Block, groups: Groups, g: int, n: int, V: FloatArray, INDEX: IntArray, PUSH: FloatArray) -> None:
     """Put the momenta of the bodies of group g at velocities V into PUSH."""
     for q in range(n):
         if groups.GROUP[q] == g:
@@ -101,9 +99,7 @@ def put_momenta(
 
 
 @nonallocating
-def keep_allowed(
-    J: Joints, block: Block, groups: Groups, g: int, n: int, INDEX: IntArray, PUSH: FloatArray
-) -> None:  # fmt: skip
+def keep_allowed(J: Joints, block: Block, groups: Groups, g: int, n: int, INDEX: IntArray, PUSH: FloatArray) -> None:
     """Of the velocities of group g, whose component is `ready`, only what joints allow: M^-1 G^T impulses take the
     rest."""
     V = block.V
@@ -120,7 +116,7 @@ def keep_allowed(
 def bear(A: Scene, J: Joints, block: Block, groups: Groups, L: FloatArray, FREE: FloatArray, t: float) -> None:
     """Add to the joints' `struck` what they have answered to the impulses L of an impact at instant t, and to the part
     of the velocities FREE before it that they do not allow; of what partners move, to the impulses alone."""
-    P, Q, ROWS = block.A, block.B, block.ROWS
+    ROWS = block.ROWS
     INDEX = np.full(len(block.IM), -1, np.int64)
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
@@ -134,7 +130,7 @@ def bear(A: Scene, J: Joints, block: Block, groups: Groups, L: FloatArray, FREE:
         if not along:
             put_momenta(block, groups, g, len(FREE), FREE, INDEX, PUSH)
         for i in range(len(ROWS)):
-            for q, side in ((P[i], -1.0), (Q[i], 1.0)):
+            for q, side in ((ROWS[i].a, -1.0), (ROWS[i].b, 1.0)):
                 if groups.GROUP[q] == g:
                     row, n, f = ROWS[i], side * L[i, 0], side * L[i, 1]
                     arm_n, arm_t = (row.arm_nb, row.arm_tb) if side > 0.0 else (row.arm_na, row.arm_ta)

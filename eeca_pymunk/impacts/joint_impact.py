@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, zeros
 from ..contacts.works import carried, gained_energy, kinetic_energy
@@ -38,13 +38,13 @@ from .simultaneous import Block, energy_owed, gather, make_block
 
 
 @nonallocating
-def closes(P: IntArray, Q: IntArray, ROWS: Rows[Row], BEFORE: FloatArray, V: FloatArray, rows: int) -> bool:
+def closes(ROWS: Rows[Row], BEFORE: FloatArray, V: FloatArray, rows: int) -> bool:
     """Whether a contact closes by more than round-off at the velocities V after an impact, BEFORE being those before
     it: then the velocities did not satisfy the joints, and the same impact would repeat at the same instant."""
     fastest, least = 0.0, 0.0
     for i in range(rows):
-        fastest = max(fastest, abs(normal_rate(P, Q, ROWS, BEFORE, i)))
-        least = min(least, normal_rate(P, Q, ROWS, V, i))
+        fastest = max(fastest, abs(normal_rate(ROWS[i], BEFORE)))
+        least = min(least, normal_rate(ROWS[i], V))
     return bool(least < -CLOSES * fastest)
 
 
@@ -95,8 +95,8 @@ def settle_energy(
     the joints, and impulses are scaled until that is `owed` at least (if `exact`, just that). Where a component is
     `driven` by partners, what contacts and projections have not done is work of these.
     """
-    P, Q, ROWS, V, IM, II, rows = block.A, block.B, block.ROWS, block.V, block.IM, block.II, len(block.ROWS)
-    outside = carried(P, Q, ROWS, L, V, V, IM, II, rows)
+    ROWS, V, IM, II, rows = block.ROWS, block.V, block.IM, block.II, len(block.ROWS)
+    outside = carried(ROWS, L, V, V, IM, II, rows)
     gained, square = gained_energy(V, FREE, IM, II, n), kinetic_energy(V - FREE, IM, II, n)
     if driven:
         OUT[0].restitution += kinetic_energy(BEFORE - FREE, IM, II, n)
@@ -143,25 +143,25 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     rest = comes_to_rest(A, a, b, t)
     owed, _ = energy_owed(A, n)
     block = make_block(A, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
-    P, Q, ROWS, V = block.A, block.B, block.ROWS, block.V
+    ROWS, V = block.ROWS, block.V
     rows = len(ROWS)
     L, OUT = np.zeros((rows, 2)), zeros(1, SOLVED)
     WHO = np.full(len(block.IM), -1, np.int64)
     for q in range(n):
         WHO[q] = A.BLOCK[q]
     groups = find_groups(WHO, block.IM, J)
-    C = make_columns(groups, P, Q, rows)
+    C = make_columns(groups, ROWS, rows)
     J.PROGRESS.effort += SOLUTION_WORK * C.AT[rows]
-    fill_free(groups, C, Q, ROWS, block.IM, block.II, rows)
+    fill_free(groups, C, ROWS, block.IM, block.II, rows)
     BEFORE = V.copy()
-    problem = JointedProblem(P, Q, ROWS, C, room_for_rows(0, 0), rows)
+    problem = JointedProblem(ROWS, C, room_for_rows(0, 0), rows)
     status, driven, FITTED = TRUNCATED, False, BEFORE
     begin_impact(J, groups)
     for solution in range(IMPACT_LIMITS):
         # Only the part of the velocities that joints allow takes part in the impact.
         driven = answer_impact(A, J, block, groups, C, n, t)
         FITTED = V.copy()
-        weigh(groups, C, P, Q, ROWS, rows)
+        weigh(groups, C, ROWS, rows)
         status = solve_block(problem, L, V, owed, False, OUT)
         if solution + 1 == IMPACT_LIMITS or not hold_limits(A, J, block, groups, t):
             break
@@ -189,7 +189,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     fits = not exact
     if not fits:
         velocities(problem, L, BEFORE, V)
-        fits = closes(P, Q, ROWS, BEFORE, V, rows)
+        fits = closes(ROWS, BEFORE, V, rows)
     if fits:
         velocities(problem, L, FITTED, V)
     settle_energy(A, block, n, L, BEFORE, FITTED if fits else BEFORE, driven, owed, exact, OUT)

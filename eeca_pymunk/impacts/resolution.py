@@ -10,6 +10,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, zeros
+from ..contacts.memory import shapes_of
 from ..contacts.single import note
 from ..contacts.unmet import note_unmet, spend
 from ..contacts.works import carried
@@ -28,14 +29,15 @@ def finish(A: Scene, block: Block, n: int, m: int, L: FloatArray, OUT: Rows[Solv
     """Write the velocities of a block of n bodies and m pairs after the impulses L (c, 2) of its c contacts to BODY,
     and enter losses and impulses in ledger and log. status, OUT: result and report of `..rows.blocks.solve_block`."""
     BODY, COUNT = A.BODY, A.COUNT
-    V, ROWS, k = block.V, block.ROWS, A.SHAPE.shape[0]
+    V, ROWS = block.V, block.ROWS
     if status != CONVERGED:
-        note_unmet(A, IMPACT, block.OF[0] // k, block.OF[0] % k, OUT[0].residual, OUT[0].tolerance)
+        a, b = shapes_of(A, ROWS[0])
+        note_unmet(A, IMPACT, a, b, OUT[0].residual, OUT[0].tolerance)
     if abs(OUT[0].lock - 1.0) > abs(A.PAR.lock - 1.0):
         A.PAR.lock = OUT[0].lock
     A.PAR.restitution += OUT[0].restitution
     A.PAR.frictional += OUT[0].friction
-    A.PAR.external += carried(block.A, block.B, ROWS, L, V, V, block.IM, block.II, len(ROWS))
+    A.PAR.external += carried(ROWS, L, V, V, block.IM, block.II, len(ROWS))
     for q in range(n):
         i = A.BLOCK[q]
         BODY[i].vx, BODY[i].vy, BODY[i].spin = V[q, 0], V[q, 1], V[q, 2]
@@ -44,8 +46,9 @@ def finish(A: Scene, block: Block, n: int, m: int, L: FloatArray, OUT: Rows[Solv
     clear_places(A, A.BLOCK, n)
     for z in range(len(ROWS)):
         if L[z, 0] > 0.0 and COUNT.logged < A.LOG.shape[0]:
+            a, b = shapes_of(A, ROWS[z])
             note(
-                A.LOG[COUNT.logged], block.OF[z] // k, block.OF[z] % k, t, L[z, 0], L[z, 1], ROWS[z].nx, ROWS[z].ny,
+                A.LOG[COUNT.logged], a, b, t, L[z, 0], L[z, 1], ROWS[z].nx, ROWS[z].ny,
                 block.POINTS[z, 0], block.POINTS[z, 1], L[z, 0] / ROWS[z].k_n, math.nan,
             )  # fmt: skip
             COUNT.logged += 1
@@ -79,7 +82,7 @@ def strike(A: Scene, a: int, b: int, t: float, rest: bool) -> int:
     block = make_block(A, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
     rows = len(block.ROWS)
     L, OUT = np.zeros((rows, 2)), zeros(1, SOLVED)
-    problem = Problem(block.A, block.B, block.ROWS, block.IM, block.II, block.POSE, n, rows)
+    problem = Problem(block.ROWS, block.IM, block.II, block.POSE, n, rows)
     status = solve_block(problem, L, block.V, owed, piled, OUT)
     lost = OUT[0].restitution + OUT[0].friction - owed
     finish(A, block, n, m, L, OUT, status, t)

@@ -134,19 +134,15 @@ class Block(NamedTuple):
     """The arrays of a block of n bodies and m pairs of shapes, which have c <= 2 m contacts.
 
     POSE, V (n + m, 3), IM, II (n + m,): first the n bodies, then one for each pair with a body without mobility. ROWS
-    (c,): rows of contacts between the local bodies A and B (c,). POINTS (c, 2): their points, length. OF (c,): their
-    pairs of shapes as numbers a k + b, of k shapes.
+    (c,): rows of contacts between local bodies. POINTS (c, 2): their points, length.
     """
 
     POSE: FloatArray
     V: FloatArray
     IM: FloatArray
     II: FloatArray
-    A: IntArray
-    B: IntArray
     ROWS: Rows[Row]
     POINTS: FloatArray
-    OF: IntArray
 
 
 @kernel
@@ -168,8 +164,7 @@ def make_block(A: Scene, n: int, m: int, PAIRS: IntArray, hit: int, rest: bool, 
         POSE[q, 0], POSE[q, 1], POSE[q, 2] = BODY[i].x, BODY[i].y, BODY[i].angle
         V[q, 0], V[q, 1], V[q, 2] = BODY[i].vx, BODY[i].vy, BODY[i].spin
         IMS[q], IIS[q] = BODY[i].inv_mass, BODY[i].inv_inertia
-    P, Q = np.empty(2 * m, np.int64), np.empty(2 * m, np.int64)
-    ROWS, POINTS, OF = empty(2 * m, ROW), np.empty((2 * m, 2)), np.empty(2 * m, np.int64)
+    ROWS, POINTS = empty(2 * m, ROW), np.empty((2 * m, 2))
     found = np.empty((2, 5))
     rows, place = 0, n
     for z in range(m):
@@ -193,15 +188,15 @@ def make_block(A: Scene, n: int, m: int, PAIRS: IntArray, hit: int, rest: bool, 
             note_side(A, sa, sb, found[0, 0], found[0, 1], True)
         for c in range(count):
             nx, ny = found[c, 0], found[c, 1]
-            P[rows], Q[rows] = p, q
             row = ROWS[rows]
+            row.a, row.b, row.key = p, q, (PAIRS[z] << 1) + c
             row.nx, row.ny, row.gap, row.elasticity, row.friction = nx, ny, found[c, 4], e, mu
             row.surface = nx * sy - ny * sx
-            place_row(P, Q, ROWS, rows, found[c, 2], found[c, 3], POSE, IMS, IIS)
-            u = normal_rate(P, Q, ROWS, V, rows)
-            if e < 1.0 and hardly_bounces(e, u, load * A.PAR.dt / ROWS[rows].k_n):
+            place_row(row, found[c, 2], found[c, 3], POSE, IMS, IIS)
+            u = normal_rate(row, V)
+            if e < 1.0 and hardly_bounces(e, u, load * A.PAR.dt / row.k_n):
                 # The contact persists: its bounce would end within the step.
-                ROWS[rows].elasticity = 0.0
-            POINTS[rows, 0], POINTS[rows, 1], OF[rows] = found[c, 2], found[c, 3], PAIRS[z]
+                row.elasticity = 0.0
+            POINTS[rows, 0], POINTS[rows, 1] = found[c, 2], found[c, 3]
             rows += 1
-    return Block(POSE, V, IMS, IIS, P[:rows], Q[:rows], ROWS[:rows], POINTS[:rows], OF[:rows])
+    return Block(POSE, V, IMS, IIS, ROWS[:rows], POINTS[:rows])

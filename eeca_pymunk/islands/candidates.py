@@ -7,6 +7,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
+from ..contacts.memory import shapes_of
 from ..contacts.targets import hardly_bounces
 from ..geometry.flight import norm
 from ..geometry.sides import smaller
@@ -166,19 +167,17 @@ def interval_within_way(A: Scene, found: IntArray, h: float) -> float:
 
 
 @nonallocating
-def excess_way(
-    A: Scene, P: IntArray, Q: IntArray, KEY: IntArray, V: FloatArray, VN: FloatArray, m: int, h: float
-) -> float:
+def excess_way(A: Scene, ROWS: Rows[Row], V: FloatArray, VN: FloatArray, m: int, h: float) -> float:
     """How many times too long a solved interval h of m contacts is: the largest ratio of relative motion to the limit
     of `interval_within_way`.
 
     Args:
-        P, Q, KEY: local bodies and keys of the contacts.  V, VN: (k, 3) velocities at the start and the end.
+        ROWS: of the contacts.  V, VN: (k, 3) velocities at the start and the end.
     """
-    far, shapes = 0.0, len(A.SHAPE)
+    far = 0.0
     for z in range(m):
-        pair = KEY[z] >> 1
-        a, b, p, q = pair // shapes, pair % shapes, P[z], Q[z]
+        p, q = ROWS[z].a, ROWS[z].b
+        a, b = shapes_of(A, ROWS[z])
         small = smaller(A, a, b)
         x = V[q, 0] + VN[q, 0] - V[p, 0] - VN[p, 0]
         y = V[q, 1] + VN[q, 1] - V[p, 1] - VN[p, 1]
@@ -190,9 +189,7 @@ def excess_way(
 
 
 @kernel
-def stick_time(
-    P: IntArray, Q: IntArray, ROWS: Rows[Row], L: FloatArray, FREE: FloatArray, VN: FloatArray, m: int, h: float
-) -> float:
+def stick_time(ROWS: Rows[Row], L: FloatArray, FREE: FloatArray, VN: FloatArray, m: int, h: float) -> float:
     """Time after which slipping contacts stick, within an interval h of few contacts; h if none does.
 
     Let contacts slip with u_t at the start, and by the solve no longer at the end. Their frictions beta, which are
@@ -202,8 +199,7 @@ def stick_time(
     |u_t| / (|F| sum mu lam / sum |beta| - a_t h), with u_t and a_t of the contact that slips fastest.
 
     Args:
-        P, Q, ROWS, L: the m contacts with their impulses.  FREE, VN: (k, 3) velocities at the end without and with
-            impulses.
+        ROWS, L: the m contacts with their impulses.  FREE, VN: (k, 3) velocities at the end without and with them.
     """
     if m > EXACT_CONTACTS:
         return h
@@ -215,13 +211,13 @@ def stick_time(
         change = most / ROWS[z].k_t
         if most == 0.0 or before <= STICK * change:
             continue
-        if abs(tangent_rate(P, Q, ROWS, VN, z)) > STICK * before:
+        if abs(tangent_rate(ROWS[z], VN)) > STICK * before:
             continue
         sign = 1.0 if ROWS[z].ut > 0.0 else -1.0
         limit += most
         beta -= sign * L[z, 1]
         if before > slip:
-            slip, others = before, sign * (tangent_rate(P, Q, ROWS, FREE, z) - ROWS[z].ut)
+            slip, others = before, sign * (tangent_rate(ROWS[z], FREE) - ROWS[z].ut)
     if beta <= STICK * limit or beta >= (1.0 - STICK) * limit:
         return h
     rate = (slip + others) * limit / beta - others

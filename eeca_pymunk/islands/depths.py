@@ -6,9 +6,10 @@ import math
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
+from ..contacts.memory import shapes_of
 from ..geometry.gap import gap_at
 from ..geometry.sides import half_width, held_side, remembers, smaller
 from ..model.contacts import Row
@@ -27,17 +28,16 @@ def depth_limit(A: Scene, a: int, b: int) -> float:
 
 
 @nonallocating
-def driven(A: Scene, isle: Island, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, n: int, m: int) -> bool:
+def driven(A: Scene, isle: Island, ROWS: Rows[Row], n: int, m: int) -> bool:
     """Whether a moving body without mobility is deeper in an island of n bodies, at any of m contacts, than an interval
     allows: the work of lifting beyond what losses pay is then external."""
-    shapes = A.SHAPE.shape[0]
     for z in range(m):
-        q = max(P[z], Q[z])  # bodies without mobility are the last ones
+        q = max(ROWS[z].a, ROWS[z].b)  # bodies without mobility are the last ones
         if q < n or A.BODY[isle.WHO[q]].inv_mass > 0.0:
             continue
         if isle.V[q, 0] == 0.0 and isle.V[q, 1] == 0.0 and isle.V[q, 2] == 0.0:
             continue
-        a, b = (KEY[z] >> 1) // shapes, (KEY[z] >> 1) % shapes
+        a, b = shapes_of(A, ROWS[z])
         if ROWS[z].gap < -depth_limit(A, a, b):
             return True
     return False
@@ -64,25 +64,21 @@ def too_deep(A: Scene, a: int, b: int, gap: float, closing: float) -> float:
 
 
 @kernel
-def too_deep_at_end(
-    A: Scene, isle: Island, END: FloatArray, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, m: int, h: float,
-    every: bool,
-) -> float:  # fmt: skip
+def too_deep_at_end(A: Scene, isle: Island, END: FloatArray, ROWS: Rows[Row], m: int, h: float, every: bool) -> float:
     """How many times too long an interval h is at whose poses END (k, 3) a contact is deeper than its linear row
     predicts; 0 if it is not. `every`: of all pairs, else of thin shapes only."""
-    far, shapes, last = 0.0, A.SHAPE.shape[0], -1
+    far, last = 0.0, -1
     for z in range(m):
-        pair = KEY[z] >> 1
-        if pair != last and (every or remembers(A, pair // shapes, pair % shapes)):
-            far = max(far, deep_at_end(A, isle, END, P, Q, ROWS, KEY, m, h, z))
+        a, b = shapes_of(A, ROWS[z])
+        pair = ROWS[z].key >> 1
+        if pair != last and (every or remembers(A, a, b)):
+            far = max(far, deep_at_end(A, isle, END, ROWS, m, h, z))
         last = pair
     return far
 
 
 @kernel
-def closes_too_far(
-    A: Scene, isle: Island, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, VN: FloatArray, m: int, h: float
-) -> float:
+def closes_too_far(A: Scene, isle: Island, ROWS: Rows[Row], VN: FloatArray, m: int, h: float) -> float:
     """How many times too long an interval h is whose m contacts close too far by their rows, which are linear, and by
     the poses at its end; 0 if it is not.
 
@@ -93,11 +89,11 @@ def closes_too_far(
     Args:
         VN: (k, 3) velocities at the end, or of a way W the velocities 2 W/h - v, v being those at the start.
     """
-    far, shapes, last, known, END = 0.0, A.SHAPE.shape[0], -1, 0.0, np.empty((0, 3))
+    far, last, known, END = 0.0, -1, 0.0, np.empty((0, 3))
     for z in range(m):
-        pair = KEY[z] >> 1
-        a, b = pair // shapes, pair % shapes
-        closing = -0.5 * h * (ROWS[z].un + normal_rate(P, Q, ROWS, VN, z))
+        a, b = shapes_of(A, ROWS[z])
+        pair = ROWS[z].key >> 1
+        closing = -0.5 * h * (ROWS[z].un + normal_rate(ROWS[z], VN))
         deep = too_deep(A, a, b, ROWS[z].gap, closing)
         if deep == 0.0:
             continue
@@ -105,17 +101,14 @@ def closes_too_far(
             if len(END) == 0:  # few intervals come here
                 END = isle.POSE + 0.5 * h * (isle.V + VN)
             if pair != last:
-                known = deep_at_end(A, isle, END, P, Q, ROWS, KEY, m, h, z)
+                known = deep_at_end(A, isle, END, ROWS, m, h, z)
             last, deep = pair, min(deep, known)
         far = max(far, deep)
     return far
 
 
 @kernel
-def deep_at_end(
-    A: Scene, isle: Island, END: FloatArray, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, m: int, h: float,
-    z: int,
-) -> float:  # fmt: skip
+def deep_at_end(A: Scene, isle: Island, END: FloatArray, ROWS: Rows[Row], m: int, h: float, z: int) -> float:
     """How many times too long an interval h is in which the pair of contact z closes as far as at poses END (k, 3); 0
     if it is not.
 
@@ -123,14 +116,14 @@ def deep_at_end(
     by its room r after s = 2 r / (u + sqrt(u^2 + 4 c r)), and the interval is h/s times too long. Where the normal at
     END is against that of the row, the way has led to the other side, as deep as the row's normal tells.
     """
-    pair, p, q = KEY[z] >> 1, P[z], Q[z]
-    a, b = pair // A.SHAPE.shape[0], pair % A.SHAPE.shape[0]
+    pair, p, q = ROWS[z].key >> 1, ROWS[z].a, ROWS[z].b
+    a, b = shapes_of(A, ROWS[z])
     sign = 1.0
     if isle.WHO[p] != A.LINK[a].owner:
         p, q, sign = q, p, -1.0
     gap = ROWS[z].gap
     for other in (z - 1, z + 1):
-        if 0 <= other < m and KEY[other] >> 1 == pair:
+        if 0 <= other < m and ROWS[other].key >> 1 == pair:
             gap = min(gap, ROWS[other].gap)
     after, nx, ny, _, _ = gap_at(A, a, END[p, 0], END[p, 1], END[p, 2], b, END[q, 0], END[q, 1], END[q, 2])
     along = sign * (nx * ROWS[z].nx + ny * ROWS[z].ny)
@@ -151,9 +144,9 @@ def deep_at_end(
 @kernel
 def times_too_long(A: Scene, isle: Island, contacts: IslandContacts, m: int, h: float) -> float:
     """How many times too long a solved interval h of m contacts is, if more than INTERVAL_RETRY."""
-    P, Q, ROWS, KEY, VN = contacts.A, contacts.B, contacts.ROWS, contacts.KEY, contacts.VN
-    far = max(excess_way(A, P, Q, KEY, isle.V, VN, m, h), closes_too_far(A, isle, P, Q, ROWS, KEY, VN, m, h))
+    ROWS, VN = contacts.ROWS, contacts.VN
+    far = max(excess_way(A, ROWS, isle.V, VN, m, h), closes_too_far(A, isle, ROWS, VN, m, h))
     if far <= INTERVAL_RETRY and len(A.SIDE) > 0:
         END = isle.POSE + 0.5 * h * (isle.V + VN)
-        far = too_deep_at_end(A, isle, END, P, Q, ROWS, KEY, m, h, False)
+        far = too_deep_at_end(A, isle, END, ROWS, m, h, False)
     return far

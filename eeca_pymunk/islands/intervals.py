@@ -129,7 +129,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
     isle = local_island(A, MINE, n, found, t)
     clear_places(A, MINE, n)
     k, WHO, V, contacts = len(isle.WHO), isle.WHO, isle.V, make_contacts(p, len(isle.WHO))
-    P, Q, ROWS, L = contacts.A, contacts.B, contacts.ROWS, contacts.L
+    ROWS, L = contacts.ROWS, contacts.L
     VN, JUMP, OUT = contacts.VN, contacts.JUMP, contacts.OUT
     least = 0.0
     if COUNT.together > 0:
@@ -144,7 +144,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
     shortest = A.PAR.dt / RESOLUTION
     if p > 0 and h > 0.0:
         m = step_island(A, isle, contacts, n, h, sweeps, least, owed, quiet)
-        stuck = h if in_haste(A) or OUT[0].at_rest > 0 else stick_time(P, Q, ROWS, L, V + h * isle.ACC, VN, m, h)
+        stuck = h if in_haste(A) or OUT[0].at_rest > 0 else stick_time(ROWS, L, V + h * isle.ACC, VN, m, h)
         if stuck < h:
             # The interval ends where slip ends, as the law of friction changes there.
             h = min(max(stuck, shortest), h)
@@ -207,7 +207,7 @@ def lift_here(A: Scene, root: int, t: float) -> None:
     n = len(MINE)
     clear_places(A, MINE, n)
     if m > 0:
-        rates(contacts.A, contacts.B, contacts.ROWS, isle.V, m)
+        rates(contacts.ROWS, isle.V, m)
         lost = A.RESTING[root].lost
         payable = find_lifts(A, isle, contacts, n, m, isle.POSE, isle.V, 0.0, lost, 0.0, math.inf)
         A.RESTING[root].payable = payable
@@ -223,13 +223,13 @@ def find_lifts(
     VN at its end. They may cost the energy `lost` in it, less what was owed `before`; any if a body without mobility
     does the work beyond what losses pay, as it has been placed into others (payable = 0), or drives into them: then all
     losses of the step pay, as bodies have also gone deeper by their own motion. Returns what losses pay."""
-    P, Q, ROWS = contacts.A, contacts.B, contacts.ROWS
+    ROWS = contacts.ROWS
     budget = budget_of(ROWS, m, lost, max(-before, 0.0))
-    if driven(A, isle, P, Q, ROWS, contacts.KEY, n, m):
+    if driven(A, isle, ROWS, n, m):
         payable = min(payable, max(budget_of(ROWS, m, lost, -before), 0.0))
     if payable < math.inf:
         budget = math.inf
-    problem = Problem(P, Q, ROWS, isle.IM, isle.II, isle.POSE, n, m)
+    problem = Problem(ROWS, isle.IM, isle.II, isle.POSE, n, m)
     lifting(problem, POSE, VN, isle.ACC, h, isle.EXTENT, budget, contacts.JUMP)
     return payable
 

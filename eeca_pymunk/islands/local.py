@@ -8,6 +8,7 @@ import numpy as np
 
 from ..arrays import FlagArray, FloatArray, IntArray
 from ..compiled import kernel, nonallocating
+from ..contacts.memory import shapes_of
 from ..contacts.works import carried
 from ..model.islands import Island, IslandContacts
 from ..model.scene import Scene
@@ -106,29 +107,26 @@ def open_contacts(
 ) -> None:  # fmt: skip
     """Write the m contacts of an interval of length h from instant t to PUSHED and PUSHED_BY, from row `first` on, and
     flag their pairs. VN (k, 3): velocities at its end. TOUCHED (k,): out, 1 for bodies that have contacts."""
-    P, Q, ROWS, KEY, L = contacts.A, contacts.B, contacts.ROWS, contacts.KEY, contacts.L
-    shapes = A.SHAPE.shape[0]
+    ROWS, L = contacts.ROWS, contacts.L
     for z in range(m):
-        pair = KEY[z] >> 1
-        a, b = pair // shapes, pair % shapes
-        if A.LINK[a].owner != isle.WHO[P[z]]:
+        p, q = ROWS[z].a, ROWS[z].b
+        a, b = shapes_of(A, ROWS[z])
+        if A.LINK[a].owner != isle.WHO[p]:
             a, b = b, a
-        TOUCHED[P[z]], TOUCHED[Q[z]] = 1, 1
-        if z == 0 or pair != KEY[z - 1] >> 1:
+        TOUCHED[p], TOUCHED[q] = 1, 1
+        if z == 0 or ROWS[z].key >> 1 != ROWS[z - 1].key >> 1:
             mark_pair(A, a, b, 1)
         c = first + z
         A.PUSHED_BY[c].a, A.PUSHED_BY[c].b = a, b
         pushed = A.PUSHED[c]
         pushed.normal, pushed.tangential, pushed.start, pushed.length = L[z, 0], L[z, 1], t, h
         pushed.un_before, pushed.ut_before = ROWS[z].un, ROWS[z].ut
-        pushed.un_after, pushed.ut_after = normal_rate(P, Q, ROWS, VN, z), tangent_rate(P, Q, ROWS, VN, z)
-        pushed.work = carried(
-            P[z : z + 1], Q[z : z + 1], ROWS[z : z + 1], L[z : z + 1], isle.V, VN, isle.IM, isle.II, 1
-        )  # fmt: skip
+        pushed.un_after, pushed.ut_after = normal_rate(ROWS[z], VN), tangent_rate(ROWS[z], VN)
+        pushed.work = carried(ROWS[z : z + 1], L[z : z + 1], isle.V, VN, isle.IM, isle.II, 1)
         pushed.held = 0.0
         pushed.nx, pushed.ny = ROWS[z].nx, ROWS[z].ny
         # The point from its arms: r = arm_t n - arm_n t.
-        x, y = isle.POSE[P[z], 0] + 0.5 * h * isle.V[P[z], 0], isle.POSE[P[z], 1] + 0.5 * h * isle.V[P[z], 1]
+        x, y = isle.POSE[p, 0] + 0.5 * h * isle.V[p, 0], isle.POSE[p, 1] + 0.5 * h * isle.V[p, 1]
         pushed.px = x + ROWS[z].arm_ta * ROWS[z].nx + ROWS[z].arm_na * ROWS[z].ny
         pushed.py = y + ROWS[z].arm_ta * ROWS[z].ny - ROWS[z].arm_na * ROWS[z].nx
         pushed.change = L[z, 0] / ROWS[z].k_n

@@ -76,8 +76,7 @@ def supports_load(A: Scene, root: int) -> bool:
     room = 0
     for c in range(A.COUNT.pushes):
         room += 1 if A.PUSHED_BY[c].root == root else 0
-    P, Q, OF = np.empty(room, np.int64), np.empty(room, np.int64), np.empty(room, np.int64)
-    ROWS, L = empty(room, ROW), np.empty((room, 2))
+    ROWS, L, OF = empty(room, ROW), np.empty((room, 2)), np.empty(room, np.int64)
     open_to, m = 0.5 * candidate_speed(A.MEMBER[root].with_supports) * A.PAR.pulled * dt * dt, 0
     for c in range(A.COUNT.pushes):
         R = A.PUSHED[c]
@@ -88,14 +87,14 @@ def supports_load(A: Scene, root: int) -> bool:
         a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
         p, q = A.PLACE[A.LINK[a].owner], A.PLACE[A.LINK[b].owner]
         e, mu, _, _ = law(A, a, b)
-        P[m], Q[m] = p if p >= 0 else n, q if q >= 0 else n
         row = ROWS[m]
+        row.a, row.b = p if p >= 0 else n, q if q >= 0 else n
         row.nx, row.ny, row.gap, row.elasticity, row.friction, row.surface = R.nx, R.ny, 0.0, e, mu, 0.0
-        place_row(P, Q, ROWS, m, R.px, R.py, POSE, IMS, IIS)
+        place_row(row, R.px, R.py, POSE, IMS, IIS)
         L[m, 0], L[m, 1], OF[m] = R.normal, R.tangential, c
         m += 1
     clear_places(A, MINE, n)
-    problem, slow = Problem(P, Q, ROWS, IMS, IIS, POSE, n, m), REST_SPEED * A.PAR.pulled * dt
+    problem, slow = Problem(ROWS, IMS, IIS, POSE, n, m), REST_SPEED * A.PAR.pulled * dt
     found, factors = equilibrium(problem, L, START, FELT, slow, SUPPORT_FACTORS, False)
     A.COUNT.direct += factors
     if not found:
@@ -118,9 +117,7 @@ def remember_forces(A: Scene, c: int) -> None:
     if find(A.KEYS, key) >= 0 or 2 * (A.COUNT.remembered + 1) <= A.KEYS.shape[0]:
         R = A.PUSHED[c]
         force = R.normal / R.length
-        remember(
-            A.KEYS, A.FORCES, A.COUNT, key, force, R.tangential / R.length, force, R.length, A.PAR.stamp
-        )  # fmt: skip
+        remember(A.KEYS, A.FORCES, A.COUNT, key, force, R.tangential / R.length, force, R.length, A.PAR.stamp)
 
 
 @kernel

@@ -44,12 +44,10 @@ class Motion(NamedTuple):
 
 class Interval(NamedTuple):
     """An island over an interval of length h from instant t: its bodies, of which impulses move the first n, and their
-    components; m contacts, rows ROWS between local bodies P and Q, with columns C; the motion of its bodies, out."""
+    components; m contacts, ROWS, with columns C; the motion of its bodies, out."""
 
     isle: Island
     groups: Groups
-    P: IntArray
-    Q: IntArray
     ROWS: Rows[Row]
     motion: Motion
     C: Columns
@@ -60,11 +58,11 @@ class Interval(NamedTuple):
 
 
 @kernel
-def find_hit(groups: Groups, P: IntArray, Q: IntArray, m: int) -> IntArray:
+def find_hit(groups: Groups, ROWS: Rows[Row], m: int) -> IntArray:
     """Whether (1 or 0) any contact is on a group, of all groups; one more, for GROUP -1."""
     HIT = np.zeros(len(groups.COMPONENT) + 1, np.int64)
     for i in range(m):
-        HIT[groups.GROUP[P[i]] + 1] = HIT[groups.GROUP[Q[i]] + 1] = 1
+        HIT[groups.GROUP[ROWS[i].a] + 1] = HIT[groups.GROUP[ROWS[i].b] + 1] = 1
     return HIT[1:]
 
 
@@ -85,12 +83,12 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
     columns C and B about that step, bounded impulses being given; else B has what these are, and C stays, as does the
     motion of a component on which nothing has changed.
     GUESS (k, 3): velocities at the end that are foreseen, to begin with; (0, 3) for none."""
-    isle, groups, P, Q, ROWS, motion, C, m, _, t, h = interval
+    isle, groups, ROWS, motion, C, m, _, t, h = interval
     k = len(isle.IM)
     ACC = isle.ACC.copy()
     for i in range(m):
-        push_contact(P, Q, ROWS, isle.IM, isle.II, i, L[i, 0] / h, L[i, 1] / h, ACC)
-    INDEX, HIT = np.full(k, -1, np.int64), find_hit(groups, P, Q, m if fill else 0)
+        push_contact(ROWS[i], isle.IM, isle.II, L[i, 0] / h, L[i, 1] / h, ACC)
+    INDEX, HIT = np.full(k, -1, np.int64), find_hit(groups, ROWS, m if fill else 0)
     if fill:
         B.USED[0] = 0
     for g in range(len(groups.COMPONENT)):
@@ -115,7 +113,7 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
             first = list_rows(A, J, B, s, h, motion.MEAN)
             if ready(J, s, h, True):
                 PUSH = np.empty((size, 3))
-                fill_group(J, groups, C, g, INDEX, True, P, Q, ROWS, m, PUSH, 2)
+                fill_group(J, groups, C, g, INDEX, True, ROWS, m, PUSH, 2)
                 fill_rows(J, groups, B, g, first, INDEX, PUSH)
             else:
                 B.USED[0] = first
@@ -151,9 +149,7 @@ def join_points(row: Row, along: float, across: float) -> None:
 
 
 @nonallocating
-def align(
-    isle: Island, P: IntArray, Q: IntArray, ROWS: Rows[Row], m: int, motion: Motion, change: bool
-) -> float:  # fmt: skip
+def align(isle: Island, ROWS: Rows[Row], m: int, motion: Motion, change: bool) -> float:
     """How far the arms r of contacts between moving bodies are from being about one point where their forces act, over
     the size of bodies and places; and `change` them so, unless a body is off by more than its size.
 
@@ -161,7 +157,7 @@ def align(
     """
     worst = 0.0
     for i in range(m):
-        a, b = P[i], Q[i]
+        a, b = ROWS[i].a, ROWS[i].b
         if isle.IM[a] == 0.0 or isle.IM[b] == 0.0:
             continue
         x, y = motion.MID[b, 0] - motion.MID[a, 0], motion.MID[b, 1] - motion.MID[a, 1]
@@ -192,6 +188,6 @@ def advance_aligned(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: B
     the motion. At its end they are those that it has been under."""
     for turn in range(ARM_ITERATIONS):
         advance(A, J, interval, L, B, False, np.empty((0, 3)))
-        isle, _, P, Q, ROWS, motion, _, m, _, _, _ = interval
-        if not free or align(isle, P, Q, ROWS, m, motion, turn + 1 < ARM_ITERATIONS) <= ARM_ERROR:
+        isle, _, ROWS, motion, _, m, _, _, _ = interval
+        if not free or align(isle, ROWS, m, motion, turn + 1 < ARM_ITERATIONS) <= ARM_ERROR:
             break

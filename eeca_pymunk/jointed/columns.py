@@ -20,7 +20,7 @@ from .groups import Groups, least_mobility
 
 
 @kernel
-def make_columns(groups: Groups, A: IntArray, B: IntArray, m: int) -> Columns:
+def make_columns(groups: Groups, ROWS: Rows[Row], m: int) -> Columns:
     """Room for the columns of m contacts, zero."""
     AT, BODY = np.zeros(m + 1, np.int64), np.empty(0, np.int64)
     for way in range(2):
@@ -28,7 +28,7 @@ def make_columns(groups: Groups, A: IntArray, B: IntArray, m: int) -> Columns:
             BODY = np.empty(AT[m], np.int64)
         for i in range(m):
             at = AT[i]
-            a, b = groups.GROUP[A[i]], groups.GROUP[B[i]]
+            a, b = groups.GROUP[ROWS[i].a], groups.GROUP[ROWS[i].b]
             for g in (a, b):
                 if g < 0 or (g == a and g == b and at > AT[i]):
                     continue
@@ -42,14 +42,14 @@ def make_columns(groups: Groups, A: IntArray, B: IntArray, m: int) -> Columns:
 
 
 @nonallocating
-def fill_free(groups: Groups, C: Columns, B: IntArray, ROWS: Rows[Row], IM: FloatArray, II: FloatArray, m: int) -> None:
+def fill_free(groups: Groups, C: Columns, ROWS: Rows[Row], IM: FloatArray, II: FloatArray, m: int) -> None:
     """The columns' entries on bodies that no joint holds."""
     for i in range(m):
         for w in range(C.AT[i], C.AT[i + 1]):
             q = C.BODY[w]
             if groups.COMPONENT[groups.GROUP[q]] >= 0:
                 continue
-            on_b = q == B[i]
+            on_b = q == ROWS[i].b
             sign = 1.0 if on_b else -1.0
             arm_n = ROWS[i].arm_nb if on_b else ROWS[i].arm_na
             arm_t = ROWS[i].arm_tb if on_b else ROWS[i].arm_ta
@@ -60,8 +60,8 @@ def fill_free(groups: Groups, C: Columns, B: IntArray, ROWS: Rows[Row], IM: Floa
 
 @nonallocating
 def fill_group(
-    J: Joints, groups: Groups, C: Columns, g: int, INDEX: IntArray, about_step: bool, A: IntArray, B: IntArray,
-    ROWS: Rows[Row], m: int, PUSH: FloatArray, ways: int,
+    J: Joints, groups: Groups, C: Columns, g: int, INDEX: IntArray, about_step: bool, ROWS: Rows[Row], m: int,
+    PUSH: FloatArray, ways: int,
 ) -> None:  # fmt: skip
     """The columns' entries on the bodies of group g, whose component is `ready`.
 
@@ -71,7 +71,7 @@ def fill_group(
     """
     s = groups.COMPONENT[g]
     for i in range(m):
-        a, b = A[i], B[i]
+        a, b = ROWS[i].a, ROWS[i].b
         on_a, on_b = groups.GROUP[a] == g, groups.GROUP[b] == g
         if not on_a and not on_b:
             continue
@@ -99,36 +99,36 @@ def fill_group(
 
 
 @nonallocating
-def along(C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], i: int, D: FloatArray, tangent: bool) -> float:
+def along(C: Columns, ROWS: Rows[Row], i: int, D: FloatArray, tangent: bool) -> float:
     """Rate of contact i along n (or t) of its own column D."""
     x, y = (-ROWS[i].ny, ROWS[i].nx) if tangent else (ROWS[i].nx, ROWS[i].ny)
     arm_a = ROWS[i].arm_ta if tangent else ROWS[i].arm_na
     arm_b = ROWS[i].arm_tb if tangent else ROWS[i].arm_nb
     total = 0.0
     for w in range(C.AT[i], C.AT[i + 1]):
-        if C.BODY[w] == A[i]:
+        if C.BODY[w] == ROWS[i].a:
             total -= x * D[w, 0] + y * D[w, 1] + arm_a * D[w, 2]
-        if C.BODY[w] == B[i]:
+        if C.BODY[w] == ROWS[i].b:
             total += x * D[w, 0] + y * D[w, 1] + arm_b * D[w, 2]
     return total
 
 
 @nonallocating
-def gives_way(groups: Groups, A: IntArray, B: IntArray, ROWS: Rows[Row], i: int, mobility: float) -> bool:
-    """Whether contact i with such a mobility along n is moved by more than the error of the response."""
-    return bool(mobility * ROWS[i].k_n > least_mobility(groups, A[i], B[i]))
+def gives_way(groups: Groups, row: Row, mobility: float) -> bool:
+    """Whether a contact with such a mobility along n is moved by more than the error of the response."""
+    return bool(mobility * row.k_n > least_mobility(groups, row.a, row.b))
 
 
 @nonallocating
-def weigh(groups: Groups, C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], m: int) -> None:
+def weigh(groups: Groups, C: Columns, ROWS: Rows[Row], m: int) -> None:
     """Let K, A and W of the rows be those of the columns; leave out what hardly can be moved. Where the error of the
     response is all that impulses change of the slip at a given normal rate, tt - nt^2/nn, bodies can go one way only:
     then it is 0, and no stick is solved for."""
     for i in range(m):
-        nn, tt = along(C, A, B, ROWS, i, C.N, False), along(C, A, B, ROWS, i, C.T, True)
-        nt = 0.5 * (along(C, A, B, ROWS, i, C.N, True) + along(C, A, B, ROWS, i, C.T, False))
-        least = least_mobility(groups, A[i], B[i])
-        C.OUT[i] = 0 if gives_way(groups, A, B, ROWS, i, nn) else 1
+        nn, tt = along(C, ROWS, i, C.N, False), along(C, ROWS, i, C.T, True)
+        nt = 0.5 * (along(C, ROWS, i, C.N, True) + along(C, ROWS, i, C.T, False))
+        least = least_mobility(groups, ROWS[i].a, ROWS[i].b)
+        C.OUT[i] = 0 if gives_way(groups, ROWS[i], nn) else 1
         if C.OUT[i] == 0:
             ROWS[i].k_n, ROWS[i].a_nn = 1.0 / nn, nn
         if C.OUT[i] == 0 and (tt - nt * nt / nn) * ROWS[i].k_t <= least:

@@ -37,13 +37,13 @@ def fit(A: Scene, J: Joints, interval: Interval, L: FloatArray, end: float, scal
     Returns:
         (m,) normal impulses of contacts that keep these from closing, which the ledger has.
     """
-    isle, groups, m, motion = interval.isle, interval.groups, interval.m, interval.motion
+    isle, groups, ROWS, m, motion = interval.isle, interval.groups, interval.ROWS, interval.m, interval.motion
     NOTHING = np.zeros_like(isle.V)
     # One more, for GROUP -1.
     PUSHED = np.zeros(len(groups.COMPONENT) + 1, np.int64)
     for i in range(m):
         if L[i, 0] > 0.0:
-            PUSHED[groups.GROUP[interval.P[i]] + 1] = PUSHED[groups.GROUP[interval.Q[i]] + 1] = 1
+            PUSHED[groups.GROUP[ROWS[i].a] + 1] = PUSHED[groups.GROUP[ROWS[i].b] + 1] = 1
     first, DRIVEN = -1, np.zeros(len(groups.COMPONENT) + 1, np.int64)
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
@@ -65,21 +65,22 @@ def fit(A: Scene, J: Joints, interval: Interval, L: FloatArray, end: float, scal
         return np.zeros(m)
     ASKED, asked, fastest = np.empty(m, np.int64), 0, 0.0
     for i in range(m):
-        driven = DRIVEN[groups.GROUP[interval.P[i]] + 1] + DRIVEN[groups.GROUP[interval.Q[i]] + 1] > 0
+        driven = DRIVEN[groups.GROUP[ROWS[i].a] + 1] + DRIVEN[groups.GROUP[ROWS[i].b] + 1] > 0
         if L[i, 0] > 0.0 and interval.C.OUT[i] == 0 and not driven:
             ASKED[asked] = i
             asked += 1
-            fastest = max(fastest, -normal_rate(interval.P, interval.Q, interval.ROWS, motion.V, i))
+            fastest = max(fastest, -normal_rate(ROWS[i], motion.V))
     if fastest > FIT_CLOSING * scale:
         return stop_closing(A, J, interval, end, ASKED[:asked], FIT_RESIDUAL * fastest, first)
     return np.zeros(m)
 
 
 @nonallocating
-def bring_arms(P: IntArray, Q: IntArray, ROWS: Rows[Row], END: FloatArray, m: int) -> None:
+def bring_arms(ROWS: Rows[Row], END: FloatArray, m: int) -> None:
     """Let the arms of m contacts be about one point of both bodies at END: these have moved apart since."""
     for i in range(m):
-        x, y = END[Q[i], 0] - END[P[i], 0], END[Q[i], 1] - END[P[i], 1]
+        a, b = ROWS[i].a, ROWS[i].b
+        x, y = END[b, 0] - END[a, 0], END[b, 1] - END[a, 1]
         along, across = apart(ROWS[i], x, y)
         join_points(ROWS[i], along, across)
 
@@ -91,16 +92,15 @@ def stop_closing(
     """Normal impulses mu (m,), 0 <= mu _|_ u + G S G^T mu >= 0, on the contacts ASKED, whose rates are u: velocities
     that fit the joints go on to do so, and contacts do not close. Energy only falls, by -mu.(u + G S G^T mu / 2), also
     where sweeps are cut short; it is lost by component `book`."""
-    isle, groups, _, _, _, motion, _, m, n, _, h = interval
-    asked = len(ASKED)
-    P, Q, KEEP = np.empty(asked, np.int64), np.empty(asked, np.int64), interval.ROWS[:asked].copy()
+    isle, groups, ROWS, motion, _, m, n, _, h = interval
+    asked, KEEP = len(ASKED), ROWS[: len(ASKED)].copy()
     for i in range(asked):
-        P[i], Q[i], KEEP[i] = interval.P[ASKED[i]], interval.Q[ASKED[i]], interval.ROWS[ASKED[i]]
-    bring_arms(P, Q, KEEP, motion.END, asked)
-    C = make_columns(groups, P, Q, asked)
-    fill_free(groups, C, Q, KEEP, isle.IM, isle.II, asked)
+        KEEP[i] = ROWS[ASKED[i]]
+    bring_arms(KEEP, motion.END, asked)
+    C = make_columns(groups, KEEP, asked)
+    fill_free(groups, C, KEEP, isle.IM, isle.II, asked)
     NOTHING, INDEX = np.zeros_like(isle.V), np.full(len(isle.IM), -1, np.int64)
-    HIT = find_hit(groups, P, Q, asked)
+    HIT = find_hit(groups, KEEP, asked)
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
         if s < 0 or HIT[g] == 0:
@@ -109,18 +109,18 @@ def stop_closing(
         size = find_places(A, J, s, INDEX)
         if not ready(J, s, 2.0, False):
             return np.zeros(m)
-        fill_group(J, groups, C, g, INDEX, False, P, Q, KEEP, asked, np.empty((size, 3)), 1)
-    weigh(groups, C, P, Q, KEEP, asked)
+        fill_group(J, groups, C, g, INDEX, False, KEEP, asked, np.empty((size, 3)), 1)
+    weigh(groups, C, KEEP, asked)
     RATES = np.empty(asked)
     for i in range(asked):
-        RATES[i] = normal_rate(P, Q, KEEP, motion.V, i)
+        RATES[i] = normal_rate(KEEP[i], motion.V)
     D, before = np.zeros_like(motion.V), kinetic_energy(motion.V, isle.IM, isle.II, n)
-    MU = raise_gaps(JointedProblem(P, Q, KEEP, C, room_for_rows(0, 0), asked), RATES, D, fine)
+    MU = raise_gaps(JointedProblem(KEEP, C, room_for_rows(0, 0), asked), RATES, D, fine)
     HELD, loss = np.zeros(m), 0.0
     for i in range(asked):
         HELD[ASKED[i]] = MU[i]
         if MU[i] > 0.0:
-            loss -= MU[i] * (RATES[i] + 0.5 * normal_rate(P, Q, KEEP, D, i))
+            loss -= MU[i] * (RATES[i] + 0.5 * normal_rate(KEEP[i], D))
     add(motion.V, D)
     gained = kinetic_energy(motion.V, isle.IM, isle.II, n) - before
     if abs(gained + loss) > FIT_ENERGY * before:

@@ -18,16 +18,16 @@ from .columns import fill_free, weigh
 @kernel
 def solve_gently(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, free: bool) -> None:
     """Impulses L (m, 2) by sweeps from none, about the motion without any; and the motion under them."""
-    isle, groups, P, Q, ROWS, _, C, m, _, _, _ = interval
+    isle, groups, ROWS, _, C, m, _, _, _ = interval
     for k in range(m):
         L[k, 0] = L[k, 1] = 0.0
     advance(A, J, interval, L, B, True, np.empty((0, 3)))
     if free:
-        align(isle, P, Q, ROWS, m, interval.motion, True)
-    fill_free(groups, C, Q, ROWS, isle.IM, isle.II, m)
-    weigh(groups, C, P, Q, ROWS, m)
+        align(isle, ROWS, m, interval.motion, True)
+    fill_free(groups, C, ROWS, isle.IM, isle.II, m)
+    weigh(groups, C, ROWS, m)
     V, BOTH = interval.motion.MEAN.copy(), with_bounded(B, L, m)
-    problem = JointedProblem(P, Q, ROWS, C, B, m)
+    problem = JointedProblem(ROWS, C, B, m)
     sweep_gently(problem, BOTH, V)
     for i in range(m):
         L[i, 0], L[i, 1] = BOTH[i, 0], BOTH[i, 1]

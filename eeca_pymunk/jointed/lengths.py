@@ -9,10 +9,12 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
-from ..contacts.memory import key_of
+from ..contacts.memory import key_of, shapes_of
 from ..geometry.flight import norm
 from ..islands.depths import closes_too_far, depth_limit, too_deep_at_end
 from ..model.contacts import Row
@@ -89,50 +91,45 @@ def excess_alone(A: Scene, J: Joints, s: int, t: float, h: float) -> float:
 
 
 @kernel
-def excess(
-    A: Scene, isle: Island, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, motion: Motion, m: int, n: int,
-    t: float, h: float,
-) -> float:  # fmt: skip
+def excess(A: Scene, isle: Island, ROWS: Rows[Row], motion: Motion, m: int, n: int, t: float, h: float) -> float:
     """How many times too long the interval h is in which n bodies move so, under m contacts."""
-    far = 0.0
+    far, KEY = 0.0, np.empty(m, np.int64)
+    for z in range(m):
+        KEY[z] = ROWS[z].key
     for q in range(n):
         i, turned = int(isle.WHO[q]), motion.END[q, 2] - isle.POSE[q, 2]
         far = max(far, strays(A, i, motion.WAY[q, 0], motion.WAY[q, 1], turned, motion.V[q], isle.ACC[q], t, h, KEY, m))
-    far = max(far, closes_too_far(A, isle, P, Q, ROWS, KEY, motion.MEAN, m, h))
-    return max(far, too_deep_on_way(A, isle, P, Q, ROWS, KEY, motion, m, h))
+    far = max(far, closes_too_far(A, isle, ROWS, motion.MEAN, m, h))
+    return max(far, too_deep_on_way(A, isle, ROWS, motion, m, h))
 
 
 @kernel
-def too_deep_on_way(
-    A: Scene, isle: Island, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, motion: Motion, m: int, h: float
-) -> float:
+def too_deep_on_way(A: Scene, isle: Island, ROWS: Rows[Row], motion: Motion, m: int, h: float) -> float:
     """How many times too long the interval h is, as one of m contacts is deeper at its end, or in its middle, than the
     linear rows predict: what slides along a wall that turns may be past the end of the wall by the end."""
     MIDDLE = isle.POSE + 0.25 * (h * isle.V + motion.WAY)
-    half = too_deep_at_end(A, isle, MIDDLE, P, Q, ROWS, KEY, m, 0.5 * h, True)
-    return max(2.0 * half, too_deep_at_end(A, isle, motion.END, P, Q, ROWS, KEY, m, h, True))
+    half = too_deep_at_end(A, isle, MIDDLE, ROWS, m, 0.5 * h, True)
+    return max(2.0 * half, too_deep_at_end(A, isle, motion.END, ROWS, m, h, True))
 
 
 @nonallocating
-def led_in(
-    A: Scene, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, OUT: IntArray, WAY: FloatArray, m: int
-) -> int:
+def led_in(A: Scene, ROWS: Rows[Row], OUT: IntArray, WAY: FloatArray, m: int) -> int:
     """A contact that joints lead deeper than an interval allows, -1 if there is none: those that are left out (OUT) are
     not moved by any impulse."""
-    shapes = A.SHAPE.shape[0]
     for z in range(m):
-        closed, pair = normal_rate(P, Q, ROWS, WAY, z), KEY[z] >> 1
-        if OUT[z] != 0 and closed < 0.0 and ROWS[z].gap + closed < -depth_limit(A, pair // shapes, pair % shapes):
+        closed = normal_rate(ROWS[z], WAY)
+        a, b = shapes_of(A, ROWS[z])
+        if OUT[z] != 0 and closed < 0.0 and ROWS[z].gap + closed < -depth_limit(A, a, b):
             return z
     return -1
 
 
 @nonallocating
-def sinks(A: Scene, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, WAY: FloatArray, m: int) -> bool:
+def sinks(A: Scene, ROWS: Rows[Row], WAY: FloatArray, m: int) -> bool:
     """Whether any of m contacts becomes deeper on the way by more than UNSOLVED_DEPTH of what an interval allows."""
-    shapes = A.SHAPE.shape[0]
     for z in range(m):
-        closed, pair = normal_rate(P, Q, ROWS, WAY, z), KEY[z] >> 1
-        if closed + max(ROWS[z].gap, 0.0) < -UNSOLVED_DEPTH * depth_limit(A, pair // shapes, pair % shapes):
+        closed = normal_rate(ROWS[z], WAY)
+        a, b = shapes_of(A, ROWS[z])
+        if closed + max(ROWS[z].gap, 0.0) < -UNSOLVED_DEPTH * depth_limit(A, a, b):
             return True
     return False

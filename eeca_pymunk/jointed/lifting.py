@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import kernel
 from ..contacts.correction import admissible, least_of, turn_by, unturn
 from ..contacts.works import against
@@ -42,14 +42,12 @@ def raise_gaps(problem: JointedProblem, GAPS: FloatArray, D: FloatArray, toleran
 
 
 @kernel
-def lift_island(
-    A: Scene, J: Joints, interval: Interval, KEY: IntArray, root: int, end: float, lost: float, anew: bool
-) -> None:
+def lift_island(A: Scene, J: Joints, interval: Interval, root: int, end: float, lost: float, anew: bool) -> None:
     """Lift the poses at the end of an island's motion. What contacts have `lost`, now and before, pays; where a moving
     body without mobility is deep in the island (`depths.driven`) that does the work beyond.
     `anew`: whether the columns are yet to be made."""
-    isle, groups, P, Q, ROWS, _, _, m, n, _, _ = interval
-    raised = driven(A, isle, P, Q, ROWS, KEY, n, m)
+    isle, groups, ROWS, _, _, m, n, _, _ = interval
+    raised = driven(A, isle, ROWS, n, m)
     budget = lost + A.RESTING[root].lost
     spent = correct(A, J, interval, end, math.inf if raised else budget, anew)
     if len(groups.JOINTED) > 0:
@@ -62,13 +60,13 @@ def lift_island(
 def lift_here(A: Scene, J: Joints, root: int, t: float) -> None:
     """`..islands.intervals.lift_here` of an island with joints, whose interval is over at instant t."""
     isle, contacts, MINE, m = contacts_at(A, root, t)
-    n, k, P, Q, ROWS = len(MINE), len(isle.WHO), contacts.A, contacts.B, contacts.ROWS
+    n, k, ROWS = len(MINE), len(isle.WHO), contacts.ROWS
     if not conserves(ROWS, m):
         groups, NOTHING = find_groups(isle.WHO, isle.IM, J), np.zeros((k, 3))
         motion = Motion(isle.V.copy(), isle.V, NOTHING, isle.POSE.copy(), np.zeros((k, 2)), NOTHING)
-        interval = Interval(isle, groups, P, Q, ROWS, motion, make_columns(groups, P, Q, m), m, n, t, 0.0)
-        fill_free(groups, interval.C, Q, ROWS, isle.IM, isle.II, m)
-        lift_island(A, J, interval, contacts.KEY, root, t, 0.0, True)
+        interval = Interval(isle, groups, ROWS, motion, make_columns(groups, ROWS, m), m, n, t, 0.0)
+        fill_free(groups, interval.C, ROWS, isle.IM, isle.II, m)
+        lift_island(A, J, interval, root, t, 0.0, True)
         for g in range(len(groups.JOINTED)):
             A.RESTING[root].lost -= J.STEPPED[groups.JOINTED[g]].lifted
         for q in range(n):
@@ -86,11 +84,11 @@ def correct(A: Scene, J: Joints, interval: Interval, end: float, budget: float, 
     and what is left of second order is closed. Where nothing without mobility is in the island, its angular momentum
     stays: velocities at the end turn by what the displacements have changed of it.
     """
-    isle, groups, P, Q, ROWS, motion, C, m, n, _, h = interval
+    isle, groups, ROWS, motion, C, m, n, _, h = interval
     V, WAY, END = motion.V, motion.WAY, motion.END
     GAPS, deepest = np.empty(m), 0.0
     for i in range(m):
-        GAPS[i] = ROWS[i].gap + normal_rate(P, Q, ROWS, WAY, i)
+        GAPS[i] = ROWS[i].gap + normal_rate(ROWS[i], WAY)
         deepest = min(deepest, GAPS[i])
     size = least_of(isle.EXTENT, n)
     if deepest >= -OVERLAP_LEFT * size or not budget > 0.0:
@@ -104,11 +102,11 @@ def correct(A: Scene, J: Joints, interval: Interval, end: float, budget: float, 
             gather_component(A, J, s, END, V, NOTHING, isle.IM, isle.II, end, h)
             places = find_places(A, J, s, INDEX)
             if ready(J, s, 2.0, False):
-                fill_group(J, groups, C, g, INDEX, False, P, Q, ROWS, m, np.empty((places, 3)), 1)
+                fill_group(J, groups, C, g, INDEX, False, ROWS, m, np.empty((places, 3)), 1)
     KEEP = ROWS[:m].copy()
-    weigh(groups, C, P, Q, KEEP, m)
+    weigh(groups, C, KEEP, m)
     D = np.zeros_like(V)
-    raise_gaps(JointedProblem(P, Q, KEEP, C, room_for_rows(0, 0), m), GAPS, D, 1e-3 * -deepest)
+    raise_gaps(JointedProblem(KEEP, C, room_for_rows(0, 0), m), GAPS, D, 1e-3 * -deepest)
     cost, part = -against(isle.ACC, isle.IM, isle.II, n, D), admissible(D, isle.EXTENT, n, size)
     if cost * part > 0.5 * budget:
         part = 0.5 * budget / cost

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Bounded, Row
@@ -16,18 +16,18 @@ from .bounded import settle_bounded
 
 
 @nonallocating
-def slip_of(P: IntArray, Q: IntArray, ROWS: Rows[Row], WAY: FloatArray, i: int, h: float) -> float:
-    """How far contact i slips in h while bodies go WAY: its surfaces move at a rate, bodies by ways, of which nothing
+def slip_of(row: Row, WAY: FloatArray, h: float) -> float:
+    """How far a contact slips in h while bodies go WAY: its surfaces move at a rate, bodies by ways, of which nothing
     may be rounded away where h is short."""
-    return slip_rate(P, Q, ROWS, WAY, i) + h * ROWS[i].surface
+    return slip_rate(row, WAY) + h * row.surface
 
 
 @nonallocating
-def lost(P: IntArray, Q: IntArray, ROWS: Rows[Row], L: FloatArray, WAY: FloatArray, m: int, h: float) -> float:
+def lost(ROWS: Rows[Row], L: FloatArray, WAY: FloatArray, m: int, h: float) -> float:
     """What contacts lose with impulses L while bodies go WAY: their part in the energy of the island, exactly."""
     total = 0.0
     for i in range(m):
-        total -= (L[i, 0] * normal_rate(P, Q, ROWS, WAY, i) + L[i, 1] * slip_of(P, Q, ROWS, WAY, i, h)) / h
+        total -= (L[i, 0] * normal_rate(ROWS[i], WAY) + L[i, 1] * slip_of(ROWS[i], WAY, h)) / h
     return total
 
 
@@ -51,9 +51,9 @@ def lock(
 ) -> None:  # fmt: skip
     """Scale the impulses L of contacts by s until these lose `owed` at least, or if `elastic` just that, but for
     `error`. The loss is a quadratic function, D(s) = s p - s^2 q."""
-    _, _, P, Q, ROWS, motion, C, m, _, _, h = interval
+    _, _, ROWS, motion, C, m, _, _, h = interval
     for tries in range(PRESS_LOCKS + 1):
-        loss = lost(P, Q, ROWS, L, motion.WAY, m, h)
+        loss = lost(ROWS, L, motion.WAY, m, h)
         if loss >= owed - error and (not elastic or loss <= owed + error):
             break
         p, q2 = 0.0, 0.0
@@ -64,9 +64,9 @@ def lock(
             for tangent in range(2):
                 before = ROWS[i].ut if tangent == 1 else ROWS[i].un
                 if tangent == 1:
-                    without, after = tangent_rate(P, Q, ROWS, FREE, i), tangent_rate(P, Q, ROWS, motion.MEAN, i)
+                    without, after = tangent_rate(ROWS[i], FREE), tangent_rate(ROWS[i], motion.MEAN)
                 else:
-                    without, after = normal_rate(P, Q, ROWS, FREE, i), normal_rate(P, Q, ROWS, motion.MEAN, i)
+                    without, after = normal_rate(ROWS[i], FREE), normal_rate(ROWS[i], motion.MEAN)
                 p -= 0.5 * L[i, tangent] * (before + without)
                 q2 += 0.5 * L[i, tangent] * (after - without)
         # By its slope at s = 1.

@@ -123,9 +123,9 @@ def press(
         slow, fast, pull: speeds and acceleration of the island.  owed: energy >= 0 that it has to lose at least.
         interval: out, the columns of the contacts in their last solution.
     """
-    isle, groups, P, Q, ROWS, motion, C, m, n, _, h = interval
-    fill_free(groups, C, Q, ROWS, isle.IM, isle.II, m)
-    rates(P, Q, ROWS, isle.V, m)
+    isle, groups, ROWS, motion, C, m, n, _, h = interval
+    fill_free(groups, C, ROWS, isle.IM, isle.II, m)
+    rates(ROWS, isle.V, m)
     SLIP, limited, quick = take_slips(ROWS, m), False, fast + pull * h
     elastic = conserves(ROWS, m)
     scale, agree, fine = aims(pull * h, slow, fast, elastic)
@@ -145,7 +145,7 @@ def press(
     converged, best, worst, LEAST, USED, agreed = False, np.inf, 0.0, L.copy(), L.copy(), False
     bent, reached, B = 0.0, np.inf, make_bounded(J, groups, m <= COLUMN_CONTACTS)
     NOW = np.empty(len(B.OF))
-    problem = JointedProblem(P, Q, ROWS, C, B, m)
+    problem = JointedProblem(ROWS, C, B, m)
     # Only of what nothing from without holds or touches is there an angular momentum to keep.
     free = len(isle.IM) == n and not hangs(groups, J.COMPONENT, J.JOINED)
     for outer in range(rounds):
@@ -153,7 +153,7 @@ def press(
             break
         anew = outer % CHORD == 0
         advance(A, J, interval, L, B, anew, FORESEEN if outer > 0 else UNKNOWN)
-        bent = align(isle, P, Q, ROWS, m, motion, True) if free else 0.0
+        bent = align(isle, ROWS, m, motion, True) if free else 0.0
         if outer > 0:
             off = farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n)
             reached = min(reached, off)
@@ -161,7 +161,7 @@ def press(
             if off <= agree or (off <= OUTER_FLOOR * scale and stalls):
                 # Velocities agree; as long as contacts gain energy by them they do not agree well enough.
                 error = work_error(interval, L, slow, pull, PRESS_WORK_ROUND_OFF)
-                pays = elastic or lost(P, Q, ROWS, L, motion.WAY, m, h) >= owed - error
+                pays = elastic or lost(ROWS, L, motion.WAY, m, h) >= owed - error
                 if pays or (stalls and limited):
                     converged, agreed = True, True
                     break
@@ -178,7 +178,7 @@ def press(
             advance(A, J, interval, L, B, True, FORESEEN)
             anew = True
         if anew and free:
-            fill_free(groups, C, Q, ROWS, isle.IM, isle.II, m)
+            fill_free(groups, C, ROWS, isle.IM, isle.II, m)
         J.PROGRESS.effort += SOLUTION_WORK * C.AT[m] if anew else 0.0
         if outer == 0:
             most_pull = accelerations(interval, L, B, EFFECT)
@@ -188,10 +188,10 @@ def press(
                 most_pull = accelerations(interval, L, B, EFFECT)
             # Springs and motors accelerate bodies, too.
             pull = max(pull, most_pull)
-        weigh(groups, C, P, Q, ROWS, m)
+        weigh(groups, C, ROWS, m)
         if outer == 0:
             scale, agree, fine = aims(pull * h, slow, fast, elastic)
-            target(P, Q, ROWS, m, EFFECT, EXPECTED, pull, h)
+            target(ROWS, m, EFFECT, EXPECTED, pull, h)
         copy(FORESEEN, motion.MEAN)
         copy(PREVIOUS, motion.MEAN)
         copy(USED, L)

@@ -43,9 +43,7 @@ def fit_columns(
     """Update the columns of contacts and of bounded rows; V (k, 3), NOW (rows,), BEFORE (m, 2): velocities at the end
     of the motion before, impulses of bounded rows and of contacts in it; L (m, 2): those of the present motion. Whether
     all contacts that gave way still do: else these are no columns."""
-    groups, P, Q, motion, C, m = (
-        interval.groups, interval.P, interval.Q, interval.motion, interval.C, interval.m,
-    )  # fmt: skip
+    groups, ROWS, motion, C, m = interval.groups, interval.ROWS, interval.motion, interval.C, interval.m
     ERROR, D, n = np.empty_like(V), np.empty((m, 2)), B.USED[0]
     for q in range(len(V)):
         for c in range(3):
@@ -55,7 +53,7 @@ def fit_columns(
     push_columns(C, D, m, -1.0, ERROR)
     SQUARE = np.zeros(len(groups.COMPONENT) + 1)  # d.d of each group; one more, for GROUP -1
     for i in range(m):
-        a, b = groups.GROUP[P[i]] + 1, groups.GROUP[Q[i]] + 1
+        a, b = groups.GROUP[ROWS[i].a] + 1, groups.GROUP[ROWS[i].b] + 1
         SQUARE[a] += D[i, 0] ** 2 + D[i, 1] ** 2
         SQUARE[b] += D[i, 0] ** 2 + D[i, 1] ** 2 if b != a else 0.0
     for i in range(n):
@@ -79,8 +77,6 @@ def fit_columns(
             for c in range(3 if square > 0.0 else 0):
                 B.N[w, c] += ERROR[B.BODY[w], c] * (B.ROWS[i].now - NOW[i]) / square
     for i in range(m):
-        if C.OUT[i] == 0 and not gives_way(
-            groups, P, Q, interval.ROWS, i, along(C, P, Q, interval.ROWS, i, C.N, False)
-        ):
+        if C.OUT[i] == 0 and not gives_way(groups, ROWS[i], along(C, ROWS, i, C.N, False)):
             return False
     return True

@@ -9,7 +9,7 @@ import numpy as np
 from ..compiled import kernel
 from ..contacts.geometry import gather
 from ..contacts.interval import make_contacts, recall, speeds
-from ..contacts.memory import remember_loads
+from ..contacts.memory import remember_loads, shapes_of
 from ..contacts.unmet import note_unmet, spend
 from ..contacts.works import moved
 from ..islands.candidates import before_end, pairs_within
@@ -101,7 +101,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     for s in groups.JOINTED:
         keep_joints(J, s)
     contacts, EXPECTED = make_contacts(p, k), np.zeros(2 * p + 1)
-    P, Q, KEY, ROWS, L = contacts.A, contacts.B, contacts.KEY, contacts.ROWS, contacts.L
+    ROWS, L = contacts.ROWS, contacts.L
     motion = Motion(
         isle.V.copy(), isle.V.copy(), np.zeros((k, 3)), isle.POSE.copy(), np.zeros((k, 2)), np.full((k, 3), math.nan)
     )
@@ -110,16 +110,16 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     m = 0
     if p > 0:
         m = gather(A, isle, contacts, moved(isle.POSE, isle.V, 0.5 * h), REACH, h, k == n)
-    interval = Interval(isle, groups, P, Q, ROWS, motion, make_columns(groups, P, Q, m), m, n, t, h)
+    interval = Interval(isle, groups, ROWS, motion, make_columns(groups, ROWS, m), m, n, t, h)
     held, before = True, J.PROGRESS.effort
     J.PROGRESS.share = before + INTERVAL_SHARE * max(work_left(A, J), 0.0)
     if m > 0:
-        recall(KEY, m, A.KEYS, A.FORCES, A.PAR.stamp, h, m > COLUMN_CONTACTS, L, EXPECTED)
+        recall(ROWS, m, A.KEYS, A.FORCES, A.PAR.stamp, h, m > COLUMN_CONTACTS, L, EXPECTED)
         owed = max(-A.RESTING[root].lost, 0.0)
         held = press(A, J, interval, L, EXPECTED, slow, fast, pull, owed)
         if held or m > COLUMN_CONTACTS:
             # Of few contacts impulses that are no solution are no loads to begin with either.
-            remember_loads(ROWS, KEY, L, m, h, A.KEYS, A.FORCES, COUNT, A.PAR.stamp)
+            remember_loads(ROWS, L, m, h, A.KEYS, A.FORCES, COUNT, A.PAR.stamp)
     if m == 0:
         advance(A, J, interval, L, room_for_rows(0, 0), False, np.empty((0, 3)))
     COUNT.solves += 1
@@ -129,15 +129,15 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
         if J.STEPPED[s].status >= ELASTIC:
             far = 2.0
     if not (last and held):
-        strays = excess(A, isle, P, Q, ROWS, KEY, motion, m, n, t, h)
+        strays = excess(A, isle, ROWS, motion, m, n, t, h)
         A.RESTING[root].strays, far = 0.0 if held else strays, max(far, strays)
     else:
-        A.RESTING[root].strays = too_deep_on_way(A, isle, P, Q, ROWS, KEY, motion, m, h)
+        A.RESTING[root].strays = too_deep_on_way(A, isle, ROWS, motion, m, h)
     if not held:  # the motion is not that of a solution, and says little of how long it may be
         # Contacts that are not solved in a long interval may be in a short one, if the step has work for many of these;
         # and what sinks in by them would sink further in the next one.
         payable = RESOLUTION * (J.PROGRESS.effort - before) <= J.PROGRESS.budget
-        hard = (m <= COLUMN_CONTACTS and payable) or (n < LARGE_ISLAND and sinks(A, P, Q, ROWS, KEY, motion.WAY, m))
+        hard = (m <= COLUMN_CONTACTS and payable) or (n < LARGE_ISLAND and sinks(A, ROWS, motion.WAY, m))
         hard = hard and h * UNSOLVED_PART**2 > A.PAR.dt / RESOLUTION
         far = UNSOLVED_PART if hard else min(far, UNSOLVED_PART)
     if far > INTERVAL_RETRY and not last:
@@ -145,10 +145,10 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
             restore_joints(J, s)
         clear_places(A, MINE, n)
         return AGAIN, h / far
-    led = led_in(A, P, Q, ROWS, KEY, interval.C.OUT, motion.WAY, m)
+    led = led_in(A, ROWS, interval.C.OUT, motion.WAY, m)
     if not held or led >= 0:
-        pair, shapes = KEY[max(led, 0)] >> 1, A.SHAPE.shape[0]
-        note_unmet(A, CONTACTS, pair // shapes, pair % shapes, math.nan, math.nan)
+        a, b = shapes_of(A, ROWS[max(led, 0)])
+        note_unmet(A, CONTACTS, a, b, math.nan, math.nan)
     for s in groups.JOINTED:
         J.STEPPED[s].turned_work = J.STEPPED[s].lifted = 0.0
     for q in range(n):
@@ -159,15 +159,15 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     WHERE, HELD = motion.END.copy(), np.zeros(m)
     if not conserves(ROWS, m):
         if not before_end(A, t + h):
-            lift_island(A, J, interval, KEY, root, t + h, lost(P, Q, ROWS, L, motion.WAY, m, h), False)
+            lift_island(A, J, interval, root, t + h, lost(ROWS, L, motion.WAY, m, h), False)
         HELD = fit(A, J, interval, L, t + h, slow + pull * h)
     clear_places(A, MINE, n)
     first = COUNT.pushes
     open_contacts(A, isle, contacts, motion.V, m, first, t, h, np.zeros(k, np.uint8))
     for z in range(m):
         R = A.PUSHED[first + z]
-        R.un_before = R.un_after = normal_rate(P, Q, ROWS, motion.WAY, z) / h
-        R.ut_before = R.ut_after = slip_of(P, Q, ROWS, motion.WAY, z, h) / h
+        R.un_before = R.un_after = normal_rate(ROWS[z], motion.WAY) / h
+        R.ut_before = R.ut_after = slip_of(ROWS[z], motion.WAY, h) / h
         R.held = HELD[z]
     own_contacts(A, root, first, m)
     for q in range(n):

@@ -58,15 +58,17 @@ class Pushed(Record):
 
 
 class Row(Record):
-    """A row of a contact problem, between local bodies A and B.
+    """A row of a contact problem, between local bodies a and b.
 
-    Contact i acts along n, the unit normal from A to B, and t = (-n_y, n_x):
+    The contact acts along n, the unit normal from a to b, and t = (-n_y, n_x):
 
         u_n = n.(v_b - v_a) + arm_nb w_b - arm_na w_a,   arm_n = r x n,  r from the centre of mass to the point,
         u_t = t.(v_b - v_a) + arm_tb w_b - arm_ta w_a + surface,   arm_t = r x t.
     """
 
-    nx: float  # unit normal from A to B
+    a: int  # local bodies
+    b: int
+    nx: float  # unit normal from a to b
     ny: float
     arm_na: float  # arms of the normal impulse: length
     arm_nb: float
@@ -89,14 +91,13 @@ class Row(Record):
     w_nn: float  # inverse of [[a_nn, a_nt], [a_nt, a_tt]] of contacts with friction; nan where it is singular: mass
     w_nt: float
     w_tt: float
+    key: int  # the pair of shapes, and which of its two points this is (`..contacts.memory.key_of`), across steps
 
 
 class Problem(NamedTuple):
-    """A contact problem: m rows ROWS between local bodies A and B. The k bodies have inverse masses IM and moments II,
-    (k,), and poses POSE (k, 3); impulses move the first n of them."""
+    """A contact problem: m rows ROWS. The k bodies have inverse masses IM and moments II, (k,), and poses POSE (k, 3);
+    impulses move the first n of them."""
 
-    A: IntArray
-    B: IntArray
     ROWS: Rows[Row]
     IM: FloatArray
     II: FloatArray
@@ -150,11 +151,9 @@ class Bounded(NamedTuple):
 
 
 class JointedProblem(NamedTuple):
-    """A contact problem of bodies that joints hold: m rows ROWS between local bodies A and B, columns C that say how
-    the bodies answer, and bounded rows D of joints, whose impulses stand behind those of the contacts."""
+    """A contact problem of bodies that joints hold: m rows ROWS, columns C that say how the bodies answer, and bounded
+    rows D of joints, whose impulses stand behind those of the contacts."""
 
-    A: IntArray
-    B: IntArray
     ROWS: Rows[Row]
     C: Columns
     D: Bounded

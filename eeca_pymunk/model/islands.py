@@ -34,15 +34,11 @@ class Island(NamedTuple):
 class IslandContacts(NamedTuple):
     """The contacts of an island over an interval.
 
-    ROWS: rows between local bodies A and B. KEY int64: identifies the pair of shapes and which of its two points it is
-    (`..contacts.memory.key_of`), across steps. L (., 2): impulses. VN (k, 3): velocities at the end. JUMP (k, 6):
-    correction of pose and velocity at the end. OUT (1,): the report.
+    ROWS: between local bodies. L (., 2): impulses. VN (k, 3): velocities at the end. JUMP (k, 6): correction of pose
+    and velocity at the end. OUT (1,): the report.
     """
 
-    A: IntArray
-    B: IntArray
     ROWS: Rows[Row]
-    KEY: IntArray
     L: FloatArray
     VN: FloatArray
     JUMP: FloatArray

@@ -112,9 +112,7 @@ def close_block(
 
 
 @kernel
-def solve_block(
-    problem: AnyProblem, L: FloatArray, V: FloatArray, owed: float, hasty: bool, OUT: Rows[Solved]
-) -> int:  # fmt: skip
+def solve_block(problem: AnyProblem, L: FloatArray, V: FloatArray, owed: float, hasty: bool, OUT: Rows[Solved]) -> int:
     """Impulses of m contacts at one instant; V (k, 3) becomes the velocities after the impact.
 
     Args:
@@ -130,10 +128,10 @@ def solve_block(
             lossy islands INTERVAL_RESIDUAL_SPEED; or the round-off of the speeds, if that is more) or TRUNCATED. The
             energy balance holds in both cases.
     """
-    A, B, ROWS, m = problem.A, problem.B, problem.ROWS, problem.m
+    ROWS, m = problem.ROWS, problem.m
     clear_report(OUT[0])
     OUT[0].owed = owed
-    rates(A, B, ROWS, V, m)
+    rates(ROWS, V, m)
     speed = aim(ROWS, m)
     if not speed > 0.0:
         for i in range(m):
@@ -142,7 +140,7 @@ def solve_block(
     FREE = V.copy()
     push(problem, L, 1.0, V)
     rough = rubs(ROWS, m)
-    floor = RATE_ROUND_OFF * largest_terms(A, B, ROWS, FREE, m)
+    floor = RATE_ROUND_OFF * largest_terms(ROWS, FREE, m)
     tolerance = max(speed * (BLOCK_RESIDUAL_FRICTION if rough else BLOCK_RESIDUAL), floor)
     exact = conserves(ROWS, m)
     # Direct solves help where contacts stick; where many slip only sweeps converge, so there are more of them.

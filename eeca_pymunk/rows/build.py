@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Row
@@ -12,17 +12,14 @@ from ..model.parameters.impulses import SINGULAR
 
 
 @nonallocating
-def place_row(
-    A: IntArray, B: IntArray, ROWS: Rows[Row], i: int, px: float, py: float, POSE: FloatArray, IM: FloatArray,
-    II: FloatArray,
-) -> None:  # fmt: skip
-    """Complete row i, whose bodies, unit normal, gap, elasticity, friction and surface velocity are set, for a contact
+def place_row(row: Row, px: float, py: float, POSE: FloatArray, IM: FloatArray, II: FloatArray) -> None:
+    """Complete a row, whose bodies, unit normal, gap, elasticity, friction and surface velocity are set, for a contact
     at the point (px, py), with target 0, active.
 
     Arms that are round-off of the point's coordinates (a circle about its centre of mass) become 0, so that
     frictionless impulses exert no torque on disks.
     """
-    a, b, row = A[i], B[i], ROWS[i]
+    a, b = row.a, row.b
     nx, ny, noise = row.nx, row.ny, 1e-15 * (abs(px) + abs(py))
     xa, ya, xb, yb = px - POSE[a, 0], py - POSE[a, 1], px - POSE[b, 0], py - POSE[b, 1]
     na, nb, ta, tb = xa * ny - ya * nx, xb * ny - yb * nx, xa * nx + ya * ny, xb * nx + yb * ny
@@ -51,59 +48,56 @@ def invert(row: Row, nn: float, nt: float, tt: float) -> None:
 
 
 @nonallocating
-def normal_rate(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, i: int) -> float:
-    """u_n of contact i at velocities V (k, 3)."""
-    a, b, row = A[i], B[i], ROWS[i]
+def normal_rate(row: Row, V: FloatArray) -> float:
+    """u_n of a contact at velocities V (k, 3)."""
+    a, b = row.a, row.b
     turning = row.arm_nb * V[b, 2] - row.arm_na * V[a, 2]
     return float(row.nx * (V[b, 0] - V[a, 0]) + row.ny * (V[b, 1] - V[a, 1]) + turning)
 
 
 @nonallocating
-def slip_rate(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, i: int) -> float:
+def slip_rate(row: Row, V: FloatArray) -> float:
     """The part of `tangent_rate` that is of the bodies."""
-    a, b, row = A[i], B[i], ROWS[i]
+    a, b = row.a, row.b
     turning = row.arm_tb * V[b, 2] - row.arm_ta * V[a, 2]
     return float(row.nx * (V[b, 1] - V[a, 1]) - row.ny * (V[b, 0] - V[a, 0]) + turning)
 
 
 @nonallocating
-def tangent_rate(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, i: int) -> float:
-    """u_t of contact i at velocities V (k, 3), surface velocities included."""
-    return slip_rate(A, B, ROWS, V, i) + ROWS[i].surface
+def tangent_rate(row: Row, V: FloatArray) -> float:
+    """u_t of a contact at velocities V (k, 3), surface velocities included."""
+    return slip_rate(row, V) + row.surface
 
 
 @inlined
-def push_contact(
-    A: IntArray, B: IntArray, ROWS: Rows[Row], IM: FloatArray, II: FloatArray, i: int, lam: float, beta: float,
-    V: FloatArray,
-) -> None:  # fmt: skip
-    """Add M^-1 (G^T lam + T^T beta) of contact i to V (k, 3)."""
-    a, b = A[i], B[i]
-    fx = lam * ROWS[i].nx - beta * ROWS[i].ny
-    fy = lam * ROWS[i].ny + beta * ROWS[i].nx
+def push_contact(row: Row, IM: FloatArray, II: FloatArray, lam: float, beta: float, V: FloatArray) -> None:
+    """Add M^-1 (G^T lam + T^T beta) of a contact to V (k, 3)."""
+    a, b = row.a, row.b
+    fx = lam * row.nx - beta * row.ny
+    fy = lam * row.ny + beta * row.nx
     V[a, 0] -= IM[a] * fx
     V[a, 1] -= IM[a] * fy
-    V[a, 2] -= II[a] * (lam * ROWS[i].arm_na + beta * ROWS[i].arm_ta)
+    V[a, 2] -= II[a] * (lam * row.arm_na + beta * row.arm_ta)
     V[b, 0] += IM[b] * fx
     V[b, 1] += IM[b] * fy
-    V[b, 2] += II[b] * (lam * ROWS[i].arm_nb + beta * ROWS[i].arm_tb)
+    V[b, 2] += II[b] * (lam * row.arm_nb + beta * row.arm_tb)
 
 
 @nonallocating
-def rates(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, m: int) -> None:
+def rates(ROWS: Rows[Row], V: FloatArray, m: int) -> None:
     """Set u_n and u_t before the impulses of m contacts from velocities V (k, 3)."""
     for i in range(m):
-        ROWS[i].un = normal_rate(A, B, ROWS, V, i)
-        ROWS[i].ut = tangent_rate(A, B, ROWS, V, i)
+        ROWS[i].un = normal_rate(ROWS[i], V)
+        ROWS[i].ut = tangent_rate(ROWS[i], V)
 
 
 @nonallocating
-def largest_terms(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, m: int) -> float:
+def largest_terms(ROWS: Rows[Row], V: FloatArray, m: int) -> float:
     """The largest sum of magnitudes of the terms of u_n, and with friction of u_t, of m contacts at velocities V (k,
     3). Times the unit round-off it is the error of these rates, however small they are."""
     most = 0.0
     for i in range(m):
-        a, b, nx, ny = A[i], B[i], abs(ROWS[i].nx), abs(ROWS[i].ny)
+        a, b, nx, ny = ROWS[i].a, ROWS[i].b, abs(ROWS[i].nx), abs(ROWS[i].ny)
         x, y = abs(V[a, 0]) + abs(V[b, 0]), abs(V[a, 1]) + abs(V[b, 1])
         one, two = abs(V[a, 2]), abs(V[b, 2])
         most = max(most, nx * x + ny * y + abs(ROWS[i].arm_na) * one + abs(ROWS[i].arm_nb) * two)

@@ -33,9 +33,9 @@ class Factor(NamedTuple):
 
 
 @kernel
-def make_factor(A: IntArray, B: IntArray, m: int, n: int, used: IntArray, POSE: FloatArray) -> Factor:
+def make_factor(ROWS: Rows[Row], m: int, n: int, used: IntArray, POSE: FloatArray) -> Factor:
     """Room for the factor of n bodies at POSE (k, 3) with the contacts with used[i] != 0, and its order."""
-    start, other = neighbours(A, B, m, n, used)
+    start, other = neighbours(ROWS, m, n, used)
     place = np.empty(n, np.int64)
     dissect(POSE, n, start, other, place)
     columns, rows = pattern(n, start, other, place)
@@ -54,9 +54,8 @@ def roots_of(IM: FloatArray, II: FloatArray) -> FloatArray:
 
 @kernel
 def assemble(
-    A: IntArray, B: IntArray, ROWS: Rows[Row], m: int, n: int, held: IntArray, stuck: IntArray, SCALE: FloatArray,
-    R: float, factor: Factor,
-) -> None:  # fmt: skip
+    ROWS: Rows[Row], m: int, n: int, held: IntArray, stuck: IntArray, SCALE: FloatArray, R: float, factor: Factor
+) -> None:
     """Write the blocks of B to `factor`, for the normal rows of contacts with held[i] = 1 and the tangential ones with
     stuck[i] != 0. SCALE (k, 3): roots of the inverse masses.  R: dimensionless."""
     place, columns, rows, DIAGONAL, BELOW = factor.place, factor.columns, factor.rows, factor.DIAGONAL, factor.BELOW
@@ -67,7 +66,7 @@ def assemble(
             DIAGONAL[j, p, p] = 1.0
     ja, jb = np.empty(3), np.empty(3)
     for i in range(m):
-        a, b, nx, ny = A[i], B[i], ROWS[i].nx, ROWS[i].ny
+        a, b, nx, ny = ROWS[i].a, ROWS[i].b, ROWS[i].nx, ROWS[i].ny
         for kind in range(2):
             if kind == 0:
                 if held[i] == 0:

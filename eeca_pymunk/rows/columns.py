@@ -19,19 +19,19 @@ from .coulomb import coulomb, limited_slip
 @kernel
 def as_columns(problem: Problem) -> JointedProblem:
     """The contact problem of free bodies by columns, each on the two bodies of its contact."""
-    A, B, ROWS, IM, II, _, _, m = problem
+    ROWS, IM, II, _, _, m = problem
     AT, BODY, N, T = np.empty(m + 1, np.int64), np.empty(2 * m, np.int64), np.empty((2 * m, 3)), np.empty((2 * m, 3))
     for i in range(m):
         AT[i] = 2 * i
         for side in range(2):
-            w, q, sign = 2 * i + side, B[i] if side == 1 else A[i], 2.0 * side - 1.0
+            w, q, sign = 2 * i + side, ROWS[i].b if side == 1 else ROWS[i].a, 2.0 * side - 1.0
             BODY[w], x, y = q, sign * IM[q] * ROWS[i].nx, sign * IM[q] * ROWS[i].ny
             N[w, 0], N[w, 1], T[w, 0], T[w, 1] = x, y, -y, x
             N[w, 2] = sign * II[q] * (ROWS[i].arm_nb if side == 1 else ROWS[i].arm_na)
             T[w, 2] = sign * II[q] * (ROWS[i].arm_tb if side == 1 else ROWS[i].arm_ta)
     AT[m] = 2 * m
     C = Columns(AT, BODY, N, T, np.zeros(m, np.int64), np.zeros(1))
-    return JointedProblem(A, B, ROWS, C, room_for_rows(0, 0), m)
+    return JointedProblem(ROWS, C, room_for_rows(0, 0), m)
 
 
 @inlined
@@ -62,9 +62,9 @@ def push_jointed(problem: JointedProblem, L: FloatArray, factor: float, V: Float
 @nonallocating
 def lawful(problem: JointedProblem, L: FloatArray, V: FloatArray, i: int) -> tuple[float, float]:
     """The impulses (lam, beta) of contact i by its law, those of all others being given."""
-    A, B, ROWS, _, _, _ = problem
+    ROWS, _, _, _ = problem
     lam0, beta0, ann = L[i, 0], L[i, 1], ROWS[i].a_nn
-    short = normal_rate(A, B, ROWS, V, i) - ROWS[i].target
+    short = normal_rate(ROWS[i], V) - ROWS[i].target
     if ROWS[i].wake < np.inf:
         if short + ROWS[i].target - lam0 * ann < ROWS[i].wake:
             ROWS[i].wake = np.inf
@@ -77,7 +77,7 @@ def lawful(problem: JointedProblem, L: FloatArray, V: FloatArray, i: int) -> tup
     # open without its impulses: a sticking contact then remains.
     if not (qn < 0.0 or lam0 > 0.0):
         return 0.0, 0.0
-    ut = tangent_rate(A, B, ROWS, V, i)
+    ut = tangent_rate(ROWS[i], V)
     # Most contacts stick.
     lam = lam0 - (ROWS[i].w_nn * short + ROWS[i].w_nt * ut)
     beta = beta0 - (ROWS[i].w_nt * short + ROWS[i].w_tt * ut)
@@ -101,19 +101,19 @@ def breach(problem: JointedProblem, L: FloatArray, V: FloatArray) -> float:
     there are discs. Inactive contacts break theirs beyond the velocity that activates them. The change of velocity in a
     sweep is no such measure: where an impulse of friction could open its contact, a_nn < mu |a_nt|, a contact by itself
     has several solutions, among which a sweep may change."""
-    A, B, ROWS, C, D, m = problem
+    ROWS, C, D, m = problem
     worst = 0.0
     for i in range(m):
         if C.OUT[i] != 0:
             continue
         if ROWS[i].wake < np.inf:
-            worst = max(worst, ROWS[i].wake - normal_rate(A, B, ROWS, V, i))
+            worst = max(worst, ROWS[i].wake - normal_rate(ROWS[i], V))
             continue
         lam, beta, mu = L[i, 0], L[i, 1], ROWS[i].friction
-        un = normal_rate(A, B, ROWS, V, i) - ROWS[i].target
+        un = normal_rate(ROWS[i], V) - ROWS[i].target
         worst = max(worst, abs(un) if lam > 0.0 else -un)
         if lam > 0.0 and mu > 0.0:
-            ut = tangent_rate(A, B, ROWS, V, i)
+            ut = tangent_rate(ROWS[i], V)
             off = ut - limited_slip(ROWS[i], lam, beta)
             if abs(beta) < (1.0 - 1e-12) * mu * lam:
                 reversed_slip = beta == 0.0 and ut * ROWS[i].ut < 0.0

@@ -12,46 +12,44 @@ from .build import push_contact
 
 @nonallocating
 def cone_edges(
-    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, IM: FloatArray, II: FloatArray, m: int, OF: IntArray,
-    P: IntArray, Q: IntArray, G: Rows[Row], EDGE: Rows[Edge],
-) -> int:  # fmt: skip
+    ROWS: Rows[Row], L: FloatArray, IM: FloatArray, II: FloatArray, m: int, OF: IntArray, G: Rows[Row], EDGE: Rows[Edge]
+) -> int:
     """Write the edges of the cones of m contacts, and return their number K <= 2 m.
 
     Args:
-        A, B, ROWS: bodies and rows of the contacts; those with a target below 0 have no edges.
+        ROWS: those with a target below 0 have no edges.
         L: (m, 2) normal and tangential impulses, from which `guess` and `x` of the edges follow.
         IM, II: inverse masses and moments of the bodies.
-        OF: out, the contact of each edge.  P, Q, G: out, bodies and rows of the edges, those of a contact one after the
-            other.  EDGE: out, with a_gg = g^T M^-1 g.
+        OF: out, the contact of each edge.  G: out, rows of the edges, those of a contact one after the other.
+        EDGE: out, with a_gg = g^T M^-1 g.
     """
     K = 0
     for i in range(m):
         if ROWS[i].target < 0.0:
             continue
-        mu = ROWS[i].friction
+        a, b, mu = ROWS[i].a, ROWS[i].b, ROWS[i].friction
         for side in range(2 if mu > 0.0 else 1):
             slope = mu if side == 0 else -mu
-            P[K], Q[K], OF[K] = A[i], B[i], i
+            OF[K], G[K].a, G[K].b = i, a, b
             G[K].nx = ROWS[i].nx - slope * ROWS[i].ny
             G[K].ny = ROWS[i].ny + slope * ROWS[i].nx
             G[K].arm_na = ROWS[i].arm_na + slope * ROWS[i].arm_ta
             G[K].arm_nb = ROWS[i].arm_nb + slope * ROWS[i].arm_tb
             EDGE[K].guess = L[i, 0] if mu <= 0.0 else max(0.5 * (L[i, 0] + L[i, 1] / slope), 0.0)
             EDGE[K].x = EDGE[K].guess
-            EDGE[K].a_gg = (IM[A[i]] + IM[B[i]]) * (1.0 + mu * mu)
-            EDGE[K].a_gg += II[A[i]] * G[K].arm_na ** 2 + II[B[i]] * G[K].arm_nb ** 2
+            EDGE[K].a_gg = (IM[a] + IM[b]) * (1.0 + mu * mu)
+            EDGE[K].a_gg += II[a] * G[K].arm_na ** 2 + II[b] * G[K].arm_nb ** 2
             K += 1
     return K
 
 
 @nonallocating
 def add_impulses(
-    P: IntArray, Q: IntArray, G: Rows[Row], EDGE: Rows[Edge], steps: bool, K: int, IM: FloatArray, II: FloatArray,
-    V: FloatArray,
-) -> None:  # fmt: skip
+    G: Rows[Row], EDGE: Rows[Edge], steps: bool, K: int, IM: FloatArray, II: FloatArray, V: FloatArray
+) -> None:
     """Add M^-1 sum g x over all K edges to the velocities V (k, 3); with dx in place of x if `steps`."""
     for e in range(K):
-        push_contact(P, Q, G, IM, II, e, EDGE[e].dx if steps else EDGE[e].x, 0.0, V)
+        push_contact(G[e], IM, II, EDGE[e].dx if steps else EDGE[e].x, 0.0, V)
 
 
 @nonallocating

@@ -64,7 +64,7 @@ def back(W: FloatArray, N: int, order: IntArray, r: FloatArray, x: FloatArray) -
 def matrix_free(problem: Problem, slip: FloatArray, at: IntArray, kind: IntArray, N: int, W: FloatArray) -> None:
     """W[i, j] = velocity along unknown i by a unit impulse of unknown j, for N unknowns of contacts `at`, of `kind` 0
     (normal, with its slip) or 1 (tangential). slip (m,): beta / lam of slipping contacts."""
-    A, B, ROWS, IM, II, _, _, _ = problem
+    ROWS, IM, II, _, _, _ = problem
     J = np.empty((N, 8))  # rows: n or t with arms a, b; then the columns' direction and arms
     for i in range(N):
         c = at[i]
@@ -79,15 +79,15 @@ def matrix_free(problem: Problem, slip: FloatArray, at: IntArray, kind: IntArray
                 J[i, 4 + k] = J[i, k]
     for i in range(N):
         for j in range(N):
-            a, b, w = A[at[i]], B[at[i]], 0.0
+            a, b, w = ROWS[at[i]].a, ROWS[at[i]].b, 0.0
             along = J[i, 0] * J[j, 4] + J[i, 1] * J[j, 5]
-            if a == A[at[j]]:
+            if a == ROWS[at[j]].a:
                 w += IM[a] * along + II[a] * J[i, 2] * J[j, 6]
-            elif a == B[at[j]]:
+            elif a == ROWS[at[j]].b:
                 w -= IM[a] * along + II[a] * J[i, 2] * J[j, 7]
-            if b == B[at[j]]:
+            if b == ROWS[at[j]].b:
                 w += IM[b] * along + II[b] * J[i, 3] * J[j, 7]
-            elif b == A[at[j]]:
+            elif b == ROWS[at[j]].a:
                 w -= IM[b] * along + II[b] * J[i, 3] * J[j, 6]
             W[i, j] = w
         c = at[i]
@@ -99,13 +99,13 @@ def matrix_jointed(
     problem: JointedProblem, slip: FloatArray, at: IntArray, kind: IntArray, N: int, W: FloatArray
 ) -> None:
     """As `matrix_free`, with response columns; unknowns of kind 2 are bounded rows."""
-    A, B, ROWS, C, D, _ = problem
+    ROWS, C, D, _ = problem
     bodies = 0
     for i in range(N):
         if kind[i] == 2:
             bodies = max(bodies, D.END[at[i], 0] + 1, D.END[at[i], 1] + 1)
         else:
-            bodies = max(bodies, A[at[i]] + 1, B[at[i]] + 1)
+            bodies = max(bodies, ROWS[at[i]].a + 1, ROWS[at[i]].b + 1)
     for w in range(len(C.BODY)):
         bodies = max(bodies, C.BODY[w] + 1)
     for w in range(D.AT[D.USED[0]]):
@@ -125,9 +125,9 @@ def matrix_jointed(
             if kind[i] == 2:
                 W[i, j] = bounded_rate(D, z, V)
             elif kind[i] == 0:
-                W[i, j] = normal_rate(A, B, ROWS, V, z)
+                W[i, j] = normal_rate(ROWS[z], V)
             else:
-                W[i, j] = tangent_rate(A, B, ROWS, V, z) - ROWS[z].surface
+                W[i, j] = tangent_rate(ROWS[z], V) - ROWS[z].surface
         for w in range(first, last):
             for k in range(3):
                 V[BODY[w], k] = 0.0
@@ -170,8 +170,8 @@ def newton(
 ) -> tuple[float, int]:
     """Solve on the active contacts of L, as `polish.polish_free`, with the same arguments and results. `shared` as in
     `unknowns`."""
-    A, B, ROWS, m = problem.A, problem.B, problem.ROWS, problem.m
-    held, stuck, slip, rest = classify(A, B, ROWS, L, V, m)
+    ROWS, m = problem.ROWS, problem.m
+    held, stuck, slip, rest = classify(ROWS, L, V, m)
     at, kind = np.empty(2 * m, np.int64), np.empty(2 * m, np.int64)
     N = unknowns(ROWS, L, m, held, stuck, slip, shared, at, kind)
     W, order, r, x = np.empty((N, N)), np.empty(N, np.int64), np.empty(N), np.empty(N)
@@ -185,11 +185,11 @@ def newton(
         for k in range(N):
             i = at[k]
             if kind[k] == 0:
-                r[k] = ROWS[i].target - normal_rate(A, B, ROWS, V, i)
+                r[k] = ROWS[i].target - normal_rate(ROWS[i], V)
             else:
                 if stuck[i] == 2 and L[i, 1] != 0.0:
                     rest[i] = -ROWS[i].ut - L[i, 0] * min(ROWS[i].un + ROWS[i].target, 0.0) / L[i, 1]
-                r[k] = rest[i] - tangent_rate(A, B, ROWS, V, i)
+                r[k] = rest[i] - tangent_rate(ROWS[i], V)
             worst = max(worst, abs(r[k]))
         if worst <= tolerance or done == passes or not worst <= 0.5 * last:
             break

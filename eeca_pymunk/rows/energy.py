@@ -31,9 +31,9 @@ def losses_of(problem: AnyProblem, L: FloatArray, V: FloatArray, i: int) -> tupl
 
     Where slip reverses, friction returns a part of what restitution takes, D_n + D_t >= 0: see `offset_gain`.
     """
-    A, B, ROWS = problem.A, problem.B, problem.ROWS
-    normal = -0.5 * L[i, 0] * (ROWS[i].un + normal_rate(A, B, ROWS, V, i))
-    tangential = -0.5 * L[i, 1] * (ROWS[i].ut + tangent_rate(A, B, ROWS, V, i))
+    ROWS = problem.ROWS
+    normal = -0.5 * L[i, 0] * (ROWS[i].un + normal_rate(ROWS[i], V))
+    tangential = -0.5 * L[i, 1] * (ROWS[i].ut + tangent_rate(ROWS[i], V))
     return offset_gain(normal, tangential)
 
 
@@ -80,16 +80,16 @@ def lock(
     Returns:
         s, and the energy still owed (0 where there is a root).
     """
-    A, B, ROWS, m = problem.A, problem.B, problem.ROWS, problem.m
+    ROWS, m = problem.ROWS, problem.m
     p, q = 0.0, 0.0
     for i in range(m):
         lam, beta = L[i, 0], L[i, 1]
         if lam == 0.0 and beta == 0.0:
             continue
-        n0 = normal_rate(A, B, ROWS, FREE, i)
-        t0 = tangent_rate(A, B, ROWS, FREE, i)
+        n0 = normal_rate(ROWS[i], FREE)
+        t0 = tangent_rate(ROWS[i], FREE)
         p -= 0.5 * (lam * (ROWS[i].un + n0) + beta * (ROWS[i].ut + t0))
-        q += 0.5 * (lam * (normal_rate(A, B, ROWS, V, i) - n0) + beta * (tangent_rate(A, B, ROWS, V, i) - t0))
+        q += 0.5 * (lam * (normal_rate(ROWS[i], V) - n0) + beta * (tangent_rate(ROWS[i], V) - t0))
     s, left = scale_to_lose(p, q, owed, exact)
     if s != 1.0:
         for i in range(problem.m):

@@ -78,22 +78,22 @@ def newton_step(
     the product dx ds of the predictor.
 
     Args:
-        edges: bodies and rows of the edges, with k_n = Theta.  SCALE: (k, 3) roots of the inverse masses, the scale of
+        edges: rows of the edges, with k_n = Theta.  SCALE: (k, 3) roots of the inverse masses, the scale of
             the factor.  LEFT: (k, 3) velocities that the impulses x leave.  Y, DY: (k, 3) multipliers, and their step.
         f, V: (n, 3) and (k, 3), scratch.
     """
-    P, Q, G, K, n, place = edges.A, edges.B, edges.ROWS, edges.m, edges.n, factor.place
+    G, K, n, place = edges.ROWS, edges.m, edges.n, factor.place
     V[:] = 0.0
     for e in range(K):
         x, s = EDGE[e].x, EDGE[e].s
         if s == 0.0:
             EDGE[e].dx = 0.0
             continue
-        dual = EDGE[e].a_gg * (x - EDGE[e].guess) - normal_rate(P, Q, G, Y, e) - s
+        dual = EDGE[e].a_gg * (x - EDGE[e].guess) - normal_rate(G[e], Y) - s
         product = x * s - centre + (EDGE[e].dx * EDGE[e].ds if second else 0.0)
         EDGE[e].ds = product
         EDGE[e].dx = G[e].k_n * (dual + product / x)
-    add_impulses(P, Q, G, EDGE, True, K, edges.IM, edges.II, V)
+    add_impulses(G, EDGE, True, K, edges.IM, edges.II, V)
     for i in range(n):
         for c in range(3):
             f[place[i], c] = PROXIMAL_STATICS * (V[i, c] - LEFT[i, c]) / SCALE[i, c] if SCALE[i, c] > 0.0 else 0.0
@@ -102,7 +102,7 @@ def newton_step(
         for c in range(3):
             DY[i, c] = SCALE[i, c] * f[place[i], c]
     for e in range(K):
-        EDGE[e].dx = G[e].k_n * normal_rate(P, Q, G, DY, e) - EDGE[e].dx
+        EDGE[e].dx = G[e].k_n * normal_rate(G[e], DY) - EDGE[e].dx
         if EDGE[e].s > 0.0:
             EDGE[e].ds = -(EDGE[e].ds + EDGE[e].s * EDGE[e].dx) / EDGE[e].x
 
@@ -159,19 +159,18 @@ def equilibrium(
     """
     IM, II, n, m = problem.IM, problem.II, problem.n, problem.m
     k = len(IM)
-    OF, P, Q = np.empty(2 * m, np.int64), np.empty(2 * m, np.int64), np.empty(2 * m, np.int64)
-    G, EDGE = zeros(2 * m, ROW), zeros(2 * m, EDGE_KIND)
-    K = cone_edges(problem.A, problem.B, problem.ROWS, L, IM, II, m, OF, P, Q, G, EDGE)
+    OF, G, EDGE = np.empty(2 * m, np.int64), zeros(2 * m, ROW), zeros(2 * m, EDGE_KIND)
+    K = cone_edges(problem.ROWS, L, IM, II, m, OF, G, EDGE)
     LEFT, Y, DY, V, f = np.empty((k, 3)), np.zeros((k, 3)), np.zeros((k, 3)), np.empty((k, 3)), np.empty((n, 3))
     if K == 0:
         return fastest_point(START, EXTENT, n) <= tolerance, 0  # without contacts START is that motion
     held, stuck = np.ones(K, np.int64), np.zeros(K, np.int64)
-    SCALE, factor = roots_of(IM, II), make_factor(P, Q, K, n, held, problem.POSE)
-    problem_of_edges = Problem(P, Q, G, IM, II, problem.POSE, n, K)
+    SCALE, factor = roots_of(IM, II), make_factor(G, K, n, held, problem.POSE)
+    problem_of_edges = Problem(G, IM, II, problem.POSE, n, K)
     found, free, first = False, True, 0.0
     for done in range(most + 1):
         copy(LEFT, START)
-        add_impulses(P, Q, G, EDGE, False, K, IM, II, LEFT)
+        add_impulses(G, EDGE, False, K, IM, II, LEFT)
         speed = fastest_point(LEFT, EXTENT, n)
         centre = mean_product(EDGE, K, 0.0, 0.0)
         if speed <= tolerance:
@@ -186,7 +185,7 @@ def equilibrium(
         if done == 0 or not free:
             for e in range(K):
                 G[e].k_n = 1.0 / (EDGE[e].a_gg + (0.0 if free else EDGE[e].s / EDGE[e].x))
-            assemble(P, Q, G, K, n, held, stuck, SCALE, PROXIMAL_STATICS, factor)
+            assemble(G, K, n, held, stuck, SCALE, PROXIMAL_STATICS, factor)
             factorise(n, factor)
         newton_step(problem_of_edges, EDGE, SCALE, factor, LEFT, Y, f, V, DY, 0.0, False)
         if free:

@@ -49,7 +49,7 @@ def begin(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: bool) -> 
     """The homotopy's start at impulses L (m + n, 2) of m contacts and n bounded rows with velocities V (k, 3); or, if
     `anew`, without impulses of contacts, and with rows at a bound. Contacts that are inactive (`Row.wake`) or left out
     (`Columns.OUT`), discs, and rows that joints hold take no part: their impulses stay."""
-    A, B, ROWS, C, D, m = problem
+    ROWS, C, D, m = problem
     n = D.USED[0]
     size = 2 * m + n
     tableau = Tableau(
@@ -66,8 +66,8 @@ def begin(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: bool) -> 
         tableau.MU[i] = max(ROWS[i].friction, 0.0)
         if C.OUT[i] == 0 and not ROWS[i].wake < np.inf:
             tableau.STATE[i] = OPEN
-            T[2 * i, size] = normal_rate(A, B, ROWS, V, i) - ROWS[i].target
-            slides = tangent_rate(A, B, ROWS, V, i)
+            T[2 * i, size] = normal_rate(ROWS[i], V) - ROWS[i].target
+            slides = tangent_rate(ROWS[i], V)
             tableau.REST[i] = limited_slip(ROWS[i], L[i, 0], L[i, 1])
             T[2 * i + 1, size] = slides - tableau.REST[i]
             if L[i, 0] > 0.0 and L[i, 1] == 0.0 and slides * ROWS[i].ut < 0.0:
@@ -173,16 +173,16 @@ def set_impulses(tableau: Tableau, m: int, X: FloatArray, L: FloatArray) -> None
 def correct(problem: JointedProblem, tableau: Tableau, V: FloatArray, X: FloatArray) -> None:
     """Correct the unknowns X (size,) by the velocities V that the present states fix and that are not 0: the proximal
     term and round-off of pivots leave them."""
-    A, B, ROWS, _, D, m = problem
+    ROWS, _, D, m = problem
     for c in range(len(tableau.STATE)):
         k, state = unknown_of(m, c), tableau.STATE[c]
         for z in range(2 if state == STICK else 1 if state in (SLIP, INSIDE) else 0):
             if c >= m:
                 off = D.ROWS[c - m].speed + bounded_rate(D, c - m, V)
             elif z == 1:
-                off = tangent_rate(A, B, ROWS, V, c) - tableau.REST[c]
+                off = tangent_rate(ROWS[c], V) - tableau.REST[c]
             else:
-                off = normal_rate(A, B, ROWS, V, c) - ROWS[c].target
+                off = normal_rate(ROWS[c], V) - ROWS[c].target
             for i in range(len(X)):
                 X[i] -= tableau.T[i, k + z] * off
 

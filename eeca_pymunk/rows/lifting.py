@@ -12,7 +12,7 @@ from .columns import push_column
 @inlined
 def push_normal_free(problem: Problem, i: int, d: float, D: FloatArray) -> None:
     """Add M^-1 G^T of a change d of mu of contact i to D (k, 3)."""
-    push_contact(problem.A, problem.B, problem.ROWS, problem.IM, problem.II, i, d, 0.0, D)
+    push_contact(problem.ROWS[i], problem.IM, problem.II, d, 0.0, D)
 
 
 @inlined
@@ -28,7 +28,7 @@ push_normal = Choice(push_normal_free, push_normal_jointed)
 def meet_gap(problem: AnyProblem, GAP: float, MU: FloatArray, D: FloatArray, i: int) -> float:
     """Let the gap of contact i, which is GAP without displacements, meet its condition, with the other mu as they are;
     how much it changes."""
-    g = GAP + normal_rate(problem.A, problem.B, problem.ROWS, D, i)
+    g = GAP + normal_rate(problem.ROWS[i], D)
     if g >= 0.0 and MU[i] == 0.0:
         return 0.0
     k = problem.ROWS[i].k_n
@@ -43,8 +43,8 @@ def meet_gap(problem: AnyProblem, GAP: float, MU: FloatArray, D: FloatArray, i: 
 def keep_walls(problem: Problem, GAPS: FloatArray, MU: FloatArray, D: FloatArray) -> None:
     """After a `lift` that has come to no end: displace no body deeper into what nothing moves than it is."""
     for i in range(problem.m):
-        if max(problem.A[i], problem.B[i]) >= problem.n:
-            if GAPS[i] + normal_rate(problem.A, problem.B, problem.ROWS, D, i) < min(GAPS[i], 0.0):
+        if max(problem.ROWS[i].a, problem.ROWS[i].b) >= problem.n:
+            if GAPS[i] + normal_rate(problem.ROWS[i], D) < min(GAPS[i], 0.0):
                 meet_gap(problem, max(GAPS[i], 0.0), MU, D, i)
 
 

@@ -10,17 +10,19 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
+from ..compiled.records import Rows
+from ..model.contacts import Row
 from ..model.parameters.impulses import DISSECTION_LEAF, LATE_NEIGHBOURS
 from .inplace import sort
 
 
 @kernel
-def neighbours(A: IntArray, B: IntArray, m: int, n: int, used: IntArray) -> tuple[IntArray, IntArray]:
+def neighbours(ROWS: Rows[Row], m: int, n: int, used: IntArray) -> tuple[IntArray, IntArray]:
     """Neighbours of n bodies by the contacts with used[i] != 0: `start` (n + 1,) and `other`; those of body i are
     other[start[i] : start[i + 1]], some repeatedly."""
     start = np.zeros(n + 1, np.int64)
     for i in range(m):
-        a, b = A[i], B[i]
+        a, b = ROWS[i].a, ROWS[i].b
         if used[i] != 0 and a < n and b < n:
             start[a + 1] += 1
             start[b + 1] += 1
@@ -29,7 +31,7 @@ def neighbours(A: IntArray, B: IntArray, m: int, n: int, used: IntArray) -> tupl
     other = np.empty(start[n], np.int64)
     fill = start[:n].copy()
     for i in range(m):
-        a, b = A[i], B[i]
+        a, b = ROWS[i].a, ROWS[i].b
         if used[i] != 0 and a < n and b < n:
             other[fill[a]] = b
             fill[a] += 1

@@ -22,7 +22,7 @@ from .sweeps import velocities
 
 
 @nonallocating
-def share(A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, m: int) -> None:
+def share(ROWS: Rows[Row], L: FloatArray, m: int) -> None:
     """Divide the friction of a face between its two points in proportion to their normal impulses: beta_k = lam_k sum
     beta / sum lam.
 
@@ -34,7 +34,7 @@ def share(A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, m: int) -> N
         j = i + 1
         mu = ROWS[i].friction
         lam = L[i, 0] + L[j, 0]
-        if A[i] != A[j] or B[i] != B[j] or mu <= 0.0 or mu != ROWS[j].friction or lam <= 0.0:
+        if ROWS[i].a != ROWS[j].a or ROWS[i].b != ROWS[j].b or mu <= 0.0 or mu != ROWS[j].friction or lam <= 0.0:
             continue
         if ROWS[i].nx != ROWS[j].nx or ROWS[i].ny != ROWS[j].ny or ROWS[i].surface != ROWS[j].surface:
             continue
@@ -49,7 +49,7 @@ def share(A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, m: int) -> N
 
 @kernel
 def classify(
-    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, m: int
+    ROWS: Rows[Row], L: FloatArray, V: FloatArray, m: int
 ) -> tuple[IntArray, IntArray, FloatArray, FloatArray]:
     """held, stuck, slip and rest (m,) of contacts, by their impulses: held[i] = 1 where lam > 0; of these stuck[i] = 1
     where u_t is to be 0, 2 where it is to be rest[i], length/time; else 0, and beta = slip[i] lam.
@@ -64,7 +64,7 @@ def classify(
             continue
         if abs(beta) < mu * lam * (1.0 - 1e-12):
             loss = lam * min(ROWS[i].un + ROWS[i].target, 0.0)
-            if beta == 0.0 and loss == 0.0 and tangent_rate(A, B, ROWS, V, i) * ROWS[i].ut < 0.0:
+            if beta == 0.0 and loss == 0.0 and tangent_rate(ROWS[i], V) * ROWS[i].ut < 0.0:
                 continue  # a slip that has reversed by less than its size: no friction without giving energy
             if beta * ROWS[i].ut <= -loss:
                 stuck[i] = 1
@@ -107,12 +107,12 @@ def polish_free(
     Returns:
         The residual velocity before the impulses were clamped, and how many were clamped.
     """
-    A, B, ROWS, IM, II, _, n, m = problem
-    share(A, B, ROWS, L, m)
-    held, stuck, slip, rest = classify(A, B, ROWS, L, V, m)
-    SCALE, factor = roots_of(IM, II), make_factor(A, B, m, n, held, problem.POSE)
+    ROWS, IM, II, _, n, m = problem
+    share(ROWS, L, m)
+    held, stuck, slip, rest = classify(ROWS, L, V, m)
+    SCALE, factor = roots_of(IM, II), make_factor(ROWS, m, n, held, problem.POSE)
     place = factor.place
-    assemble(A, B, ROWS, m, n, held, stuck, SCALE, R, factor)
+    assemble(ROWS, m, n, held, stuck, SCALE, R, factor)
     factorise(n, factor)
     f, dv, r, worst = np.empty((n, 3)), np.zeros((len(IM), 3)), np.zeros((m, 2)), np.inf
     for done in range(passes + 1):
@@ -122,15 +122,15 @@ def polish_free(
         for i in range(m):
             if held[i] == 0:
                 continue
-            r[i, 0] = ROWS[i].target - normal_rate(A, B, ROWS, V, i)
+            r[i, 0] = ROWS[i].target - normal_rate(ROWS[i], V)
             worst = max(worst, abs(r[i, 0]))
             fn = R * ROWS[i].k_n * r[i, 0]
             ft = 0.0
             if stuck[i] != 0:
-                r[i, 1] = rest[i] - tangent_rate(A, B, ROWS, V, i)
+                r[i, 1] = rest[i] - tangent_rate(ROWS[i], V)
                 worst = max(worst, abs(r[i, 1]))
                 ft = R * ROWS[i].k_t * r[i, 1]
-            a, b = A[i], B[i]
+            a, b = ROWS[i].a, ROWS[i].b
             fx = fn * ROWS[i].nx - ft * ROWS[i].ny
             fy = fn * ROWS[i].ny + ft * ROWS[i].nx
             if a < n:
@@ -152,15 +152,15 @@ def polish_free(
         for i in range(m):
             if held[i] == 0:
                 continue
-            L[i, 0] += R * ROWS[i].k_n * (r[i, 0] - normal_rate(A, B, ROWS, dv, i))
+            L[i, 0] += R * ROWS[i].k_n * (r[i, 0] - normal_rate(ROWS[i], dv))
             if stuck[i] != 0:
-                L[i, 1] += R * ROWS[i].k_t * (r[i, 1] - tangent_rate(A, B, ROWS, dv, i) + ROWS[i].surface)
+                L[i, 1] += R * ROWS[i].k_t * (r[i, 1] - tangent_rate(ROWS[i], dv) + ROWS[i].surface)
                 if stuck[i] == 2 and L[i, 1] != 0.0:
                     rest[i] = -ROWS[i].ut - L[i, 0] * min(ROWS[i].un + ROWS[i].target, 0.0) / L[i, 1]
             else:
                 L[i, 1] = slip[i] * L[i, 0]
         velocities(problem, L, FREE, V)
-    share(A, B, ROWS, L, m)
+    share(ROWS, L, m)
     clamped = clamp(ROWS, L, m)
     if clamped > 0:
         velocities(problem, L, FREE, V)
@@ -171,17 +171,17 @@ def polish_free(
 def segment(problem: AnyProblem, L: FloatArray, V: FloatArray, L0: FloatArray, V0: FloatArray) -> float:
     """Go back from (L, V) towards (L0, V0) to the minimum of lam.(u_n - b) + beta.u_t - (1/2) lam^T A lam between them,
     the energy that the frictionless contact problem minimises. Returns the part of the step that remains."""
-    A, B, ROWS, m = problem.A, problem.B, problem.ROWS, problem.m
+    ROWS, m = problem.ROWS, problem.m
     slope, curvature = 0.0, 0.0
     for i in range(m):
         dn = L[i, 0] - L0[i, 0]
         dt = L[i, 1] - L0[i, 1]
         if dn == 0.0 and dt == 0.0:
             continue
-        un = normal_rate(A, B, ROWS, V0, i)
-        ut = tangent_rate(A, B, ROWS, V0, i)
+        un = normal_rate(ROWS[i], V0)
+        ut = tangent_rate(ROWS[i], V0)
         slope += dn * (un - ROWS[i].target) + dt * ut
-        curvature += dn * (normal_rate(A, B, ROWS, V, i) - un) + dt * (tangent_rate(A, B, ROWS, V, i) - ut)
+        curvature += dn * (normal_rate(ROWS[i], V) - un) + dt * (tangent_rate(ROWS[i], V) - ut)
     part = 0.0
     if curvature > 0.0:
         part = max(-slope / curvature, 0.0)

@@ -18,10 +18,10 @@ from .inplace import copy
 @nonallocating
 def sweep_free(problem: Problem, L: FloatArray, V: FloatArray) -> float:
     """One sweep over the contacts; updates L and V, and returns the largest change of a contact's velocity."""
-    A, B, ROWS, IM, II, _, _, m = problem
+    ROWS, IM, II, _, _, m = problem
     worst = 0.0
     for i in range(m):
-        a, b, nx, ny = A[i], B[i], ROWS[i].nx, ROWS[i].ny
+        a, b, nx, ny = ROWS[i].a, ROWS[i].b, ROWS[i].nx, ROWS[i].ny
         na, nb, lam0, beta0 = ROWS[i].arm_na, ROWS[i].arm_nb, L[i, 0], L[i, 1]
         ann, mu = ROWS[i].a_nn, ROWS[i].friction
         dx = V[b, 0] - V[a, 0]
@@ -91,12 +91,12 @@ def sweep_free(problem: Problem, L: FloatArray, V: FloatArray) -> float:
 @nonallocating
 def push_free(problem: Problem, L: FloatArray, factor: float, V: FloatArray) -> None:
     """Add factor M^-1 (G^T lam + T^T beta) to V (k, 3)."""
-    A, B, ROWS, IM, II, _, _, m = problem
+    ROWS, IM, II, _, _, m = problem
     for i in range(m):
         lam = factor * L[i, 0]
         beta = factor * L[i, 1]
         if lam != 0.0 or beta != 0.0:
-            push_contact(A, B, ROWS, IM, II, i, lam, beta, V)
+            push_contact(ROWS[i], IM, II, lam, beta, V)
 
 
 sweep = Choice(sweep_free, sweep_jointed)

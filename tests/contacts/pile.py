@@ -84,7 +84,7 @@ class Pile:
     @property
     def B(self) -> np.ndarray:
         """The second bodies of the contacts."""
-        return self.contacts.B
+        return self.contacts.ROWS["b"]
 
     @property
     def L(self) -> np.ndarray:
@@ -129,14 +129,14 @@ class Pile:
         """Penetration correction, paid from the losses of the step."""
         c, V, n, m = self.contacts, self.v, self.n, self.m
         if m > 0:
-            problem, middle = Problem(c.A, c.B, c.ROWS, self.im, self.ii, self.pose, n, m), moved(self.pose, V, 0.5 * h)
+            problem, middle = Problem(c.ROWS, self.im, self.ii, self.pose, n, m), moved(self.pose, V, 0.5 * h)
             budget = budget_of(c.ROWS, m, float(self.losses.sum()), 0.0)
             lifting(problem, middle, c.VN, self.acc, h, self.extent, budget, c.JUMP)
 
     def carried(self, vn: np.ndarray) -> float:
         """External work of the contacts, with velocities `vn` after the step."""
         c = self.contacts
-        return float(carried(c.A, c.B, c.ROWS, c.L, self.v, vn, self.im, self.ii, self.m))
+        return float(carried(c.ROWS, c.L, self.v, vn, self.im, self.ii, self.m))
 
     def forces(self, h: float, vn: np.ndarray) -> float:
         """Work of the acceleration over the step."""

@@ -24,28 +24,29 @@ def wedged(seed: int, unit: float) -> tuple[Problem, np.ndarray]:
     pose = np.array([[0.0, 0.3, 0.0], [0.0, 1.2, 0.0], [0.0, -1.0, 0.0]]) * (unit, unit, 1.0)
     inverse, moments = np.array([1.0, 1e-4, 0.0]), np.array([6.0, 6e-4, 0.0]) / unit**2
     tilt = rng.uniform(-0.5, 0.5)
-    ROWS, A, B = rows(Row, 4), np.array([0, 0, 0, 0]), np.array([2, 2, 1, 1])
+    ROWS = rows(Row, 4)
     ends = np.sort(rng.uniform(-0.5, 0.5, (2, 2)), axis=1)
     for i in range(4):
         turn, x = (np.pi, ends[0, i]) if i < 2 else (tilt, ends[1, i - 2])
         row = ROWS[i]
-        row.nx, row.ny, row.friction, row.wake = np.sin(turn), np.cos(turn), MU, np.inf
+        row.a, row.b, row.nx, row.ny = 0, 2 if i < 2 else 1, np.sin(turn), np.cos(turn)
+        row.friction, row.wake = MU, np.inf
         point = (x * unit, 0.0) if i < 2 else (x * np.cos(tilt) * unit, (0.6 - x * np.sin(tilt)) * unit)
-        place_row(A, B, ROWS, i, *point, pose, inverse, moments)
+        place_row(row, *point, pose, inverse, moments)
     V = rng.normal(size=(3, 3)) * (unit, unit, 1.0)
     V[1, 1], V[2] = -3.0 * unit, 0.0
-    problem = Problem(A, B, ROWS, inverse, moments, pose, 2, 4)
-    rates(A, B, ROWS, V, 4)
+    problem = Problem(ROWS, inverse, moments, pose, 2, 4)
+    rates(ROWS, V, 4)
     return problem, V
 
 
 def off(problem: Problem, L: np.ndarray, V: np.ndarray) -> float:
     """By how much contacts close, pull, or exceed the limit of friction: a velocity."""
-    A, B, ROWS, m = problem.A, problem.B, problem.ROWS, problem.m
+    ROWS, m = problem.ROWS, problem.m
     worst = 0.0
     for i in range(m):
         (lam, beta), a_nn = L[i], ROWS[i].a_nn
-        un = normal_rate(A, B, ROWS, V, i) - ROWS[i].target
+        un = normal_rate(ROWS[i], V) - ROWS[i].target
         worst = max(worst, -un, -lam * a_nn, (abs(beta) - MU * lam) * a_nn, abs(un) if lam > 0.0 else 0.0)
     return float(worst)
 

@@ -22,13 +22,12 @@ def test_an_error_of_the_response_is_no_work_from_outside(error: float, elastic:
     """A body of mass 2 hits a wall at speed 3; joints are to answer by (1 + error) of the velocity."""
     scene = ep.EECA(build("gas", count=2).space).event_loop.scene
     rows, out = zeros(1, Row.TYPE), zeros(1, SOLVED)
-    rows[0].nx = rows[0].elasticity = 1.0
+    rows[0].a, rows[0].nx, rows[0].elasticity = 1, 1.0, 1.0
     impulse = 2.0 * 3.0 * (2.0 if elastic else 1.0)
     before = np.array([[0.0, 0.0, 0.0], [-3.0, 0.0, 0.0]])[::-1].copy()
     after = before.copy()
     after[0, 0] += (1.0 + error) * impulse / 2.0
-    mobility, ends = np.array([0.5, 0.0]), (np.array([1]), np.array([0]))
-    block = Block(before, after, mobility, np.zeros(2), *ends, rows, np.zeros((1, 2)), np.zeros(1, np.int64))
+    block = Block(before, after, np.array([0.5, 0.0]), np.zeros(2), rows, np.zeros((1, 2)))
     impulses = np.array([[impulse, 0.0]])
     settle_energy(scene, block, 1, impulses, before, before, False, 0.0, elastic, out)
     left = 0.5 * 2.0 * after[0, 0] ** 2
@@ -76,13 +75,10 @@ def test_a_small_impact_on_what_moves_fast_is_not_round_off(turn: float) -> None
     scene = ep.EECA(build("gas", count=2).space).event_loop.scene
     rows, out = zeros(1, Row.TYPE), zeros(1, SOLVED)
     normal, along = np.array([math.cos(turn), math.sin(turn)]), np.array([-math.sin(turn), math.cos(turn)])
-    rows[0].nx, rows[0].ny, rows[0].elasticity = normal[0], normal[1], 1.0
+    rows[0].a, rows[0].nx, rows[0].ny, rows[0].elasticity = 1, normal[0], normal[1], 1.0
     before, after = np.zeros((2, 3)), np.zeros((2, 3))
     before[0, :2], after[0, :2] = along - 1e-9 * normal, along + 1e-9 * normal
-    block = Block(
-        before, after, np.array([0.5, 0.0]), np.array([0.5, 0.0]), np.array([1]), np.array([0]), rows,
-        np.zeros((1, 2)), np.zeros(1, np.int64),
-    )  # fmt: skip
+    block = Block(before, after, np.array([0.5, 0.0]), np.array([0.5, 0.0]), rows, np.zeros((1, 2)))
     impulses = np.array([[4e-9, 0.0]])
     settle_energy(scene, block, 1, impulses, before, before.copy(), False, 0.0, True, out)
     assert after[0, :2] @ normal == pytest.approx(1e-9, rel=1e-6)

@@ -64,7 +64,8 @@ def test_the_next_interval_is_as_long_as_a_way_of_second_order_takes(approach: f
     )  # fmt: skip
     end = isle.POSE - [[0.0, 10.0 * room, 0.0], [0.0, 0.0, 0.0]]
     rows = zeros(1, ROW)
-    far = deep_at_end(loop.scene, isle, end, np.array([0]), np.array([1]), rows, np.array([2]), 1, h, 0)
+    rows[0].b, rows[0].key = 1, 2
+    far = deep_at_end(loop.scene, isle, end, rows, 1, h, 0)
     s, u = h / far, approach * 10.0 * room / h
     assert u * s + (10.0 * room - u * h) * (s / h) ** 2 == pytest.approx(room, rel=1e-9)
 
@@ -88,6 +89,6 @@ def test_an_interval_in_which_a_rod_goes_through_a_wall_is_too_long(way: float, 
         ACC=np.zeros((2, 3)), EXTENT=np.zeros(2), FELT=np.zeros(2), PAIRS=np.zeros((1, 4), np.int64),
     )  # fmt: skip
     rows, after = zeros(1, ROW), np.array([[0.0, -2.0 * way * unit / h, 0.0], [0.0, 0.0, 0.0]])
-    rows[0].ny = -1.0
-    far = closes_too_far(loop.scene, isle, np.array([0]), np.array([1]), rows, np.array([2]), after, 1, h)
+    rows[0].b, rows[0].key, rows[0].ny = 1, 2, -1.0
+    far = closes_too_far(loop.scene, isle, rows, after, 1, h)
     assert far > INTERVAL_RETRY

@@ -28,20 +28,13 @@ def test_what_joints_guide_on_a_line_does_not_stick_by_impulses_without_bound(
     without friction, no more than 1 / (1 - mu |A_nt| / A_nn) times as much with it."""
     rows, d = zeros(1, ROW), (math.sin(slope), math.cos(slope))  # along n = (1, 0) and t = (0, 1)
     row = rows[0]
-    row.nx, row.k_n, row.k_t, row.friction = 1.0, mass, mass, 0.5 * d[0] / d[1]
+    row.a, row.nx, row.k_n, row.k_t, row.friction = 1, 1.0, mass, mass, 0.5 * d[0] / d[1]
     N, T = np.zeros((1, 3)), np.zeros((1, 3))
     N[0, :2] = d[0] * d[0] / mass, d[0] * d[1] / mass
     T[0, :2] = d[1] * d[0] / mass, (d[1] * d[1] + error) / mass
     one, none = np.array([0]), np.zeros(0, np.int64)
     C = Columns(np.array([0, 1]), one, N, T, np.zeros(1, np.int64), np.zeros(1))
-    weigh(
-        Groups(np.array([0, -1]), np.array([0, 1]), one, one, none, np.array([STRUT_BETWEEN])),
-        C,
-        np.array([1]),
-        one,
-        rows,
-        1,
-    )
+    weigh(Groups(np.array([0, -1]), np.array([0, 1]), one, one, none, np.array([STRUT_BETWEEN])), C, rows, 1)
     assert C.OUT[0] == 0
     assert row.a_nn == pytest.approx(d[0] ** 2 / mass, rel=1e-12)
     assert math.isnan(row.w_nn) == (abs(error) < STRUT_BETWEEN)

@@ -72,9 +72,9 @@ def test_columns_answer_as_the_last_motion_did() -> None:
     contacts, bodies = make_contacts(2, 3), np.zeros((3, 3))
     mean, before = rng.normal(size=(3, 3)), rng.normal(size=(3, 3))
     motion = Motion(bodies, mean, bodies, bodies, bodies[:, :2], bodies)
-    P, Q = np.array([0, 1]), np.array([2, 2])
+    contacts.ROWS["a"][:2], contacts.ROWS["b"][:2] = (0, 1), (2, 2)
     isle = Island(*[bodies] * 6, np.ones(3), np.ones(3), np.empty((0, 4), np.int64))
-    interval = Interval(isle, groups, P, Q, contacts.ROWS, motion, columns, 2, 3, 0.0, 1.0)
+    interval = Interval(isle, groups, contacts.ROWS, motion, columns, 2, 3, 0.0, 1.0)
     old, new = rng.normal(size=(2, 2)), rng.normal(size=(2, 2))
     across = np.array([[new[0, 1] - old[0, 1], old[0, 0] - new[0, 0]], [0.0, 0.0]])
 

@@ -261,14 +261,14 @@ def test_taut_is_what_pulls_hard(kind: int, turned: float) -> None:
 def test_arms_are_brought_to_one_point() -> None:
     rng = np.random.default_rng(3)
     ROWS, END = rows(Row, 4), rng.normal(size=(5, 3))
-    P, Q = np.arange(4), np.arange(1, 5)
+    P, Q = ROWS["a"], ROWS["b"] = np.arange(4), np.arange(1, 5)
     angle = rng.uniform(0.0, 6.0, 4)
     ROWS["nx"], ROWS["ny"] = np.cos(angle), np.sin(angle)
     middle = rng.normal(size=(4, 2))
     for arm_n, arm_t, away in (("arm_na", "arm_ta", 0.1), ("arm_nb", "arm_tb", -0.1)):
         put_arms(ROWS, middle + away, arm_n, arm_t)
     before = arms(ROWS, "arm_na", "arm_ta") + arms(ROWS, "arm_nb", "arm_tb")
-    bring_arms(P, Q, ROWS, END, 4)
+    bring_arms(ROWS, END, 4)
     a, b = arms(ROWS, "arm_na", "arm_ta"), arms(ROWS, "arm_nb", "arm_tb")
     assert np.abs(END[P, :2] + a - END[Q, :2] - b).max() < 1e-14
     assert np.abs(a + b - before).max() < 1e-14

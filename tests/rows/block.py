@@ -50,15 +50,13 @@ class Block:
     def solve(self, e: float, mu: float, owed: float = 0.0) -> None:
         """Set `status`, `after`, `impulses`, `loss`, `out`."""
         m, n = len(self.contacts), len(self.pose) - 1
-        self.A, self.B = np.zeros(m, np.int64), np.zeros(m, np.int64)
         self.rows, self.impulses = rows(Row, m), np.zeros((m, 2))
         for i, (a, b, nx, ny, px, py) in enumerate(self.contacts):
-            self.A[i], self.B[i] = a, b
             row = self.rows[i]
-            row.nx, row.ny, row.elasticity, row.friction = nx, ny, e, mu
-            place_row(self.A, self.B, self.rows, i, px, py, self.pose, self.im, self.ii)
+            row.a, row.b, row.nx, row.ny, row.elasticity, row.friction = a, b, nx, ny, e, mu
+            place_row(row, px, py, self.pose, self.im, self.ii)
         self.after, self.out = self.velocity.copy(), rows(Solved, 1)
-        problem = Problem(self.A, self.B, self.rows, self.im, self.ii, self.pose, n, m)
+        problem = Problem(self.rows, self.im, self.ii, self.pose, n, m)
         self.status = solve_block(problem, self.impulses, self.after, owed, False, self.out)
         self.loss = np.array([losses_of(problem, self.impulses, self.after, i) for i in range(m)]).reshape(m, 2)
 

@@ -25,17 +25,16 @@ def test_rates_and_masses_are_those_of_points_of_rigid_bodies(seed: int, unit: f
     angle, surface = rng.uniform(0.0, 6.0), unit * rng.normal()
     n, t = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
     point = unit * rng.normal(size=2)
-    A, B, rows = np.zeros(1, np.int64), np.zeros(1, np.int64), records.rows(Row, 1)
-    A[0], B[0] = 0, 1
+    rows = records.rows(Row, 1)
     row = rows[0]
-    row.nx, row.ny, row.elasticity, row.friction, row.surface = *n, 0.5, 0.3, surface
-    place_row(A, B, rows, 0, *point, pose, im, ii)
+    row.a, row.b, row.nx, row.ny, row.elasticity, row.friction, row.surface = 0, 1, *n, 0.5, 0.3, surface
+    place_row(row, *point, pose, im, ii)
 
     arm = point - pose[:, :2]
     speed = v[:, :2] + v[:, 2:] * np.stack((-arm[:, 1], arm[:, 0]), axis=1)
     apart = speed[1] - speed[0]
-    assert normal_rate(A, B, rows, v, 0) == pytest.approx(n @ apart, rel=1e-12, abs=1e-13 * unit)
-    assert tangent_rate(A, B, rows, v, 0) == pytest.approx(t @ apart + surface, rel=1e-12, abs=1e-13 * unit)
+    assert normal_rate(rows[0], v) == pytest.approx(n @ apart, rel=1e-12, abs=1e-13 * unit)
+    assert tangent_rate(rows[0], v) == pytest.approx(t @ apart + surface, rel=1e-12, abs=1e-13 * unit)
     for direction, column in ((n, "k_n"), (t, "k_t")):
         given = sum(im[i] + ii[i] * cross(arm[i], direction) ** 2 for i in range(2))
         assert rows[column][0] == pytest.approx(1.0 / given, rel=1e-12)

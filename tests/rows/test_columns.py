@@ -30,9 +30,9 @@ def pyramid(seed: int, e: float, mu: float) -> Block:
 
 def problems(block: Block) -> tuple[Problem, JointedProblem]:
     """The problem of a block over inverse masses, and over columns that say the same."""
-    m, n = len(block.A), len(block.pose) - 1
-    free = Problem(block.A, block.B, block.rows.copy(), block.im, block.ii, block.pose, n, m)
-    entries = [(i, q) for i in range(m) for q in (block.A[i], block.B[i]) if block.im[q] > 0.0]
+    m, n = len(block.rows), len(block.pose) - 1
+    free = Problem(block.rows.copy(), block.im, block.ii, block.pose, n, m)
+    entries = [(i, q) for i in range(m) for q in (block.rows[i].a, block.rows[i].b) if block.im[q] > 0.0]
     at = np.searchsorted([i for i, _ in entries], np.arange(m + 1)).astype(np.int64)
     columns = Columns(
         at, np.array([q for _, q in entries], np.int64), np.zeros((len(entries), 3)), np.zeros((len(entries), 3)),
@@ -44,7 +44,7 @@ def problems(block: Block) -> tuple[Problem, JointedProblem]:
             L[i, tangent] = 1.0
             push(free, L, 1.0, V)
             table[w] = V[q]
-    return free, JointedProblem(block.A, block.B, block.rows.copy(), columns, room_for_rows(0, 0), m)
+    return free, JointedProblem(block.rows.copy(), columns, room_for_rows(0, 0), m)
 
 
 @pytest.mark.parametrize("e", [0.0, 0.6, 1.0])
@@ -61,7 +61,7 @@ def test_impacts_are_those_of_free_bodies(e: float, mu: float) -> None:
 
 def test_sweeps_and_matrices_are_those_of_free_bodies() -> None:
     block = pyramid(5, 0.3, 0.4)
-    m, found = len(block.A), []
+    m, found = len(block.rows), []
     for problem in problems(block):
         L, V = np.zeros((m, 2)), block.velocity.copy()
         changes = [sweep(problem, L, V) for _ in range(5)]
@@ -74,7 +74,7 @@ def test_sweeps_and_matrices_are_those_of_free_bodies() -> None:
 
 def test_bodies_are_lifted_as_free_ones() -> None:
     block = pyramid(1, 0.0, 0.0)
-    m, found = len(block.A), []
+    m, found = len(block.rows), []
     gaps = -0.01 * np.random.default_rng(2).uniform(size=m)
     for problem in problems(block):
         D, mu = np.zeros_like(block.pose), np.zeros(m)

@@ -67,10 +67,10 @@ def test_sparse_factor_is_that_of_the_dense_matrix(count: int) -> None:
     m, k = len(block.contacts), n + 1
     held, stuck = np.ones(m, np.int64), (np.arange(m) % 2).astype(np.int64)
     scale = np.sqrt(np.stack((block.im, block.im, block.ii), axis=1))
-    factor, R = make_factor(block.A, block.B, m, n, held, block.pose), 100.0
+    factor, R = make_factor(block.rows, m, n, held, block.pose), 100.0
     place = factor.place
     assert sorted(place) == list(range(n))
-    assemble(block.A, block.B, block.rows, m, n, held, stuck, scale, R, factor)
+    assemble(block.rows, m, n, held, stuck, scale, R, factor)
     dense = np.eye(3 * n)
     for i in range(m):
         for rate, column in ((normal_rate, "k_n"), (tangent_rate, "k_t")):
@@ -80,7 +80,7 @@ def test_sparse_factor_is_that_of_the_dense_matrix(count: int) -> None:
             for p in range(3 * k):
                 unit = np.zeros((k, 3))
                 unit.flat[p] = 1.0
-                j[p] = rate(block.A, block.B, block.rows, unit, i)
+                j[p] = rate(block.rows[i], unit)
             j = (j.reshape(k, 3) * scale)[:n].ravel()
             dense += R * block.rows[column][i] * np.outer(j, j)
     right = np.random.default_rng(0).normal(size=(n, 3))
@@ -105,13 +105,13 @@ def test_direct_solution_needs_no_sweeps(dense: bool, sliding: bool) -> None:
     block.contacts = [(0, 1, *(turn @ [0.0, -1.0]), *(turn @ [x, -0.5])) for x in (-0.5, 0.5)]
     block.solve(0.0, mu)
     block.rows["target"] = 0.0
-    rates(block.A, block.B, block.rows, block.velocity, 2)
+    rates(block.rows, block.velocity, 2)
     free = np.zeros((2, 3))
     free[0, :2] = turn @ [g * h * pull, -g * h]
     # A guess whose active contacts are right: friction on the floor is positive.
     part = mu if sliding else 0.1
     L, V = np.array([[0.03, part * 0.03], [0.03, part * 0.03]]), free.copy()
-    problem = Problem(block.A, block.B, block.rows, block.im, block.ii, block.pose, 1, 2)
+    problem = Problem(block.rows, block.im, block.ii, block.pose, 1, 2)
     velocities(problem, L, free, V)
     if dense:
         reached, _ = newton(problem, L, V, free, 4, 1e-16, False)
@@ -135,10 +135,10 @@ def test_points_of_a_face_share_their_friction_as_their_loads() -> None:
     free = np.array([[0.0, -g_h, 0.0], [0.0, 0.0, 0.0]])
     L = np.array([[0.04, -mu * 0.04], [0.03, 0.6 * mu * 0.03]])
     V = free.copy()
-    problem = Problem(block.A, block.B, block.rows, block.im, block.ii, block.pose, 1, 2)
+    problem = Problem(block.rows, block.im, block.ii, block.pose, 1, 2)
     velocities(problem, L, free, V)
     before, total = V.copy(), L[:, 1].sum()
-    share(block.A, block.B, block.rows, L, 2)
+    share(block.rows, L, 2)
     assert L[:, 1].sum() == pytest.approx(total, rel=1e-15)
     assert L[0, 1] / L[0, 0] == pytest.approx(L[1, 1] / L[1, 0], rel=1e-14)
     velocities(problem, L, free, V)

@@ -28,17 +28,15 @@ class Pile:
         mu: float, start: Floats,
     ) -> None:  # fmt: skip
         self.pose, self.im, self.ii, self.start, self.m = pose, im, ii, start, len(contacts)
-        self.A, self.B = np.zeros(self.m, np.int64), np.zeros(self.m, np.int64)
         self.rows, self.L = rows(Row, self.m), np.zeros((self.m, 2))
         for i, (a, b, nx, ny, x, y) in enumerate(contacts):
-            self.A[i], self.B[i] = a, b
             row = self.rows[i]
-            row.nx, row.ny, row.friction = nx, ny, mu
-            place_row(self.A, self.B, self.rows, i, x, y, pose, im, ii)
+            row.a, row.b, row.nx, row.ny, row.friction = a, b, nx, ny, mu
+            place_row(row, x, y, pose, im, ii)
 
     def solve(self, most: int = 20, nearest: bool = False, tolerance: float = 1e-9) -> bool:
         speed = float(np.abs(self.start).max())
-        problem = Problem(self.A, self.B, self.rows, self.im, self.ii, self.pose, len(self.im) - 1, self.m)
+        problem = Problem(self.rows, self.im, self.ii, self.pose, len(self.im) - 1, self.m)
         self.found, self.factors = equilibrium(
             problem, self.L, self.start, np.ones(len(self.im)), tolerance * speed, most, nearest
         )
@@ -48,7 +46,7 @@ class Pile:
         """Velocities that impulses L leave of the start."""
         V = np.empty_like(self.start)
         free = self.start if start is None else start
-        problem = Problem(self.A, self.B, self.rows, self.im, self.ii, self.pose, len(self.im) - 1, self.m)
+        problem = Problem(self.rows, self.im, self.ii, self.pose, len(self.im) - 1, self.m)
         velocities(problem, np.ascontiguousarray(L), free, V)
         return V
 

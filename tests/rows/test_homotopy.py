@@ -23,7 +23,6 @@ def problem_of(
     """Bodies of unit mass and moment .1 at `places` (k, 2), the last of which does not move, that answer alone; the
     first `rows` of them turn against a motor of bounded torque."""
     m, k = len(pairs), len(places)
-    A, B = (np.array([p[side] for p in pairs]) for side in range(2))
     pose = np.column_stack((places, np.zeros(k)))
     inverse, moments = np.ones(k), np.full(k, 10.0)
     inverse[-1] = moments[-1] = 0.0
@@ -33,10 +32,10 @@ def problem_of(
         np.zeros(m, np.int64), np.zeros(1),
     )  # fmt: skip
     for i in range(m):
-        contacts[i].nx, contacts[i].ny, contacts[i].friction = normals[i, 0], normals[i, 1], mu
-        place_row(A, B, contacts, i, points[i, 0], points[i, 1], pose, inverse, moments)
-        row = contacts[i]
-        for side, (body, sign) in enumerate(((A[i], -1.0), (B[i], 1.0))):
+        row, (row.a, row.b) = contacts[i], pairs[i]
+        row.nx, row.ny, row.friction = normals[i, 0], normals[i, 1], mu
+        place_row(row, points[i, 0], points[i, 1], pose, inverse, moments)
+        for side, (body, sign) in enumerate(((row.a, -1.0), (row.b, 1.0))):
             arms = (row.arm_na, row.arm_ta) if side == 0 else (row.arm_nb, row.arm_tb)
             masses = np.array([inverse[body], inverse[body], moments[body]])
             columns.BODY[2 * i + side] = body
@@ -52,7 +51,7 @@ def problem_of(
         for i in range(rows):
             bounded.ROWS[i].speed, bounded.ROWS[i].low, bounded.ROWS[i].high = 2.0 * (-1.0) ** i, -0.05, 0.08
         weigh_rows(bounded)
-    return JointedProblem(A, B, contacts, columns, bounded, m)
+    return JointedProblem(contacts, columns, bounded, m)
 
 
 def drawn(seed: int, m: int = 6, k: int = 4, rows: int = 0) -> tuple[JointedProblem, Array]:
@@ -70,11 +69,11 @@ def drawn(seed: int, m: int = 6, k: int = 4, rows: int = 0) -> tuple[JointedProb
 
 def off(problem: JointedProblem, L: Array, V: Array) -> float:
     """By how much the laws are broken: a velocity."""
-    A, B, ROWS, _, D, m = problem
+    ROWS, _, D, m = problem
     worst = 0.0
     for i in range(m):
         (lam, beta), row, mu = L[i], ROWS[i], ROWS[i].friction
-        un, ut = normal_rate(A, B, ROWS, V, i) - row.target, tangent_rate(A, B, ROWS, V, i)
+        un, ut = normal_rate(ROWS[i], V) - row.target, tangent_rate(ROWS[i], V)
         worst = max(worst, -un, -lam * row.a_nn, (abs(beta) - mu * lam) * row.a_nn)
         worst = max(worst, abs(un) if lam > 0.0 else 0.0)
         if abs(beta) < mu * lam * (1.0 - 1e-12):
@@ -174,7 +173,7 @@ def matrix(problem: JointedProblem, free: Array) -> tuple[Array, Array, Array]:
     """Velocities per impulse (3, 3) of a normal and two motors, free ones (3,), and room for impulses (3,)."""
 
     def rates(V: Array) -> Array:
-        contact = normal_rate(problem.A, problem.B, problem.ROWS, V, 0) - problem.ROWS[0].target
+        contact = normal_rate(problem.ROWS[0], V) - problem.ROWS[0].target
         return np.array([contact, *(problem.D.ROWS[i].speed + V[i, 2] for i in range(2))])
 
     q, columns = rates(free), []

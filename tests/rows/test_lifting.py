@@ -25,18 +25,17 @@ def row_of_disks(count: int, width: float, unit: float) -> tuple[Problem, NDArra
     block.wall(count - 1, (1.0, 0.0), unit)
     block.contacts += among  # walls come first in a sweep: what is pushed later may go into them
     m = len(block.contacts)
-    A, B, ROWS = np.zeros(m, np.int64), np.zeros(m, np.int64), rows(Row, m)
+    ROWS = rows(Row, m)
     for i, (a, b, nx, ny, px, py) in enumerate(block.contacts):
-        A[i], B[i] = a, b
-        ROWS[i].nx, ROWS[i].ny = nx, ny
-        place_row(A, B, ROWS, i, px, py, block.pose, block.im, block.ii)
+        ROWS[i].a, ROWS[i].b, ROWS[i].nx, ROWS[i].ny = a, b, nx, ny
+        place_row(ROWS[i], px, py, block.pose, block.im, block.ii)
     gaps = np.append((x[0] - unit, width * unit - x[-1] - unit), np.diff(x) - 2.0 * unit)
-    return Problem(A, B, ROWS, block.im, block.ii, block.pose, count, m), gaps
+    return Problem(ROWS, block.im, block.ii, block.pose, count, m), gaps
 
 
 def after(problem: Problem, gaps: NDArray[np.float64], D: NDArray[np.float64]) -> NDArray[np.float64]:
     """Gaps after displacements D."""
-    return np.array([g + normal_rate(problem.A, problem.B, problem.ROWS, D, i) for i, g in enumerate(gaps)])
+    return np.array([g + normal_rate(problem.ROWS[i], D) for i, g in enumerate(gaps)])
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
@@ -57,5 +56,5 @@ def test_disks_without_room_go_no_deeper_into_walls(sweeps: int, unit: float) ->
     D, mu = np.zeros((6, 3)), np.zeros(problem.m)
     assert lift(problem, gaps, mu, D, 1e-13 * unit, sweeps) > 1e-13 * unit
     keep_walls(problem, gaps, mu, D)
-    left, walls = after(problem, gaps, D), problem.B == 5
+    left, walls = after(problem, gaps, D), problem.ROWS["b"] == 5
     assert (left[walls] >= np.minimum(gaps[walls], 0.0) - 1e-12 * unit).all()
