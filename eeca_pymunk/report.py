@@ -179,10 +179,7 @@ class StepReport:
 
     def __reduce__(self) -> tuple[type[StepReport], tuple[object, ...]]:
         # The function that makes the arrays refers to the stepper: a copy has the arrays instead.
-        return StepReport, (
-            self.time, self._made(), self.iterations, self.lock, self.converged, self._book,
-            self.unmet,
-        )  # fmt: skip
+        return StepReport, (self.time, self._made(), self.iterations, self.lock, self.converged, self._book, self.unmet)
 
 
 @dataclass(frozen=True)

@@ -88,9 +88,7 @@ def thin(link: Link, VERTEX: FloatArray) -> bool:
 
 
 @nonallocating
-def note_meeting(
-    LINK: Rows[Link], VERTEX: FloatArray, CORNER: Rows[Corner], s: int, e: int, j: int
-) -> None:  # fmt: skip
+def note_meeting(LINK: Rows[Link], VERTEX: FloatArray, CORNER: Rows[Corner], s: int, e: int, j: int) -> None:
     """Note whether segment j passes or ends at end e of segment s."""
     mine, its = LINK[s].first, LINK[j].first
     cx, cy, px, py = VERTEX[mine + e, 0], VERTEX[mine + e, 1], VERTEX[its, 0], VERTEX[its, 1]

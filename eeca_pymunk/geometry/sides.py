@@ -159,9 +159,7 @@ def side_of(A: Scene, a: int, b: int) -> tuple[float, float]:
 
 
 @nonallocating
-def corner_of(
-    A: Scene, W: FloatArray, w: int, o: int, x: float, y: float, deep: float
-) -> tuple[int, float, float]:  # fmt: skip
+def corner_of(A: Scene, W: FloatArray, w: int, o: int, x: float, y: float, deep: float) -> tuple[int, float, float]:
     """The corner of segment w in which shape o lies, whose nearest point of w is (x, y): the end of w there, -1 if
     there is none, and the normal (2) of the inner side of w. Extends the placed segment W by `deep` beyond that end."""
     ex, ey = W[1, 0] - W[0, 0], W[1, 1] - W[0, 1]

@@ -59,9 +59,6 @@ def close(A: Scene, WALK: IntArray) -> None:
             LOG[n].gap = math.sqrt(dx * dx + dy * dy) - BODY[min(a, b)].extent - BODY[max(a, b)].extent
             continue
         i, j = A.LINK[a].owner, A.LINK[b].owner
-        LOG[n].gap = gap_at(
-            A, a, BEGAN[i, 0], BEGAN[i, 1], BEGAN[i, 2],
-            b, BEGAN[j, 0], BEGAN[j, 1], BEGAN[j, 2],
-        )[0]  # fmt: skip
+        LOG[n].gap = gap_at(A, a, BEGAN[i, 0], BEGAN[i, 1], BEGAN[i, 2], b, BEGAN[j, 0], BEGAN[j, 1], BEGAN[j, 2])[0]
     if not even:
         store_rest(A)

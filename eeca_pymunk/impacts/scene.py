@@ -207,9 +207,7 @@ class EventLoop(Remembering):
         """(m,) impulses of the last step, a copy."""
         return from_bytes(Impulse, [self.logged()])
 
-    def details(
-        self, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray
-    ) -> Callable[[], Details]:  # fmt: skip
+    def details(self, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray) -> Callable[[], Details]:
         """A function that makes the arrays of the report of the last step of length dt; `owner` (k,): index in `bodies`
         of each shape's body."""
         return partial(_details, self.logged(), dt, bodies, owner)

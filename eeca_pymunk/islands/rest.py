@@ -52,9 +52,7 @@ def postpone_test(A: Scene, MINE: IntArray, n: int) -> None:
 
 
 @nonallocating
-def rest_threshold(
-    A: Scene, root: int, MINE: IntArray, n: int, with_supports: int, lossy: bool, t: float
-) -> float:  # fmt: skip
+def rest_threshold(A: Scene, root: int, MINE: IntArray, n: int, with_supports: int, lossy: bool, t: float) -> float:
     """Speed relative to |a| dt below which an island may be put to rest at instant t by a test for static forces; 0 if
     it is not tested. A test postpones the next one.
 

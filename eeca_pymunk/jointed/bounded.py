@@ -93,9 +93,7 @@ def list_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float, V: FloatArray) 
 
 
 @nonallocating
-def fill_rows(
-    J: Joints, groups: Groups, B: Bounded, g: int, first: int, INDEX: IntArray, PUSH: FloatArray
-) -> None:  # fmt: skip
+def fill_rows(J: Joints, groups: Groups, B: Bounded, g: int, first: int, INDEX: IntArray, PUSH: FloatArray) -> None:
     """The columns of the rows from `first` on, of group g, whose component is ready to answer."""
     s = groups.COMPONENT[g]
     for i in range(first, B.USED[0]):

@@ -62,9 +62,7 @@ def weigh(part: int, last: int, place: int) -> float:
 
 
 @inlined
-def extrapolate(
-    past: FloatArray, c: int, w0: float, w1: float, w2: float, w3: float, w4: float, w5: float
-) -> float:  # fmt: skip
+def extrapolate(past: FloatArray, c: int, w0: float, w1: float, w2: float, w3: float, w4: float, w5: float) -> float:
     """What follows the six values past[c] of the ring, by the weights of their places."""
     old = w0 * past[c, 0] + w1 * past[c, 1] + w2 * past[c, 2]
     return float(old + (w3 * past[c, 3] + w4 * past[c, 4] + w5 * past[c, 5]))

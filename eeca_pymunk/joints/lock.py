@@ -36,9 +36,7 @@ def centre_of(local: Rows[BodyStep], bodies: int) -> tuple[bool, float, float, f
 
 
 @nonallocating
-def spin_about(
-    local: Rows[BodyStep], bodies: int, x: float, y: float, vx: float, vy: float
-) -> tuple[float, float]:  # fmt: skip
+def spin_about(local: Rows[BodyStep], bodies: int, x: float, y: float, vx: float, vy: float) -> tuple[float, float]:
     """The spin that a rigid body with the angular momentum of the component about its centre of mass (x, y), of
     velocity (vx, vy), would have, and its moment of inertia; 0 if there is none."""
     turning, inertia = 0.0, 0.0

@@ -192,9 +192,7 @@ class Joints(NamedTuple):
 
 
 # What steps change.
-OF_JOINTS = (
-    "JOINT", "HINGE", "LOCAL", "STIFF", "PROGRESS", "PARTS", "PART", "PIVOTS", "KEPT", "STEPPED", "TALLY",
-)  # fmt: skip
+OF_JOINTS = ("JOINT", "HINGE", "LOCAL", "STIFF", "PROGRESS", "PARTS", "PART", "PIVOTS", "KEPT", "STEPPED", "TALLY")
 
 joints_of = Opener(Joints)
 

@@ -96,9 +96,7 @@ def substitute(matrix: FloatArray, size: int, band: int, right: FloatArray, at: 
 
 
 @inlined
-def freeze_end(
-    hinge: Rows[JointStep], k: int, end: int, r: int, slopes: bool, x: float, y: float, z: float
-) -> None:  # fmt: skip
+def freeze_end(hinge: Rows[JointStep], k: int, end: int, r: int, slopes: bool, x: float, y: float, z: float) -> None:
     """Freeze the entries of row r of joint k for its body at one end, J and G (`slopes`, else J for both): scaled by
     the row's scale and the body's roots x, y, z."""
     scale = hinge[k].scale[r]

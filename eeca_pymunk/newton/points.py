@@ -106,9 +106,7 @@ def point_rows(
 
 
 @nonallocating
-def groove_rows(
-    side: int, joint: Joint, hinge: JointStep, a: BodyStep, b: BodyStep, stiff: FloatArray,
-) -> int:  # fmt: skip
+def groove_rows(side: int, joint: Joint, hinge: JointStep, a: BodyStep, b: BodyStep, stiff: FloatArray) -> int:
     """`joint_rows` of a groove: row 0 keeps the point of b on the line of the groove, row 1, which acts where the joint
     stands on an end, inside that end (`side`); `measure` is the place of the point along the groove.
 

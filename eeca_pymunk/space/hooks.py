@@ -36,9 +36,7 @@ class Hooks:
         some: whether any body has one.  late: calls that wait for `after`.
     """
 
-    def __init__(
-        self, space: pymunk.Space, bodies: Bodies, joints: JointRows | None, steered: int, moved: int
-    ) -> None:  # fmt: skip
+    def __init__(self, space: pymunk.Space, bodies: Bodies, joints: JointRows | None, steered: int, moved: int) -> None:
         self.space, self.bodies, self.joints = space, bodies, joints
         self.steered, self.moved, self.some = steered, moved, steered + moved > 0
         self.late: list[Callable[[], None]] = []

@@ -89,9 +89,7 @@ def _surface(shape: pymunk.Shape) -> tuple[tuple[float, ...], tuple[int, int, in
     return numbers, (group & _WORD, categories & _WORD, mask & _WORD)
 
 
-def records_of(
-    space: pymunk.Space, bodies: Bodies, known: Records, stale: Collection[Any]
-) -> tuple[Records, int]:  # fmt: skip
+def records_of(space: pymunk.Space, bodies: Bodies, known: Records, stale: Collection[Any]) -> tuple[Records, int]:
     """The records of all shapes, None for sensors, and how many shapes were read: `known` records of those that are not
     `stale` are used again.
 
@@ -186,9 +184,7 @@ class Packed:
         found: list[int] = self._layout.integers("MEASURED").tolist()
         return found
 
-    def write_again(
-        self, records: Records, edited: Mapping[pymunk.Shape, Record], moved: bool
-    ) -> bool:  # fmt: skip
+    def write_again(self, records: Records, edited: Mapping[pymunk.Shape, Record], moved: bool) -> bool:
         """Write the rows again, in place, after changes of numbers, filters, masses, and, if `moved`, poses of static
         bodies; False, with invalid rows, if the rows would be others. records: all; `edited` ones have changed."""
         vertices = self.LINK["vertices"].tobytes() if moved else b""

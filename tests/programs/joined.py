@@ -14,9 +14,7 @@ HOLDS = 1e-8  # of the component (`reach`), of joints in a step that has converg
 OFF = 1e-3  # of the length of the scene, whatever converges
 BOUND = 1e-9  # over max_force dt
 ANCHORS = "anchor_a", "anchor_b", "groove_a", "groove_b"
-KINDS = (
-    "pivot", "pin", "slide", "groove", "spring", "rotary spring", "rotary limit", "ratchet", "gear", "motor",
-)  # fmt: skip
+KINDS = ("pivot", "pin", "slide", "groove", "spring", "rotary spring", "rotary limit", "ratchet", "gear", "motor")
 
 
 def join(R: Random, a: pymunk.Body, b: pymunk.Body, length: float, mass: float) -> pymunk.Constraint:
