@@ -142,10 +142,7 @@ class HookedStepper(PackedSpace):
         except BaseException:
             self._undo(world, world.start)
             raise
-        self.time += dt
-        report = self._make_report(world, dt, status, outcome, lost)
-        world.show_joints()
-        return world, report
+        return world, self._finish(world, dt, status, outcome, lost)
 
     def _reread_awoken(self, world: World) -> World:
         """The world anew, where pymunk's step has woken bodies in a rehearsal, as it does on kinematic bodies; with
@@ -195,8 +192,17 @@ class HookedStepper(PackedSpace):
             self._raise_failure(world, dt, ENERGY)
         return outcome
 
-    def _make_report(self, world: World, dt: float, status: int, outcome: Outcome, lost: float = 0.0) -> StepReport:
-        """The report of the step with this outcome; `lost`: energy taken by damping 0 at the end."""
+    def _finish(self, world: World, dt: float, status: int, outcome: Outcome, lost: float = 0.0) -> StepReport:
+        """Once the end of the step is in the space: its time, its report, and the joints as the program sees them.
+        `lost`: energy taken by damping 0 at the end."""
+        self.time += dt
+        report = self._report(world, dt, status, outcome, lost)
+        if not world.plain:
+            world.show_joints()
+        return report
+
+    def _report(self, world: World, dt: float, status: int, outcome: Outcome, lost: float) -> StepReport:
+        """The report of the step with this outcome."""
         book, lock, converged, iterations = outcome
         if lost and book is not None:
             book[DAMPED] += lost

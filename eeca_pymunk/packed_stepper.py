@@ -8,7 +8,7 @@
 | repeat the step with sleeping bodies that were touched | `_repeat_awake` |
 | take the ledger's numbers | `_outcome` |
 | write the states, and update pymunk's shapes | `write_end` |
-| make the report | `_make_report` |
+| make the report | `_finish` |
 | call post-step callbacks | `Sync.call_back` |
 
 Steps that call functions of the program have their own method, `HookedStepper._hooked_step`.
@@ -148,9 +148,7 @@ class PackedStepper(HookedStepper):
         if status < 0:
             self._undo(world, world.state)
             return self._hooked_step(self._update_world(anew=True), dt)
-        self.time += dt
-        report = self._make_report(world, dt, status, outcome)
-        world.show_joints()
+        report = self._finish(world, dt, status, outcome)
         self._sync.finish_rehearsal(dt, left_out)
         return report
 
@@ -182,10 +180,7 @@ class PackedStepper(HookedStepper):
         except BaseException:
             self._undo(world, world.state)
             raise
-        self.time += dt
-        report = self._make_report(world, dt, status, outcome)
-        if not world.plain:
-            world.show_joints()
+        report = self._finish(world, dt, status, outcome)
         if self.sync:
             self._sync.call_back()
         return report

@@ -45,7 +45,7 @@ FLOORS = (
     "eeca baselines",
     "events",
     "recording rolling datasets",
-    "build recorder warming sweep",
+    "build recorder sweep",
     "rollouts",
     "render",
     "__init__ __main__",

@@ -12,7 +12,7 @@ from ..islands.accounting import flag_pairs
 from ..islands.at_rest import stays_at_rest, unchanged
 from ..layout import ANEW, BODY_ROW, NUDGED, SPECIAL, STEERED
 from ..model.bodies import AT_REST, AWAKE, CHANGED, MOVED, UNMOVED
-from ..model.parameters.rest import REST_RETRY
+from ..model.parameters.events import BUSY_STEPS
 from ..model.scene import Scene
 
 
@@ -66,7 +66,7 @@ def begin(A: Scene, WALK: IntArray) -> None:
     COUNT.waiting, COUNT.phase = 0, 0
     n, last = BODY.shape[0] - 1, PAR.last
     # After so many steps without islands no body is at rest, and every `busy` has become 0: both are left out below.
-    quiet = COUNT.quiet > REST_RETRY
+    quiet = COUNT.quiet > BUSY_STEPS
     # Two bodies without mobility are needed to squeeze others; all static shapes together count as one.
     COUNT.closing, fixed = 0, 1 if A.SHAPE.shape[0] > A.LIST.shape[0] else 0
     pulled, even, may_support = 0.0, True, A.RULE.shape[0] == 0 and not quiet

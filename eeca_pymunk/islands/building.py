@@ -15,9 +15,8 @@ from ..geometry.flight import norm
 from ..geometry.sides import half_width, smaller
 from ..model.bodies import AT_REST
 from ..model.contacts import ENDED, LASTED
-from ..model.parameters.events import RESOLUTION, WORK_JOINTED
+from ..model.parameters.events import BUSY_STEPS, RESOLUTION, WORK_JOINTED
 from ..model.parameters.intervals import INTERVAL_DEPTH_WIDTH, TOUCH
-from ..model.parameters.rest import REST_RETRY
 from ..model.scene import Scene
 from ..model.step import DONE, PUSHES_FULL
 from ..pairs.lists import far_apart
@@ -206,7 +205,7 @@ def most_hits(A: Scene, a: int, b: int) -> int:
 @kernel
 def passed_over(A: Scene, a: int, b: int, t: float) -> bool:
     """Whether an impact of shapes a and b at instant t on an island is passed over, since the budget of the island is
-    spent and they would not get deep within the step. Bodies of a lossy one then are `busy` for REST_RETRY steps."""
+    spent and they would not get deep within the step. Bodies of a lossy one then are `busy`."""
     STATE = A.STATE
     i, j = A.LINK[a].owner, A.LINK[b].owner
     hits, most, lossy = hits_of(A, a, b), most_hits(A, a, b), law(A, a, b)[0] < 1.0
@@ -226,8 +225,8 @@ def passed_over(A: Scene, a: int, b: int, t: float) -> bool:
         MINE = np.empty(A.BODY.shape[0], np.int64)
         for k in (i, j):
             if A.BODY[k].inv_mass > 0.0:
-                A.MEMBER[k].busy = REST_RETRY
+                A.MEMBER[k].busy = BUSY_STEPS
             if STATE[k].island >= 0:
                 for q in range(members(A, STATE[k].island, MINE)):
-                    A.MEMBER[MINE[q]].busy = REST_RETRY
+                    A.MEMBER[MINE[q]].busy = BUSY_STEPS
     return True

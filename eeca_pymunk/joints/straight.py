@@ -37,14 +37,20 @@ def reach(joint: Joint) -> float:
 
 
 @nonallocating
-def anchor(bodies: Rows[Body], joint: Joint, end: int) -> tuple[float, float]:
-    """The point of a joint on its body a (end 0) or b (1)."""
-    i = joint.body[end]
+def anchor_at(joint: Joint, end: int, x: float, y: float, angle: float) -> tuple[float, float]:
+    """The point of a joint on its body a (end 0) or b (1), which is at this pose."""
     rx, ry = joint.anchor_a[0], joint.anchor_a[1]
     if end == 1:
         rx, ry = joint.anchor_b[0], joint.anchor_b[1]
-    c, s = math.cos(bodies[i].angle), math.sin(bodies[i].angle)
-    return bodies[i].x + c * rx - s * ry, bodies[i].y + s * rx + c * ry
+    c, s = math.cos(angle), math.sin(angle)
+    return x + c * rx - s * ry, y + s * rx + c * ry
+
+
+@nonallocating
+def anchor(bodies: Rows[Body], joint: Joint, end: int) -> tuple[float, float]:
+    """`anchor_at` the pose of that body."""
+    body = bodies[joint.body[end]]
+    return anchor_at(joint, end, body.x, body.y, body.angle)
 
 
 @nonallocating

@@ -9,8 +9,6 @@ forces, contacts and what is welded to it, and L that of their moments about the
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from ..arrays import IntArray
@@ -19,7 +17,7 @@ from ..compiled.records import Rows
 from ..model.bodies import Body
 from ..model.joints import FREE, GEAR, PIVOT, WELDED, Joint, Joints, Pinned
 from ..model.parameters.joints import STRAIGHT_CHAIN
-from .straight import anchor
+from .straight import anchor, anchor_at
 
 
 @nonallocating
@@ -103,12 +101,7 @@ def pinned_row(PINNED: Rows[Pinned], body: int) -> int:
 @nonallocating
 def pivot_place(J: Joints, pinned: Pinned) -> tuple[float, float]:
     """The place of a welded body's pivot."""
-    pivot = J.JOINT[pinned.weld[0] // 2]
-    rx, ry = pivot.anchor_a[0], pivot.anchor_a[1]
-    if pinned.weld[0] % 2 == 1:
-        rx, ry = pivot.anchor_b[0], pivot.anchor_b[1]
-    c, s = math.cos(pinned.angle), math.sin(pinned.angle)
-    return pinned.x + c * rx - s * ry, pinned.y + s * rx + c * ry
+    return anchor_at(J.JOINT[pinned.weld[0] // 2], pinned.weld[0] % 2, pinned.x, pinned.y, pinned.angle)
 
 
 @nonallocating

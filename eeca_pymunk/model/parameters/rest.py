@@ -18,9 +18,7 @@ STATICS_STEP = accuracy(0.99, "of the distance to the boundary", "Step of the in
 STATICS_GAP = accuracy(1e-08, "of the first complementarity",
     "Complementarity at which the forces are the nearest to the guess.")
 REST_RETRY = work(32, "steps",
-    "Steps from one test for rest, or an impact that was passed over, to the next test. Larger: fewer "
-    "factorisations, fewer single impacts of piles that settle, later rest. With 8, falling piles cost a tenth more, "
-    "and three times as many of their steps pass over impacts.")
+    "Steps from one test for rest to the next. Larger: fewer factorisations, later rest.")
 SUPPORT_FACTORS = work(4, "factorisations",
     "Factorisations to find the forces by which an island at rest supports moving bodies.")
 SUPPORT_ROUNDS = work(8, "rounds", "Rounds in which support forces propagate to the islands below.")
