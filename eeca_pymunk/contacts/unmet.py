@@ -6,6 +6,7 @@ Work is counted in *looks*, about the time of one look at the gap of two shapes.
 from __future__ import annotations
 
 from ..compiled import nonallocating
+from ..model.contacts import Solved
 from ..model.parameters.events import BODY_LOOKS, DIRECT_LOOKS, EVENT_LOOKS, PAIR_LOOKS, SWEEP_LOOKS
 from ..model.parameters.impulses import DENSE_CONTACTS
 from ..model.scene import Scene
@@ -29,3 +30,17 @@ def spend(A: Scene, bodies: int, pairs: int, contacts: int, sweeps: int, direct:
     few = min(contacts, DENSE_CONTACTS)
     one = BODY_LOOKS * bodies + PAIR_LOOKS * pairs + contacts * (SWEEP_LOOKS * sweeps + DIRECT_LOOKS * few * direct)
     A.COUNT.work += EVENT_LOOKS + int(one)
+
+
+@nonallocating
+def note_lock(A: Scene, out: Solved) -> None:
+    """Report the scale of an energy lock if it is the farthest from 1 in this step."""
+    if abs(out.lock - 1.0) > abs(A.PAR.lock - 1.0):
+        A.PAR.lock = out.lock
+
+
+@nonallocating
+def count_solve(A: Scene, n: int, p: int, m: int, out: Solved) -> None:
+    """Count the solve of an island of n bodies with m contacts of p pairs, and its work."""
+    A.COUNT.solved += n
+    spend(A, n, 2 * p, m, out.sweeps, out.direct)

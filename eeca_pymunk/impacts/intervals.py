@@ -7,13 +7,13 @@ from ..compiled import kernel, nonallocating
 from ..contacts.unmet import note_unmet
 from ..islands.accounting import close_interval
 from ..islands.building import build_islands
-from ..islands.intervals import lift_here, solve
+from ..islands.intervals import begin_interval, lift_here
 from ..islands.local import contacts_of
 from ..jointed.ends import shorten, under_way
 from ..jointed.lifting import lift_here as lift_joined
 from ..jointed.meet import end_before
 from ..jointed.partners import carry
-from ..jointed.solve import begin_interval
+from ..jointed.solve import begin_jointed
 from ..model.bodies import AT_REST
 from ..model.joints import Joints
 from ..model.parameters.joints import CUT_WORK
@@ -29,8 +29,8 @@ def start_interval(A: Scene, J: Joints, root: int, t: float) -> int:
     than PAR.instant. Returns DONE; or, with everything as it was, PUSHES_FULL (more memory is needed), or SPENT (the
     budget of the step for joints is spent)."""
     if A.MEMBER[root].jointed == 0:
-        return solve(A, root, t)
-    return begin_interval(A, J, root, t, A.PAR.dt - t) if A.PAR.dt - t > A.PAR.instant else DONE
+        return begin_interval(A, root, t)
+    return begin_jointed(A, J, root, t, A.PAR.dt - t) if A.PAR.dt - t > A.PAR.instant else DONE
 
 
 @kernel

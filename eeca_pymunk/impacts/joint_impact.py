@@ -69,7 +69,7 @@ def list_apart(A: Scene, i: int, j: int) -> int:
 def list_ended(A: Scene, n: int) -> int:
     """Add to the n bodies in A.BLOCK those of all other islands whose intervals have ended, as these were brought to
     the instant of an impact: they begin new ones, though they may not touch. How many bodies there are then."""
-    set_places(A, A.BLOCK, n)
+    set_places(A, A.BLOCK[:n])
     for root in range(A.BODY.shape[0] - 1):
         if A.STATE[root].island != root or A.MEMBER[root].open > 0 or A.MEMBER[root].rest == AT_REST:
             continue
@@ -79,7 +79,7 @@ def list_ended(A: Scene, n: int) -> int:
                 A.BLOCK[n], A.PLACE[i] = i, n
                 n += 1
             i = A.MEMBER[i].following
-    clear_places(A, A.BLOCK, n)
+    clear_places(A, A.BLOCK[:n])
     return n
 
 
@@ -138,7 +138,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
                 end_before(A, J, root, t, False, False)
                 again = True
         if again:
-            clear_places(A, A.BLOCK, n)
+            clear_places(A, A.BLOCK[:n])
             n, m, PAIRS = gather(A, a, b, t)
     rest = comes_to_rest(A, a, b, t)
     owed, _ = energy_owed(A, n)

@@ -12,7 +12,7 @@ from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, zeros
 from ..contacts.memory import shapes_of
 from ..contacts.single import note
-from ..contacts.unmet import note_unmet, spend
+from ..contacts.unmet import note_lock, note_unmet, spend
 from ..contacts.works import carried
 from ..islands.building import spread
 from ..islands.local import clear_places
@@ -33,8 +33,7 @@ def finish(A: Scene, block: Block, n: int, m: int, L: FloatArray, OUT: Rows[Solv
     if status != CONVERGED:
         a, b = shapes_of(A, ROWS[0])
         note_unmet(A, IMPACT, a, b, OUT[0].residual, OUT[0].tolerance)
-    if abs(OUT[0].lock - 1.0) > abs(A.PAR.lock - 1.0):
-        A.PAR.lock = OUT[0].lock
+    note_lock(A, OUT[0])
     A.PAR.restitution += OUT[0].restitution
     A.PAR.frictional += OUT[0].friction
     A.PAR.external += carried(ROWS, L, V, V, block.IM, block.II, len(ROWS))
@@ -43,7 +42,7 @@ def finish(A: Scene, block: Block, n: int, m: int, L: FloatArray, OUT: Rows[Solv
         BODY[i].vx, BODY[i].vy, BODY[i].spin = V[q, 0], V[q, 1], V[q, 2]
         A.STATE[i].version += 1
         A.STATE[i].events += 1
-    clear_places(A, A.BLOCK, n)
+    clear_places(A, A.BLOCK[:n])
     for z in range(len(ROWS)):
         if L[z, 0] > 0.0 and COUNT.logged < A.LOG.shape[0]:
             a, b = shapes_of(A, ROWS[z])
@@ -76,7 +75,7 @@ def strike(A: Scene, a: int, b: int, t: float, rest: bool) -> int:
     k = A.SHAPE.shape[0]
     n, m, PAIRS = gather(A, a, b, t)
     if holds_joints(A, n):
-        clear_places(A, A.BLOCK, n)
+        clear_places(A, A.BLOCK[:n])
         return -1
     owed, piled = energy_owed(A, n)
     block = make_block(A, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)

@@ -23,7 +23,7 @@ from ..pairs.lists import far_apart
 from ..pairs.rules import barred, law
 from .accounting import end_interval
 from .at_rest import wake_changed
-from .intervals import solve
+from .intervals import begin_interval
 from .local import drop_contacts
 from .membership import approach, budget_spent, fixed_support, jointed, largest_island, members, persists, unite
 from .partial_rest import rests_in_part
@@ -147,7 +147,7 @@ def build_islands(A: Scene) -> int:
     for q in range(roots):
         root = QUEUE[q]
         if A.MEMBER[root].jointed == 0 and not rests_in_part(A, root):
-            solve(A, root, 0.0)
+            begin_interval(A, root, 0.0)
     support(A)
     return DONE
 

@@ -39,17 +39,17 @@ def travel_bound(A: Scene, i: int, h: float) -> float:
 
 
 @kernel
-def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: IntArray, n: int) -> IntArray:
+def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: IntArray) -> IntArray:
     """Contact candidates of an island: (p, 2) pairs of shapes that its solve over h from instant t includes.
 
     These touch, or persist within the interval; for `busy` bodies all that come near; for `Midstep` all that may meet.
     Other pairs meet at their times of impact.
 
     Args:
-        lossy: whether any shape of the island has an elasticity below 1.  MINE: its n bodies.
+        lossy: whether any shape of the island has an elasticity below 1.  MINE: its bodies.
     """
+    n, p = len(MINE), 0
     found = np.empty((4 * n + 8, 2), np.int64)
-    p = 0
     BODY, LINK, STATE = A.BODY, A.LINK, A.STATE
     together = A.COUNT.together > 0
     for q in range(n):

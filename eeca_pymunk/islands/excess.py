@@ -15,7 +15,7 @@ from ..arrays import IntArray
 from ..compiled import inlined, kernel, nonallocating
 from ..contacts.interval import make_contacts, step_island
 from ..contacts.single import move_to
-from ..contacts.unmet import spend
+from ..contacts.unmet import count_solve
 from ..model.contacts import ENDED
 from ..model.parameters.intervals import INTERVAL_RETRY, REPAY_ROUND_OFF
 from ..model.scene import Scene
@@ -23,7 +23,7 @@ from ..pairs.lists import mark_pair
 from ..rows.energy import scale_to_lose
 from .candidates import sweeps_of
 from .depths import times_too_long
-from .local import clear_places, contacts_of, local_island, number_bodies, open_contacts, own_contacts
+from .local import clear_places, contacts_of, local_island, number_bodies, write_contacts
 
 
 @inlined
@@ -104,22 +104,20 @@ def repay(A: Scene, root: int, t: float) -> None:
     for q in range(n):
         # Tests whether contacts persist may have moved the body along its path, to an instant within the interval.
         move_to(A.BODY, MINE[q], start)
-    isle = local_island(A, MINE, n, found, start)
-    clear_places(A, MINE, n)
+    isle = local_island(A, MINE, found, start)
+    clear_places(A, MINE)
     contacts = make_contacts(len(found), len(isle.WHO))
     VN, OUT, owed = contacts.VN, contacts.OUT, max(-A.RESTING[root].lost, 0.0)
     m = step_island(A, isle, contacts, n, s, sweeps_of(n, start), 0.0, owed, 0.0)
-    spend(A, n, 2 * len(found), m, OUT[0].sweeps, OUT[0].direct)
-    A.COUNT.solved += n
     A.COUNT.direct += OUT[0].direct
+    count_solve(A, n, len(found), m, OUT[0])
     if m < 0 or m > end - first or times_too_long(A, isle, contacts, m, s) > INTERVAL_RETRY:
         scale_impulses(A, root, t)
         return
     for c in range(first, end):
         A.PUSHED_BY[c].root = ENDED
         mark_pair(A, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0)
-    open_contacts(A, isle, contacts, VN, m, first, start, s, np.zeros(len(isle.WHO), np.uint8))
-    own_contacts(A, root, first, m)
+    write_contacts(A, root, isle, contacts, VN, m, first, start, s)
     for q in range(n):
         body = A.BODY[MINE[q]]
         body.ax, body.ay, body.angular = (VN[q, 0] - body.vx) / s, (VN[q, 1] - body.vy) / s, (VN[q, 2] - body.spin) / s

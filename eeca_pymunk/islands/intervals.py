@@ -11,7 +11,7 @@ from ..compiled import kernel, nonallocating
 from ..contacts.correction import budget_of, lifting
 from ..contacts.geometry import gather
 from ..contacts.interval import make_contacts, step_island
-from ..contacts.unmet import note_unmet, spend
+from ..contacts.unmet import count_solve, note_lock, note_unmet
 from ..contacts.works import moved
 from ..model.bodies import MOVED
 from ..model.contacts import Problem
@@ -33,7 +33,7 @@ from .candidates import (
     travel_bound,
 )
 from .depths import driven, times_too_long
-from .local import clear_places, local_island, needs_memory, number_bodies, open_contacts, open_until, own_contacts
+from .local import clear_places, local_island, needs_memory, number_bodies, open_interval
 from .membership import lossy
 from .rest import rest_threshold
 
@@ -50,7 +50,7 @@ def bodies_with_supports(A: Scene, isle: Island, n: int) -> int:
 
 
 @kernel
-def solve(A: Scene, root: int, t: float) -> int:
+def begin_interval(A: Scene, root: int, t: float) -> int:
     """Begin an interval of an island at instant t, at which all its bodies are. Bodies without contacts leave it.
 
     The interval ends with the step, or earlier if it would exceed a limit of `excess_way` or `depths.closes_too_far`;
@@ -60,7 +60,7 @@ def solve(A: Scene, root: int, t: float) -> int:
     """
     longest = A.PAR.dt - t
     for attempt in range(INTERVAL_TRIES):
-        status, far = open_interval(A, root, t, longest, attempt + 1 == INTERVAL_TRIES or A.COUNT.together > 0)
+        status, far = try_interval(A, root, t, longest, attempt + 1 == INTERVAL_TRIES or A.COUNT.together > 0)
         if status != AGAIN:
             return status
         longest = far
@@ -79,17 +79,15 @@ def payable_by_placed(A: Scene, isle: Island, n: int) -> float:
 
 
 @nonallocating
-def begin_paths(
-    A: Scene, MINE: IntArray, n: int, V: FloatArray, VN: FloatArray, h: float, TOUCHED: FlagArray
-) -> tuple[int, int, int]:  # fmt: skip
-    """Set the paths of the n bodies MINE over the interval h, from velocities V to VN (k, 3), and join those that are
+def begin_paths(A: Scene, MINE: IntArray, V: FloatArray, VN: FloatArray, h: float, TOUCHED: FlagArray) -> int:
+    """Set the paths of the bodies MINE over the interval h, from velocities V to VN (k, 3), and join those that are
     TOUCHED (k,) to the chain of the island; others leave it, and fly on by themselves.
 
-    Returns the first and the last body of the chain, -1 if there is none, and their number.
+    Returns the first body of the chain, the root of the island, -1 if there is none.
     """
     BODY, STATE, MEMBER = A.BODY, A.STATE, A.MEMBER
     head, tail, size = -1, -1, 0
-    for q in range(n):
+    for q in range(len(MINE)):
         i = MINE[q]
         STATE[i].version += 1
         if TOUCHED[q] == 0:
@@ -105,41 +103,43 @@ def begin_paths(
         tail = i
         size += 1
         STATE[i].island, MEMBER[i].following = head, -1
-    return head, tail, size
+    if head >= 0:
+        MEMBER[head].last, MEMBER[head].bodies = tail, size
+    return head
 
 
 @kernel
-def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> tuple[int, float]:
-    """One attempt of `solve`, with an interval no longer than `longest`. Returns a status, DONE, PUSHES_FULL or AGAIN,
-    and a length: with AGAIN, if the interval is too long, that for the next attempt; no path is changed then. AGAIN is
-    never the result of the `last` attempt."""
+def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> tuple[int, float]:
+    """One attempt of `begin_interval`, with an interval no longer than `longest`. Returns DONE, PUSHES_FULL, or, if the
+    interval is too long, AGAIN and the length for the next attempt; no path is changed then. AGAIN is never the result
+    of the `last` attempt."""
     MEMBER, COUNT = A.MEMBER, A.COUNT
     MINE = number_bodies(A, root)
     n = len(MINE)
     may_lose = lossy(A, root)
-    found = pairs_within(A, root, t, longest, may_lose, MINE, n)
+    found = pairs_within(A, root, t, longest, may_lose, MINE)
     h = interval_within_way(A, found, longest) if A.COUNT.together == 0 else longest
     if h < longest:
-        found = pairs_within(A, root, t, h, may_lose, MINE, n)
+        found = pairs_within(A, root, t, h, may_lose, MINE)
     p = len(found)
     h = min(h, interval_length(A, found, t))
     if needs_memory(A, p):
-        clear_places(A, MINE, n)
+        clear_places(A, MINE)
         return PUSHES_FULL, 0.0
-    isle = local_island(A, MINE, n, found, t)
-    clear_places(A, MINE, n)
-    k, WHO, V, contacts = len(isle.WHO), isle.WHO, isle.V, make_contacts(p, len(isle.WHO))
+    isle = local_island(A, MINE, found, t)
+    clear_places(A, MINE)
+    k, V, contacts = len(isle.WHO), isle.V, make_contacts(p, len(isle.WHO))
     ROWS, L = contacts.ROWS, contacts.L
     VN, JUMP, OUT = contacts.VN, contacts.JUMP, contacts.OUT
     least = 0.0
     if COUNT.together > 0:
         for q in range(k):
-            least = max(least, travel_bound(A, WHO[q], h))
+            least = max(least, travel_bound(A, isle.WHO[q], h))
     sweeps = sweeps_of(n, t)
     m = 0
     with_supports = bodies_with_supports(A, isle, n)
     payable = payable_by_placed(A, isle, n)
-    quiet = rest_threshold(A, root, MINE, n, with_supports, may_lose, t) if payable > 0.0 else 0.0
+    quiet = rest_threshold(A, root, MINE, with_supports, may_lose, t) if payable > 0.0 else 0.0
     owed = max(-A.RESTING[root].lost, 0.0)
     shortest = A.PAR.dt / RESOLUTION
     if p > 0 and h > 0.0:
@@ -153,33 +153,29 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
         if not last and OUT[0].at_rest == 0:
             far = times_too_long(A, isle, contacts, m, h)
         if far > INTERVAL_RETRY:
-            A.COUNT.solved += n
-            spend(A, n, 2 * p, m, OUT[0].sweeps, OUT[0].direct)
+            count_solve(A, n, p, m, OUT[0])
             return AGAIN, h / far
         if m > 0 and OUT[0].at_rest == 0 and not before_end(A, t + h):
             # An interval that ends within the step is followed by another one, which corrects the penetration.
             middle, lost = moved(isle.POSE, V, 0.5 * h), OUT[0].restitution + OUT[0].friction
             payable = find_lifts(A, isle, contacts, n, m, middle, VN, h, lost, A.RESTING[root].lost, payable)
-        if abs(OUT[0].lock - 1.0) > abs(A.PAR.lock - 1.0):
-            A.PAR.lock = OUT[0].lock
+        note_lock(A, OUT[0])
     at_rest = OUT[0].at_rest > 0
     if OUT[0].residual > OUT[0].tolerance:
         note_unmet(A, CONTACTS, isle.PAIRS[0, 0], isle.PAIRS[0, 1], OUT[0].residual, OUT[0].tolerance)
     COUNT.solves += 1
-    COUNT.solved += n
-    spend(A, n, 2 * p, m, OUT[0].sweeps, OUT[0].direct)
     COUNT.direct += OUT[0].direct
+    count_solve(A, n, p, m, OUT[0])
     TOUCHED = np.zeros(k, np.uint8)
-    open_contacts(A, isle, contacts, VN, m, COUNT.pushes, t, h, TOUCHED)
+    for z in range(m):
+        TOUCHED[ROWS[z].a] = TOUCHED[ROWS[z].b] = 1
     lost, hits = A.RESTING[root].lost, MEMBER[root].hits
-    set_lifts(A, MINE, n, JUMP)
-    head, tail, size = begin_paths(A, MINE, n, V, VN, h, TOUCHED)
+    set_lifts(A, MINE, JUMP)
+    head = begin_paths(A, MINE, V, VN, h, TOUCHED)
     if head >= 0:
-        MEMBER[head].last, MEMBER[head].bodies, MEMBER[head].hits = tail, size, hits
-        MEMBER[head].with_supports = with_supports
+        open_interval(A, head, isle, contacts, VN, m, t, h)
+        MEMBER[head].hits, MEMBER[head].with_supports = hits, with_supports
         A.RESTING[head].payable, A.RESTING[head].lost = payable, lost
-        open_until(A, head, t + h)
-        own_contacts(A, head, COUNT.pushes, m)
         if at_rest:
             put_to_rest(A, head)
     return DONE, 0.0
@@ -191,8 +187,8 @@ def contacts_at(A: Scene, root: int, t: float) -> tuple[Island, IslandContacts, 
     move, with their places until `clear_places`, and the number of contacts."""
     MINE = number_bodies(A, root)
     n = len(MINE)
-    found = pairs_within(A, root, t, 0.0, True, MINE, n)
-    isle = local_island(A, MINE, n, found, t)
+    found = pairs_within(A, root, t, 0.0, True, MINE)
+    isle = local_island(A, MINE, found, t)
     k, contacts = len(isle.WHO), make_contacts(len(found), len(isle.WHO))
     m = gather(A, isle, contacts, isle.POSE, np.zeros(k), 0.0, k == n)
     return isle, contacts, MINE, m
@@ -205,13 +201,13 @@ def lift_here(A: Scene, root: int, t: float) -> None:
     moving body without mobility is deep in the island (`depths.driven`) that does the work beyond."""
     isle, contacts, MINE, m = contacts_at(A, root, t)
     n = len(MINE)
-    clear_places(A, MINE, n)
+    clear_places(A, MINE)
     if m > 0:
         rates(contacts.ROWS, isle.V, m)
         lost = A.RESTING[root].lost
         payable = find_lifts(A, isle, contacts, n, m, isle.POSE, isle.V, 0.0, lost, 0.0, math.inf)
         A.RESTING[root].payable = payable
-    set_lifts(A, MINE, n, contacts.JUMP)
+    set_lifts(A, MINE, contacts.JUMP)
 
 
 @kernel
@@ -235,9 +231,9 @@ def find_lifts(
 
 
 @nonallocating
-def set_lifts(A: Scene, MINE: IntArray, n: int, JUMP: FloatArray) -> None:
-    """Store the penetration corrections JUMP (k, 6) of n bodies."""
-    for q in range(n):
+def set_lifts(A: Scene, MINE: IntArray, JUMP: FloatArray) -> None:
+    """Store the penetration corrections JUMP (k, 6) of the bodies MINE."""
+    for q in range(len(MINE)):
         rest = A.RESTING[MINE[q]]
         rest.lift_x, rest.lift_y, rest.lift_angle = JUMP[q, 0], JUMP[q, 1], JUMP[q, 2]
         rest.lift_vx, rest.lift_vy, rest.lift_spin = JUMP[q, 3], JUMP[q, 4], JUMP[q, 5]

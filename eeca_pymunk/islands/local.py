@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from ..arrays import FlagArray, FloatArray, IntArray
+from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..contacts.memory import shapes_of
 from ..contacts.works import carried
@@ -21,26 +21,32 @@ from .rest import spins_freely
 
 
 @kernel
-def number_bodies(A: Scene, root: int) -> IntArray:
-    """The bodies of an island, in the order of their rows, with their places in A.PLACE until `clear_places`."""
+def bodies_of(A: Scene, root: int) -> IntArray:
+    """The bodies of an island, in the order of their rows."""
     MINE = np.empty(A.MEMBER[root].bodies, np.int64)
-    n = members(A, root, MINE)
-    sort(MINE, n)
-    set_places(A, MINE, n)
+    sort(MINE, members(A, root, MINE))
+    return MINE
+
+
+@kernel
+def number_bodies(A: Scene, root: int) -> IntArray:
+    """`bodies_of`, with their places in A.PLACE until `clear_places`."""
+    MINE = bodies_of(A, root)
+    set_places(A, MINE)
     return MINE
 
 
 @nonallocating
-def set_places(A: Scene, MINE: IntArray, n: int) -> None:
-    """Set A.PLACE, the local numbers, of n bodies."""
-    for q in range(n):
+def set_places(A: Scene, MINE: IntArray) -> None:
+    """Set A.PLACE, the local numbers, of the bodies MINE."""
+    for q in range(len(MINE)):
         A.PLACE[MINE[q]] = q
 
 
 @nonallocating
-def clear_places(A: Scene, MINE: IntArray, n: int) -> None:
-    """Reset A.PLACE of n bodies."""
-    for q in range(n):
+def clear_places(A: Scene, MINE: IntArray) -> None:
+    """Reset A.PLACE of the bodies MINE."""
+    for q in range(len(MINE)):
         A.PLACE[MINE[q]] = -1
 
 
@@ -59,11 +65,10 @@ def open_until(A: Scene, root: int, end: float) -> None:
 
 
 @kernel
-def local_island(A: Scene, MINE: IntArray, n: int, found: IntArray, t: float) -> Island:
-    """The island of the n bodies MINE, which are at instant t and have A.PLACE, with its contact candidates `found` (p,
-    2). Fixed bodies of these pairs are the local bodies n to k - 1."""
-    BODY = A.BODY
-    p = len(found)
+def local_island(A: Scene, MINE: IntArray, found: IntArray, t: float) -> Island:
+    """The island of the bodies MINE (n,), which are at instant t and have A.PLACE, with its contact candidates `found`
+    (p, 2). Fixed bodies of these pairs are the local bodies n to k - 1."""
+    BODY, n, p = A.BODY, len(MINE), len(found)
     # Fixed bodies follow those of the island.
     FIXED, fixed = np.empty(p, np.int64), 0
     for c in range(p):
@@ -101,23 +106,31 @@ def local_island(A: Scene, MINE: IntArray, n: int, found: IntArray, t: float) ->
 
 
 @kernel
-def open_contacts(
-    A: Scene, isle: Island, contacts: IslandContacts, VN: FloatArray, m: int, first: int, t: float, h: float,
-    TOUCHED: FlagArray,
-) -> None:  # fmt: skip
-    """Write the m contacts of an interval of length h from instant t to PUSHED and PUSHED_BY, from row `first` on, and
-    flag their pairs. VN (k, 3): velocities at its end. TOUCHED (k,): out, 1 for bodies that have contacts."""
+def open_interval(
+    A: Scene, root: int, isle: Island, contacts: IslandContacts, VN: FloatArray, m: int, t: float, h: float
+) -> None:
+    """Note that an interval of an island has begun at instant t, of length h, with m contacts and velocities VN (k, 3)
+    at its end: its contacts, and its end (`open_until`)."""
+    write_contacts(A, root, isle, contacts, VN, m, A.COUNT.pushes, t, h)
+    open_until(A, root, t + h)
+
+
+@kernel
+def write_contacts(
+    A: Scene, root: int, isle: Island, contacts: IslandContacts, VN: FloatArray, m: int, first: int, t: float, h: float
+) -> None:
+    """Write the m contacts of an island's interval of length h from instant t to PUSHED and PUSHED_BY, from row `first`
+    on, and flag their pairs. VN (k, 3): velocities at its end."""
     ROWS, L = contacts.ROWS, contacts.L
     for z in range(m):
-        p, q = ROWS[z].a, ROWS[z].b
+        p = ROWS[z].a
         a, b = shapes_of(A, ROWS[z])
         if A.LINK[a].owner != isle.WHO[p]:
             a, b = b, a
-        TOUCHED[p], TOUCHED[q] = 1, 1
         if z == 0 or ROWS[z].key >> 1 != ROWS[z - 1].key >> 1:
             mark_pair(A, a, b, 1)
         c = first + z
-        A.PUSHED_BY[c].a, A.PUSHED_BY[c].b = a, b
+        A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, A.PUSHED_BY[c].root = a, b, root
         pushed = A.PUSHED[c]
         pushed.normal, pushed.tangential, pushed.start, pushed.length = L[z, 0], L[z, 1], t, h
         pushed.un_before, pushed.ut_before = ROWS[z].un, ROWS[z].ut
@@ -131,6 +144,7 @@ def open_contacts(
         pushed.py = y + ROWS[z].arm_ta * ROWS[z].ny - ROWS[z].arm_na * ROWS[z].nx
         pushed.change = L[z, 0] / ROWS[z].k_n
         pushed.gap = ROWS[z].gap if t == 0.0 else math.nan
+    A.COUNT.pushes = max(A.COUNT.pushes, first + m)
 
 
 @nonallocating
@@ -153,11 +167,3 @@ def drop_contacts(A: Scene, low: int, high: int) -> None:
             A.PUSHED_BY[kept], A.PUSHED[kept] = A.PUSHED_BY[c], A.PUSHED[c]
             kept += 1
     A.COUNT.pushes = kept
-
-
-@nonallocating
-def own_contacts(A: Scene, root: int, first: int, m: int) -> None:
-    """Let the m contacts that `open_contacts` has written from row `first` on be those of an island."""
-    for c in range(first, first + m):
-        A.PUSHED_BY[c].root = root
-    A.COUNT.pushes = max(A.COUNT.pushes, first + m)

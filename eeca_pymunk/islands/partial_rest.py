@@ -22,21 +22,20 @@ from ..model.bodies import AT_REST, AWAKE
 from ..model.parameters.intervals import IMPACT_SPEED, LARGE_ISLAND
 from ..model.parameters.rest import MOVING_SHARE, PARTIAL_REST_FACTORS_STEP, REST_RETRY
 from ..model.scene import Scene
-from ..rows.inplace import sort
 from .accounting import close_interval
 from .at_rest import put_to_rest, stop
 from .candidates import pairs_within
-from .intervals import set_lifts, solve
-from .local import clear_places, local_island, open_contacts, own_contacts, set_places
-from .membership import lossy, members, unite
+from .intervals import begin_interval, set_lifts
+from .local import bodies_of, clear_places, local_island, open_interval, set_places
+from .membership import lossy, unite
 from .rest import candidate_speed, postpone_test, speed
 from .support import support_loads
 
 
 @nonallocating
-def make_island(A: Scene, MINE: IntArray, n: int) -> None:
-    """Make an island of n bodies MINE; the first one is its root."""
-    MEMBER, head = A.MEMBER, MINE[0]
+def make_island(A: Scene, MINE: IntArray) -> None:
+    """Make an island of the bodies MINE; the first one is its root."""
+    MEMBER, head, n = A.MEMBER, MINE[0], len(MINE)
     for q in range(n):
         A.STATE[MINE[q]].island = head
         MEMBER[MINE[q]].following = MINE[q + 1] if q + 1 < n else -1
@@ -46,25 +45,25 @@ def make_island(A: Scene, MINE: IntArray, n: int) -> None:
 
 
 @kernel
-def test_rest(A: Scene, MINE: IntArray, n: int, V0: FloatArray, with_supports: int, freezing: bool) -> bool:
+def test_rest(A: Scene, MINE: IntArray, V0: FloatArray, with_supports: int, freezing: bool) -> bool:
     """Test whether static forces hold an island; if so put it to rest, else postpone its next test. Returns whether
     they do.
 
     Args:
-        MINE: its n bodies.  V0: (n, 3) their velocities, which the forces have to end too.
+        MINE: its bodies (n,).  V0: (n, 3) their velocities, which the forces have to end too.
         with_supports: number of bodies, with those of islands that support it.
         freezing: True to test without the contacts of other islands; bodies then stop, but remain awake, and may be
             tested for rest at once.
     """
-    BODY, COUNT, dt, root = A.BODY, A.COUNT, A.PAR.dt, A.STATE[MINE[0]].island
-    set_places(A, MINE, n)
-    found = pairs_within(A, root, 0.0, A.PAR.dt, True, MINE, n)
+    BODY, COUNT, dt, root, n = A.BODY, A.COUNT, A.PAR.dt, A.STATE[MINE[0]].island, len(MINE)
+    set_places(A, MINE)
+    found = pairs_within(A, root, 0.0, A.PAR.dt, True, MINE)
     LOAD = np.zeros((n, 3))
     if not freezing:
         support_loads(A, root, LOAD)
     p = len(found)
-    isle = local_island(A, MINE, n, found, 0.0)
-    clear_places(A, MINE, n)
+    isle = local_island(A, MINE, found, 0.0)
+    clear_places(A, MINE)
     most = 0.0
     for q in range(n):
         for c in range(3):
@@ -72,50 +71,49 @@ def test_rest(A: Scene, MINE: IntArray, n: int, V0: FloatArray, with_supports: i
             isle.ACC[q, c] += LOAD[q, c] / dt
         most = max(most, math.sqrt(isle.ACC[q, 0] ** 2 + isle.ACC[q, 1] ** 2))
     if p == 0 or COUNT.pushes + 2 * p > A.PUSHED.shape[0] or not most > 0.0:
-        postpone_test(A, MINE, n)
+        postpone_test(A, MINE)
         return False
     quick = (IMPACT_SPEED if freezing else candidate_speed(with_supports)) * A.PAR.pulled / most
     contacts = make_contacts(p, len(isle.WHO))
     m = step_island(A, isle, contacts, n, dt, 0, 0.0, 0.0, -quick)
     COUNT.direct += contacts.OUT[0].direct
     if contacts.OUT[0].at_rest == 0:
-        postpone_test(A, MINE, n)
+        postpone_test(A, MINE)
         return False
     if freezing:
         for q in range(n):
             stop(A, MINE[q])
             A.RESTING[MINE[q]].rest_timer = 1.0
         return True
-    open_contacts(A, isle, contacts, contacts.VN, m, A.COUNT.pushes, 0.0, dt, np.zeros(len(isle.WHO), np.uint8))
-    own_contacts(A, root, A.COUNT.pushes, m)
-    A.MEMBER[root].open, A.RESTING[root].until, A.MEMBER[root].with_supports = 1, math.inf, with_supports
+    open_interval(A, root, isle, contacts, contacts.VN, m, 0.0, dt)
+    A.MEMBER[root].with_supports = with_supports
     for q in range(n):
         A.MEMBER[MINE[q]].busy = 0
         body = BODY[MINE[q]]
         body.vx, body.vy, body.spin = V0[q, 0], V0[q, 1], V0[q, 2]
-    set_lifts(A, MINE, n, np.zeros((n, 6)))
+    set_lifts(A, MINE, np.zeros((n, 6)))
     put_to_rest(A, root)
     return True
 
 
 @kernel
-def freeze(A: Scene, MINE: IntArray, n: int) -> None:
-    """Stop the n bodies MINE of a large island if all are slow and static forces hold them. They remain awake."""
-    V0 = np.empty((n, 3))
+def freeze(A: Scene, MINE: IntArray) -> None:
+    """Stop the bodies MINE of a large island if all are slow and static forces hold them. They remain awake."""
+    n, V0 = len(MINE), np.empty((len(MINE), 3))
     for q in range(n):
         if speed(A, MINE[q]) > IMPACT_SPEED * A.PAR.pulled * A.PAR.dt:
             return
         body = A.BODY[MINE[q]]
         V0[q, 0], V0[q, 1], V0[q, 2] = body.vx, body.vy, body.spin
-    test_rest(A, MINE, n, V0, n, True)
+    test_rest(A, MINE, V0, n, True)
 
 
 @nonallocating
-def split_slow(A: Scene, MINE: IntArray, n: int, STAND: IntArray, MOVE: IntArray) -> int:
-    """Split the n bodies MINE: slow ones, which may be put to rest, into STAND, the others into MOVE; returns the
+def split_slow(A: Scene, MINE: IntArray, STAND: IntArray, MOVE: IntArray) -> int:
+    """Split the bodies MINE: slow ones, which may be put to rest, into STAND, the others into MOVE; returns the
     number of the first."""
-    stand, limit = 0, candidate_speed(n) * A.PAR.pulled * A.PAR.dt
-    for q in range(n):
+    stand, limit = 0, candidate_speed(len(MINE)) * A.PAR.pulled * A.PAR.dt
+    for q in range(len(MINE)):
         if A.RESTING[MINE[q]].rest_timer >= 1.0 and speed(A, MINE[q]) <= limit:
             STAND[stand] = MINE[q]
             stand += 1
@@ -134,30 +132,28 @@ def rests_in_part(A: Scene, root: int) -> bool:
         return False
     if not lossy(A, root):
         return False
-    MINE, STAND, MOVE = np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n, np.int64)
-    members(A, root, MINE)
-    sort(MINE, n)
+    MINE, STAND, MOVE = bodies_of(A, root), np.empty(n, np.int64), np.empty(n, np.int64)
     factors = A.COUNT.direct
     if n >= LARGE_ISLAND and A.PAR.stamp % REST_RETRY == 0.0:
-        freeze(A, MINE, n)
+        freeze(A, MINE)
         if A.COUNT.direct > factors + PARTIAL_REST_FACTORS_STEP:
             return False
     V0 = np.empty((n, 3))
-    stand = split_slow(A, MINE, n, STAND, MOVE)
+    stand = split_slow(A, MINE, STAND, MOVE)
     if stand == 0 or n - stand > max(MOVING_SHARE * n, 1.0):
         return False
-    make_island(A, STAND, stand)
+    make_island(A, STAND[:stand])
     for q in range(stand):
         i = STAND[q]
         MEMBER[i].rest = AT_REST
         V0[q, 0], V0[q, 1], V0[q, 2] = BODY[i].vx, BODY[i].vy, BODY[i].spin
         BODY[i].vx, BODY[i].vy, BODY[i].spin = 0.0, 0.0, 0.0
     if stand < n:
-        make_island(A, MOVE, n - stand)
-        solve(A, MOVE[0], 0.0)
+        make_island(A, MOVE[: n - stand])
+        begin_interval(A, MOVE[0], 0.0)
     for q in range(stand):
         MEMBER[STAND[q]].rest = AWAKE
-    if test_rest(A, STAND, stand, V0, n, False):
+    if test_rest(A, STAND[:stand], V0, n, False):
         return True
     for q in range(stand):
         body = BODY[STAND[q]]
@@ -169,5 +165,5 @@ def rests_in_part(A: Scene, root: int) -> bool:
             if MEMBER[STATE[i].island].open > 0:
                 close_interval(A, STATE[i].island, 0.0)
             one = unite(A, one, i)
-    solve(A, STATE[one].island, 0.0)
+    begin_interval(A, STATE[one].island, 0.0)
     return True

@@ -34,10 +34,10 @@ def candidate_speed(bodies: int) -> float:
 
 
 @nonallocating
-def motionless(A: Scene, MINE: IntArray, n: int) -> bool:
-    """Whether none of the n bodies MINE has any velocity, as in the first step of a stack, or has failed a test lately:
+def motionless(A: Scene, MINE: IntArray) -> bool:
+    """Whether none of the bodies MINE has any velocity, as in the first step of a stack, or has failed a test lately:
     static forces are then searched at once."""
-    for q in range(n):
+    for q in range(len(MINE)):
         body = A.BODY[MINE[q]]
         if body.vx != 0.0 or body.vy != 0.0 or body.spin != 0.0 or A.RESTING[MINE[q]].rest_timer < 0.0:
             return False
@@ -45,30 +45,30 @@ def motionless(A: Scene, MINE: IntArray, n: int) -> bool:
 
 
 @nonallocating
-def postpone_test(A: Scene, MINE: IntArray, n: int) -> None:
-    """Postpone the next test for static forces of the n bodies MINE by REST_RETRY steps."""
-    for q in range(n):
+def postpone_test(A: Scene, MINE: IntArray) -> None:
+    """Postpone the next test for static forces of the bodies MINE by REST_RETRY steps."""
+    for q in range(len(MINE)):
         A.RESTING[MINE[q]].rest_timer = -float(REST_RETRY)
 
 
 @nonallocating
-def rest_threshold(A: Scene, root: int, MINE: IntArray, n: int, with_supports: int, lossy: bool, t: float) -> float:
+def rest_threshold(A: Scene, root: int, MINE: IntArray, with_supports: int, lossy: bool, t: float) -> float:
     """Speed relative to |a| dt below which an island may be put to rest at instant t by a test for static forces; 0 if
     it is not tested. A test postpones the next one.
 
     Args:
-        MINE: its n bodies.  with_supports: number of bodies, with those of the islands that support it.
+        MINE: its bodies.  with_supports: number of bodies, with those of the islands that support it.
         lossy: whether any shape of the island has an elasticity below 1.
     """
     if t > 0.0 or A.PAR.pulled == 0.0 or A.COUNT.together > 0 or A.RULE.shape[0] > 0:
         return 0.0
-    if not motionless(A, MINE, n):
+    if not motionless(A, MINE):
         if A.MEMBER[root].hits > 0:
             return 0.0
-        for q in range(n):
+        for q in range(len(MINE)):
             if A.RESTING[MINE[q]].rest_timer < 1.0 or A.MEMBER[MINE[q]].busy > 0:
                 return 0.0
             if not lossy and speed(A, MINE[q]) > REST_SPEED * A.PAR.pulled * A.PAR.dt:
                 return 0.0
-    postpone_test(A, MINE, n)
+    postpone_test(A, MINE)
     return candidate_speed(with_supports)

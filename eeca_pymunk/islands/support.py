@@ -26,7 +26,7 @@ from ..pairs.rules import law
 from ..rows.build import place_row
 from ..rows.equilibrium import equilibrium
 from .accounting import wake
-from .intervals import solve
+from .intervals import begin_interval
 from .local import clear_places
 from .membership import members
 from .rest import candidate_speed, postpone_test, spins_freely
@@ -93,12 +93,12 @@ def supports_load(A: Scene, root: int) -> bool:
         place_row(row, R.px, R.py, POSE, IMS, IIS)
         L[m, 0], L[m, 1], OF[m] = R.normal, R.tangential, c
         m += 1
-    clear_places(A, MINE, n)
+    clear_places(A, MINE)
     problem, slow = Problem(ROWS, IMS, IIS, POSE, n, m), REST_SPEED * A.PAR.pulled * dt
     found, factors = equilibrium(problem, L, START, FELT, slow, SUPPORT_FACTORS, False)
     A.COUNT.direct += factors
     if not found:
-        postpone_test(A, MINE, n)
+        postpone_test(A, MINE)
     else:
         for z in range(m):
             R = A.PUSHED[OF[z]]
@@ -152,6 +152,6 @@ def support(A: Scene) -> None:
             if asked < SUPPORT_ROUNDS and supports_load(A, i):
                 MEMBER[i].new_forces = 1
             else:
-                solve(A, wake(A, i, 0.0), 0.0)
+                begin_interval(A, wake(A, i, 0.0), 0.0)
                 all_moving = True
         asked += 1

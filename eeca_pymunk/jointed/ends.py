@@ -17,7 +17,7 @@ from ..model.scene import Scene
 from ..pairs.lists import mark_pair
 from .gathered import restore_joints
 from .ledger import account_component
-from .solve import open_span
+from .solve import try_interval
 
 
 @kernel
@@ -68,7 +68,7 @@ def shorten(A: Scene, J: Joints, root: int, t: float) -> int:
     for s in components_of(A, J, root):
         restore_joints(J, s)
     if t - began > A.PAR.instant:
-        open_span(A, J, root, began, t - began, True)
+        try_interval(A, J, root, began, t - began, True)
     return some
 
 

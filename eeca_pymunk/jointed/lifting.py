@@ -73,7 +73,7 @@ def lift_here(A: Scene, J: Joints, root: int, t: float) -> None:
             body = A.BODY[MINE[q]]
             body.x, body.y, body.angle = motion.END[q, 0], motion.END[q, 1], motion.END[q, 2]
             body.vx, body.vy, body.spin = motion.V[q, 0], motion.V[q, 1], motion.V[q, 2]
-    clear_places(A, MINE, n)
+    clear_places(A, MINE)
 
 
 @kernel

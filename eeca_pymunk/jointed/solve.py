@@ -18,9 +18,7 @@ from ..islands.local import (
     local_island,
     needs_memory,
     number_bodies,
-    open_contacts,
-    open_until,
-    own_contacts,
+    open_interval,
 )
 from ..islands.membership import lossy
 from ..model.joint_steps import ELASTIC
@@ -46,7 +44,7 @@ from .press import press
 
 
 @kernel
-def begin_interval(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
+def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
     """Begin an interval of an island with joints at instant t, at which all its bodies are: of length h, or shorter
     where joints do not hold, the work does not suffice, or bodies go too far (`lengths`).
 
@@ -65,7 +63,7 @@ def begin_interval(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
         if t > 0.0 and work_left(A, J) < 0.0:
             rest.longest = h  # where the next step begins
             return SPENT
-        status, h = open_span(A, J, root, t, h, last)
+        status, h = try_interval(A, J, root, t, h, last)
         if status != AGAIN:
             if status == DONE:
                 rest.longest = max(INTERVAL_RETRY * h, 0.0 if h < whole else rest.longest)
@@ -74,8 +72,8 @@ def begin_interval(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
 
 
 @kernel
-def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) -> tuple[int, float]:
-    """`begin_interval` of length h. AGAIN, with nothing done, if that is too long, and how long it may be; not if it is
+def try_interval(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) -> tuple[int, float]:
+    """`begin_jointed` of length h. AGAIN, with nothing done, if that is too long, and how long it may be; not if it is
     the `last` attempt."""
     whole, A.RESTING[root].strays = is_component(A, J, root), 0.0
     if whole and meets_nobody(A, root):
@@ -85,17 +83,17 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     MINE = number_bodies(A, root)
     n = len(MINE)
     # As in a whole step where it is cut short: nobody looks for impacts of pairs that would be left out.
-    found = pairs_within(A, root, t, A.PAR.planned - t, lossy(A, root), MINE, n)
+    found = pairs_within(A, root, t, A.PAR.planned - t, lossy(A, root), MINE)
     p = len(found)
     spend(A, n, 2 * p, 0, 0, 0)  # besides what joints take
     if p == 0 and whole:
-        clear_places(A, MINE, n)
+        clear_places(A, MINE)
         far = begin_alone(A, J, root, t, h, last)
         return (AGAIN, h / far) if far > 0.0 else (DONE, h)
     if needs_memory(A, p):
-        clear_places(A, MINE, n)
+        clear_places(A, MINE)
         return PUSHES_FULL, h
-    isle = local_island(A, MINE, n, found, t)
+    isle = local_island(A, MINE, found, t)
     k = len(isle.WHO)
     groups = find_groups(isle.WHO, isle.IM, J)
     for s in groups.JOINTED:
@@ -143,7 +141,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     if far > INTERVAL_RETRY and not last:
         for s in groups.JOINTED:
             restore_joints(J, s)
-        clear_places(A, MINE, n)
+        clear_places(A, MINE)
         return AGAIN, h / far
     led = led_in(A, ROWS, interval.C.OUT, motion.WAY, m)
     if not held or led >= 0:
@@ -161,16 +159,14 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
         if not before_end(A, t + h):
             lift_island(A, J, interval, root, t + h, lost(ROWS, L, motion.WAY, m, h), False)
         HELD = fit(A, J, interval, L, t + h, slow + pull * h)
-    clear_places(A, MINE, n)
+    clear_places(A, MINE)
     first = COUNT.pushes
-    open_contacts(A, isle, contacts, motion.V, m, first, t, h, np.zeros(k, np.uint8))
+    open_interval(A, root, isle, contacts, motion.V, m, t, h)
     for z in range(m):
         R = A.PUSHED[first + z]
         R.un_before = R.un_after = normal_rate(ROWS[z], motion.WAY) / h
         R.ut_before = R.ut_after = slip_of(ROWS[z], motion.WAY, h) / h
         R.held = HELD[z]
-    own_contacts(A, root, first, m)
     for q in range(n):
         set_path(A, MINE[q], h, WHERE[q], motion.END[q], motion.V[q])
-    open_until(A, root, t + h)
     return DONE, h

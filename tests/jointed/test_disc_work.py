@@ -7,7 +7,7 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk.arrays import FloatArray
-from eeca_pymunk.jointed.solve import open_span
+from eeca_pymunk.jointed.solve import try_interval
 from eeca_pymunk.model.contacts import Bounded
 from eeca_pymunk.model.joints import Joints
 from eeca_pymunk.model.scene import Scene
@@ -60,7 +60,7 @@ def test_each_sweep_over_a_disc_is_work(monkeypatch: pytest.MonkeyPatch, floor: 
         monkeypatch.setattr(columns, "sweep_bounded", in_columns)
         alone.clear()
         with_contacts.clear()
-        assert open_span(A, J, A.STATE[0].island, 0.0, h, True)[0] == 0
+        assert try_interval(A, J, A.STATE[0].island, 0.0, h, True)[0] == 0
         efforts.append(float(J.PROGRESS.effort))
     assert len(alone) > 0
     assert (len(with_contacts) > 0) == floor

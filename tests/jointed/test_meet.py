@@ -17,7 +17,7 @@ from eeca_pymunk.jointed.ends import shorten
 from eeca_pymunk.jointed.meet import end_before, meet
 from eeca_pymunk.jointed.partners import carry
 from eeca_pymunk.jointed.paths import passes
-from eeca_pymunk.jointed.solve import open_span
+from eeca_pymunk.jointed.solve import try_interval
 from eeca_pymunk.model.joint_steps import LINEAR
 from eeca_pymunk.model.joints import Joints
 from eeca_pymunk.model.scene import Scene
@@ -41,7 +41,7 @@ def falling(h: float, high: float) -> tuple[Scene, Joints]:
     A, J = stepper.event_loop.scene, stepper.event_loop.joints
     A.PAR.dt = A.PAR.planned = h
     A.BODY[0].since, A.BODY[0].y, A.BODY[0].vy = 0.0, high, -SPEED
-    assert open_span(A, J, 0, 0.0, h, True)[0] == 0
+    assert try_interval(A, J, 0, 0.0, h, True)[0] == 0
     return A, J
 
 
@@ -151,7 +151,7 @@ def test_pairs_of_an_island_are_looked_at_once_each(monkeypatch: pytest.MonkeyPa
     stepper.step(1e-9)
     assert stepper.event_loop is not None
     A, J = stepper.event_loop.scene, stepper.event_loop.joints
-    assert open_span(A, J, A.STATE[0].island, 0.0, 1e-9, True)[0] == 0
+    assert try_interval(A, J, A.STATE[0].island, 0.0, 1e-9, True)[0] == 0
     pairs: list[tuple[int, int]] = []
 
     def met(A: Scene, a: int, b: int, t: float) -> tuple[float, bool]:
