@@ -185,8 +185,8 @@ class PackedSpace(Stepper):
         return self._adopt(world)
 
     def _patchable(self, world: World) -> bool:
-        """Whether changes may be patched: nobody sleeps, whom they might wake, and where bodies may sleep pymunk has
-        taken no step, after which they are read again in any case."""
+        """Whether changes may be patched: they can wake no sleeping body, and where bodies may sleep pymunk has taken
+        no step, after which all is read again in any case."""
         if self._sleep is None:
             return self.space.sleep_time_threshold == math.inf and (world.joints is None or world.edited())
         return world.edited() and not (self._sleep.some or self._sleep.changed())

@@ -103,8 +103,8 @@ def rollout(
     if not full:
         return job.frames
     first = np.cumsum([0, *map(len, events)])
-    told = {"steps": steps, "dt": dt, "every": every, "model": stepper.model, **versions()}
-    return Rollouts(start, job.frames, job.ledger, job.unmet, Events.joined(events), first, parameters=told)
+    parameters = {"steps": steps, "dt": dt, "every": every, "model": stepper.model, **versions()}
+    return Rollouts(start, job.frames, job.ledger, job.unmet, Events.joined(events), first, parameters=parameters)
 
 
 def certify(
@@ -119,10 +119,8 @@ def certify(
     Returns:
         (K,) length, twice the largest difference of a position in any frame; also stored as `rollouts.error`.
     """
-    told = rollouts.parameters
-    again = rollout(
-        stepper, rollouts.states, 2 * told["steps"], 0.5 * told["dt"], 2 * told["every"], None, threads, progress
-    )
+    of = rollouts.parameters
+    again = rollout(stepper, rollouts.states, 2 * of["steps"], 0.5 * of["dt"], 2 * of["every"], None, threads, progress)
     apart = np.linalg.norm(again[..., :2] - rollouts.frames[..., :2], axis=-1)
     rollouts.error = 2.0 * apart.max(axis=(1, 2), initial=0.0)
     return rollouts.error

@@ -72,8 +72,8 @@ class Stepper(ABC):
             impacts += int(np.count_nonzero((contacts.duration == 0.0) & (report.impulse != 0.0)))
             unmet, iterations, done = unmet + (not report.converged), iterations + report.iterations, done + 1
             lock = max(lock, report.lock, key=lambda scale: abs(scale - 1.0))
-        told = None if np.isnan(total).any() else Ledger(*total.tolist())
-        return RunReport(self.time, done, told, impacts, unmet, iterations, lock)
+        ledger = None if np.isnan(total).any() else Ledger(*total.tolist())
+        return RunReport(self.time, done, ledger, impacts, unmet, iterations, lock)
 
     @property
     @abstractmethod

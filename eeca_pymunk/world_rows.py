@@ -167,14 +167,14 @@ def write_rows(table: Table) -> None:
             body.elasticity, body.friction = shape.elasticity, shape.friction
     for i in range(ground + 1):
         BODY[i].due = -math.inf
-    R.TOLD[DISKS], R.TOLD[CARRIED], R.TOLD[CORNERS] = disks, carried, at
+    R.TOTALS[DISKS], R.TOTALS[CARRIED], R.TOTALS[CORNERS] = disks, carried, at
 
 
 @nonallocating
 def begin_walk(R: Reading) -> None:
     """Write what is known of the bodies to WALK, EXTRA and STATES[LEFT]: where steps have left them, only of static
     ones; functions have changed nothing."""
-    R.TOLD[DYNAMICS] = R.TOLD[ECCENTRICS] = R.TOLD[STEERERS] = R.TOLD[MOVERS] = 0
+    R.TOTALS[DYNAMICS] = R.TOTALS[ECCENTRICS] = R.TOTALS[STEERERS] = R.TOTALS[MOVERS] = 0
     for i in range(R.BODIES.shape[0]):
         body = R.BODIES[i]
         eccentric = 1 if body.centre_x != 0.0 or body.centre_y != 0.0 else 0
@@ -185,10 +185,10 @@ def begin_walk(R: Reading) -> None:
         for c in range(STATE_COLUMNS):
             R.HELD[EARLY, i, c], R.HELD[LATE, i, c] = 0.0, 0.0
             R.STATES[LEFT, i, c] = R.STATES[NOW, i, c] if body.kind == STATIC else math.nan
-        R.TOLD[DYNAMICS] += 1 if body.kind == DYNAMIC else 0
-        R.TOLD[ECCENTRICS] += eccentric
-        R.TOLD[STEERERS] += body.steered
-        R.TOLD[MOVERS] += body.moved
+        R.TOTALS[DYNAMICS] += 1 if body.kind == DYNAMIC else 0
+        R.TOTALS[ECCENTRICS] += eccentric
+        R.TOTALS[STEERERS] += body.steered
+        R.TOTALS[MOVERS] += body.moved
 
 
 @nonallocating

@@ -54,7 +54,7 @@ MUTATIONS = (
              "joints/test_limits.py", "another"),
     Mutation("limits: round-off is closed", "joints/step.py", "    if stands:", "    if False:",
              "joints/test_limits.py", "shortest"),
-    Mutation("limits: targets of free ones", "joints/closing.py", "if held(link, k, r) else 0.0", "if True else 0.0",
+    Mutation("limits: targets of free ones", "joints/closing.py", "if acts(link, k, r) else 0.0", "if True else 0.0",
              "joints/test_limits.py", "closing"),
     Mutation("limits: round-off lets go", "joints/limits.py", "    if at_once:", "    if False:",
              "joints/test_limits.py", "without_a_search"),

@@ -73,11 +73,11 @@ class Workers:
         return [one.result() for one in [self.submit(object_of, group, triple, cpu) for group in groups]]
 
 
-def gather(first: Iterable[Call], workers: Workers, told: Callable[[int, int], None]) -> dict[Call, Part]:
+def gather(first: Iterable[Call], workers: Workers, progress: Callable[[int, int], None]) -> dict[Call, Part]:
     """The parts of these calls and of all that they call, from the store or compiled.
 
     Args:
-        told: called with the number of finished parts, and that of the parts known to be needed.
+        progress: called with the number of finished parts, and that of the parts known to be needed.
     """
     found: dict[Call, Part] = {}
     known: set[Call] = set()
@@ -98,7 +98,7 @@ def gather(first: Iterable[Call], workers: Workers, told: Callable[[int, int], N
             else:
                 found[call] = part
                 waiting += part.calls
-        told(len(found), len(known))
+        progress(len(found), len(known))
 
     def take(call: Call, part: Part) -> None:
         store.write_part(call, part)

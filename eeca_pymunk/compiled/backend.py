@@ -57,12 +57,12 @@ def start() -> Backend:
         with _lock:
             if _chosen is None:
                 _chosen = choose(build=True)
-                if _chosen.kind == "python" and not asked_for():
+                if _chosen.kind == "python" and not chosen_by_user():
                     warnings.warn(f"{_PLAIN}: {_chosen.why}", stacklevel=5)
     return _chosen
 
 
-def asked_for() -> str:
+def chosen_by_user() -> str:
     """The backend that the environment sets, "" for none.
 
     Raises:
@@ -70,10 +70,10 @@ def asked_for() -> str:
     """
     if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
         return "python"
-    asked = os.environ.get("EECA_KERNELS", "")
-    if asked not in CHOICES:
-        raise ValueError(f"EECA_KERNELS={asked}: choose one of {', '.join(CHOICES[1:])}, or leave it unset")
-    return asked
+    choice = os.environ.get("EECA_KERNELS", "")
+    if choice not in CHOICES:
+        raise ValueError(f"EECA_KERNELS={choice}: choose one of {', '.join(CHOICES[1:])}, or leave it unset")
+    return choice
 
 
 def choose(build: bool) -> Backend:
@@ -82,38 +82,38 @@ def choose(build: bool) -> Backend:
     Raises:
         ImportError: EECA_KERNELS names a backend that is not available.
     """
-    asked = asked_for()
-    if asked == "python":
+    choice = chosen_by_user()
+    if choice == "python":
         return Backend("python", "set by the environment (NUMBA_DISABLE_JIT or EECA_KERNELS)")
-    said = ""
-    if asked != "jit":
-        status, entries, said, path = _library()
+    why = ""
+    if choice != "jit":
+        status, entries, why, path = _library()
         if status is not Status.LOADED and (reason := cannot_build()) == "":
             if not build:
                 return Backend("library", "there is none of these sources yet; it is built at the first step")
-            said = _build()
+            why = _build()
             status, entries, more, path = _library()
-            said = said or more
+            why = why or more
         elif status is not Status.LOADED:
-            said = f"{said}; {reason}" if said else reason
+            why = f"{why}; {reason}" if why else reason
         if status is Status.LOADED:
             return Backend("library", f"{path}", entries)
-        said = f"library: {status.value}{f' ({said})' if said else ''}"
-        if asked == "library":
-            raise ImportError(f"EECA_KERNELS=library, but {said}")
+        why = f"library: {status.value}{f' ({why})' if why else ''}"
+        if choice == "library":
+            raise ImportError(f"EECA_KERNELS=library, but {why}")
     wrong = wrong_numba()
     if not wrong:
         if not build:
-            return Backend("jit", said or "set by EECA_KERNELS")
+            return Backend("jit", why or "set by EECA_KERNELS")
         from .frontend.jit import entries as compiled
 
         try:
-            return Backend("jit", said or "set by EECA_KERNELS", compiled())
+            return Backend("jit", why or "set by EECA_KERNELS", compiled())
         except ImportError as error:
             wrong = str(error)
-    if asked == "jit":
+    if choice == "jit":
         raise ImportError(f"EECA_KERNELS=jit, but {wrong}")
-    return Backend("python", f"{said}; just in time: {wrong}. {advice()}")
+    return Backend("python", f"{why}; just in time: {wrong}. {advice()}")
 
 
 def _library() -> tuple[Status, dict[str, Entry], str, Path | None]:

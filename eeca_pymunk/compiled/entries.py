@@ -34,7 +34,7 @@ TABLES = {
         SIDE:Side[1] CORNER:Corner[1] PINNED:Pinned[1] MISSED:Missed[1] PAR:Step COUNT:Count
     """,
     "Reading": """
-        TOLD:i8[1] BODIES:BodyValues[1] SHAPES:ShapeValues[1] OWNER:i8[1] POINT:f8[2] STATES:f8[3] WALK:i8[2]
+        TOTALS:i8[1] BODIES:BodyValues[1] SHAPES:ShapeValues[1] OWNER:i8[1] POINT:f8[2] STATES:f8[3] WALK:i8[2]
         EXTRA:f8[2] ENDS:f8[1] HELD:f8[3] BODY:Body[1] SHAPE:Shape[1] LINK:Link[1] VERTEX:f8[2] ORDER:i8[1]
         MEASURED:Measures
     """,

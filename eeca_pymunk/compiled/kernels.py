@@ -42,7 +42,7 @@ class Fetch(Compilable):
     of records, the field at that place of the row. Nothing happens where there is none, or in plain Python.
 
     Scenes of thousands of bodies exceed a processor's caches, and the next event is usually elsewhere in memory. A
-    kernel that knows its place lets that row be loaded while it computes. No result depends on it.
+    kernel that has its index lets that row be loaded while it computes. No result depends on it.
     """
 
     def __call__(self, table: AnyArray, row: int, column: int) -> None:

@@ -48,8 +48,8 @@ TARGETS = {
 def this_platform() -> str:
     """The platform of this process, as `linux-x86_64`; it need not be one of `TARGETS`."""
     # That of the interpreter, which may differ from that of the operating system.
-    told = sysconfig.get_platform().rpartition("-")[2] if sys.platform == "win32" else platform.machine()
-    machine = {"amd64": "x86_64", "arm64": "aarch64"}.get(told.lower(), told.lower())
+    name = sysconfig.get_platform().rpartition("-")[2] if sys.platform == "win32" else platform.machine()
+    machine = {"amd64": "x86_64", "arm64": "aarch64"}.get(name.lower(), name.lower())
     machine += "" if sys.maxsize > 1 << 32 else "-32"
     if not sys.platform.startswith("linux"):
         return f"{sys.platform}-{machine}"

@@ -68,7 +68,7 @@ def speeds(
     acceleration |a| of a point. Sets REACH (k,), a bound of how far points of bodies move in h.
 
     Speeds in a free island are relative to its centre of mass. Where nothing accelerates, those of bodies that impulses
-    do not move count, too: nothing else says how fast bodies at rest will be that something moves into.
+    do not move count, too: bodies at rest that something moves into will be as fast.
     """
     x, y = 0.0, 0.0
     if len(IM) == n:

@@ -125,7 +125,7 @@ def support(A: Scene) -> None:
     """At the start of a step, after moving islands have been solved: solve the forces in islands at rest that support
     them; those that cannot support their loads wake, and are solved with what rests on them."""
     STATE, MEMBER, BODY = A.STATE, A.MEMBER, A.BODY
-    more, all_moving, asked = A.COUNT.may_support > 0, True, 0
+    more, all_moving, rounds = A.COUNT.may_support > 0, True, 0
     while more:
         # Mark the islands at rest on which others press with forces that have not been tested: moving islands, in the
         # first round and after one was solved, and islands at rest with new forces.
@@ -149,9 +149,9 @@ def support(A: Scene) -> None:
                 continue
             more = True
             # After SUPPORT_ROUNDS: islands that support each other are solved as one.
-            if asked < SUPPORT_ROUNDS and supports_load(A, i):
+            if rounds < SUPPORT_ROUNDS and supports_load(A, i):
                 MEMBER[i].new_forces = 1
             else:
                 begin_interval(A, wake(A, i, 0.0), 0.0)
                 all_moving = True
-        asked += 1
+        rounds += 1

@@ -1,4 +1,4 @@
-"""The interval of what hangs together by joints and meets nobody: no contacts, and no arrays to be made."""
+"""The interval of a component that no other shape is near: no contacts, and no arrays to be made."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def is_component(A: Scene, J: Joints, root: int) -> bool:
 
 
 @nonallocating
-def meets_nobody(A: Scene, root: int) -> bool:
+def meets_no_other(A: Scene, root: int) -> bool:
     """Whether no shape of an island has another one near that it may meet."""
     i = root
     while i >= 0:

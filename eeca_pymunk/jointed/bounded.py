@@ -15,7 +15,7 @@ from ..model.contacts import Bounded
 from ..model.joints import GROOVE, PRESCRIBED, Joints
 from ..model.parameters.joints import BOUNDED_SWEEPS, MOTOR_OFF
 from ..model.scene import Scene
-from ..newton.entries import held, interval_of, is_limit
+from ..newton.entries import acts, interval_of, is_limit
 from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, bounded_rate, room_for_rows, sweep_bounded, weigh_rows
 from .component import answer
 from .groups import Groups
@@ -80,7 +80,7 @@ def list_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float, V: FloatArray) 
     """Append the rows of component s whose impulses count as given (`motors.let_slip`); the first of them."""
     first = B.USED[0]
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
-        if J.COUPLING[k].bounded != PRESCRIBED or not held(J.COUPLING, k, 0):
+        if J.COUPLING[k].bounded != PRESCRIBED or not acts(J.COUPLING, k, 0):
             continue
         rows = 1 if J.COUPLING[k].kind == GROOVE and J.COUPLING[k].side == 0 else J.COUPLING[k].rows
         for r in range(rows):

@@ -15,7 +15,7 @@ from ..model.joint_steps import POSES, SPEEDS, STEP
 from ..model.joints import GEAR, Joints, Workspace
 from ..model.parameters.joints import COMPONENT_WORK, COMPONENT_WORK_BODY, CORRECTION_JOINTS
 from ..model.scene import Scene
-from ..newton.entries import held
+from ..newton.entries import acts
 from ..newton.response import prepare, respond
 from .gathered import gather_component
 
@@ -99,7 +99,7 @@ def close_joints(
         if link.bounded != 0:
             continue
         for r in range(link.rows):
-            if held(W.link, k, r) and abs(W.J.HINGE[k].value[r] - W.J.HINGE[k].target[r]) > small:
+            if acts(W.link, k, r) and abs(W.J.HINGE[k].value[r] - W.J.HINGE[k].target[r]) > small:
                 return math.inf
         for side in (-1, 1):
             passed = has_bound(W, k, side) and link.side != side

@@ -63,15 +63,15 @@ def fit(A: Scene, J: Joints, interval: Interval, L: FloatArray, end: float, scal
                     motion.V[A.PLACE[body], c] = J.LOCAL[w].v0[c]
     if first < 0 or m > COLUMN_CONTACTS:
         return np.zeros(m)
-    ASKED, asked, fastest = np.empty(m, np.int64), 0, 0.0
+    PUSHING, pushing, fastest = np.empty(m, np.int64), 0, 0.0
     for i in range(m):
         driven = DRIVEN[groups.GROUP[ROWS[i].a] + 1] + DRIVEN[groups.GROUP[ROWS[i].b] + 1] > 0
         if L[i, 0] > 0.0 and interval.C.OUT[i] == 0 and not driven:
-            ASKED[asked] = i
-            asked += 1
+            PUSHING[pushing] = i
+            pushing += 1
             fastest = max(fastest, -normal_rate(ROWS[i], motion.V))
     if fastest > FIT_CLOSING * scale:
-        return stop_closing(A, J, interval, end, ASKED[:asked], FIT_RESIDUAL * fastest, first)
+        return stop_closing(A, J, interval, end, PUSHING[:pushing], FIT_RESIDUAL * fastest, first)
     return np.zeros(m)
 
 
@@ -87,20 +87,20 @@ def bring_arms(ROWS: Rows[Row], END: FloatArray, m: int) -> None:
 
 @kernel
 def stop_closing(
-    A: Scene, J: Joints, interval: Interval, end: float, ASKED: IntArray, fine: float, book: int
+    A: Scene, J: Joints, interval: Interval, end: float, PUSHING: IntArray, fine: float, book: int
 ) -> FloatArray:
-    """Normal impulses mu (m,), 0 <= mu _|_ u + G S G^T mu >= 0, on the contacts ASKED, whose rates are u: velocities
+    """Normal impulses mu (m,), 0 <= mu _|_ u + G S G^T mu >= 0, on the contacts PUSHING, whose rates are u: velocities
     that fit the joints go on to do so, and contacts do not close. Energy only falls, by -mu.(u + G S G^T mu / 2), also
     where sweeps are cut short; it is lost by component `book`."""
     isle, groups, ROWS, motion, _, m, n, _, h = interval
-    asked, KEEP = len(ASKED), ROWS[: len(ASKED)].copy()
-    for i in range(asked):
-        KEEP[i] = ROWS[ASKED[i]]
-    bring_arms(KEEP, motion.END, asked)
-    C = make_columns(groups, KEEP, asked)
-    fill_free(groups, C, KEEP, isle.IM, isle.II, asked)
+    pushing, KEEP = len(PUSHING), ROWS[: len(PUSHING)].copy()
+    for i in range(pushing):
+        KEEP[i] = ROWS[PUSHING[i]]
+    bring_arms(KEEP, motion.END, pushing)
+    C = make_columns(groups, KEEP, pushing)
+    fill_free(groups, C, KEEP, isle.IM, isle.II, pushing)
     NOTHING, INDEX = np.zeros_like(isle.V), np.full(len(isle.IM), -1, np.int64)
-    HIT = find_hit(groups, KEEP, asked)
+    HIT = find_hit(groups, KEEP, pushing)
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
         if s < 0 or HIT[g] == 0:
@@ -109,16 +109,16 @@ def stop_closing(
         size = find_places(A, J, s, INDEX)
         if not ready(J, s, 2.0, False):
             return np.zeros(m)
-        fill_group(J, groups, C, g, INDEX, False, KEEP, asked, np.empty((size, 3)), 1)
-    weigh(groups, C, KEEP, asked)
-    RATES = np.empty(asked)
-    for i in range(asked):
+        fill_group(J, groups, C, g, INDEX, False, KEEP, pushing, np.empty((size, 3)), 1)
+    weigh(groups, C, KEEP, pushing)
+    RATES = np.empty(pushing)
+    for i in range(pushing):
         RATES[i] = normal_rate(KEEP[i], motion.V)
     D, before = np.zeros_like(motion.V), kinetic_energy(motion.V, isle.IM, isle.II, n)
-    MU = raise_gaps(JointedProblem(KEEP, C, room_for_rows(0, 0), asked), RATES, D, fine)
+    MU = raise_gaps(JointedProblem(KEEP, C, room_for_rows(0, 0), pushing), RATES, D, fine)
     HELD, loss = np.zeros(m), 0.0
-    for i in range(asked):
-        HELD[ASKED[i]] = MU[i]
+    for i in range(pushing):
+        HELD[PUSHING[i]] = MU[i]
         if MU[i] > 0.0:
             loss -= MU[i] * (RATES[i] + 0.5 * normal_rate(KEEP[i], D))
     add(motion.V, D)

@@ -37,7 +37,7 @@ def is_beyond(A: Scene, a: int, b: int, through: float, t: float) -> bool:
 def passes(A: Scene, root: int, t: float) -> float:
     """The instant by which a shape of an island has come through one that it has no contact with at t, the end of its
     interval, or t if it is deeper in it than an interval allows, and than at its start; inf if none does: the path of
-    an interval that is shortened is another one, on which nobody has looked for impacts."""
+    an interval that is shortened is another one, which was not searched for impacts."""
     i = root if under_way(A, root) else -1
     while i >= 0:
         for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):

@@ -27,7 +27,7 @@ from .columns import along, gives_way
 @nonallocating
 def clear_round_off(interval: Interval, ERROR: FloatArray) -> None:
     """Set to 0 what may be round-off of the places of bodies (k, 3), over the interval, in changes of velocities: small
-    changes of impulses would be told to do it all."""
+    changes of impulses would seem to cause it all."""
     for q in range(len(ERROR)):
         extent = interval.isle.EXTENT[q]
         least = FIT_ROUND_OFF * extent / interval.h

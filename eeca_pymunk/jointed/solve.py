@@ -31,7 +31,7 @@ from ..model.step import AGAIN, CONTACTS, DONE, PUSHES_FULL, SPENT
 from ..rows.bounded import room_for_rows
 from ..rows.build import conserves, normal_rate
 from .advance import Interval, Motion, advance
-from .alone import account_turning, begin_alone, is_component, meets_nobody, set_path
+from .alone import account_turning, begin_alone, is_component, meets_no_other, set_path
 from .columns import make_columns
 from .fitting import fit
 from .gathered import keep_joints, restore_joints
@@ -76,13 +76,13 @@ def try_interval(A: Scene, J: Joints, root: int, t: float, h: float, last: bool)
     """`begin_jointed` of length h. AGAIN, with nothing done, if that is too long, and how long it may be; not if it is
     the `last` attempt."""
     whole, A.RESTING[root].strays = is_component(A, J, root), 0.0
-    if whole and meets_nobody(A, root):
+    if whole and meets_no_other(A, root):
         far = begin_alone(A, J, root, t, h, last)
         return (AGAIN, h / far) if far > 0.0 else (DONE, h)
     COUNT = A.COUNT
     MINE = number_bodies(A, root)
     n = len(MINE)
-    # As in a whole step where it is cut short: nobody looks for impacts of pairs that would be left out.
+    # As in a whole step where it is cut short: pairs that were left out would not be searched for impacts.
     found = pairs_within(A, root, t, A.PAR.planned - t, lossy(A, root), MINE)
     p = len(found)
     spend(A, n, 2 * p, 0, 0, 0)  # besides what joints take
@@ -131,7 +131,7 @@ def try_interval(A: Scene, J: Joints, root: int, t: float, h: float, last: bool)
         A.RESTING[root].strays, far = 0.0 if held else strays, max(far, strays)
     else:
         A.RESTING[root].strays = too_deep_on_way(A, isle, ROWS, motion, m, h)
-    if not held:  # the motion is not that of a solution, and says little of how long it may be
+    if not held:  # the motion is not that of a solution: how long it may be does not follow from it
         # Contacts that are not solved in a long interval may be in a short one, if the step has work for many of these;
         # and what sinks in by them would sink further in the next one.
         payable = RESOLUTION * (J.PROGRESS.effort - before) <= J.PROGRESS.budget

@@ -9,7 +9,7 @@ from ..compiled.records import Rows
 from ..model.joint_steps import POSES, SPEEDS, BodyStep, JointLedger
 from ..model.joints import APART, EDITED, GIVES_WAY, LEFT_APART, Workspace
 from ..model.parameters.joints import JOINT_APART
-from ..newton.entries import held
+from ..newton.entries import acts
 from ..newton.motion import go_back, save
 from ..newton.rows import joint_rows
 from .bounds import gap, has_bound
@@ -48,7 +48,7 @@ def find_apart(W: Workspace, h: float) -> tuple[bool, bool, bool]:
         joint_rows(W, k, 2.0, False)
         error = 0.0
         for r in range(rows):
-            if held(link, k, r):
+            if acts(link, k, r):
                 error += hinge[k].value[r] ** 2
         error = np.sqrt(error)
         if error > JOINT_APART * hinge[k].size and was == GIVES_WAY:
@@ -57,7 +57,7 @@ def find_apart(W: Workspace, h: float) -> tuple[bool, bool, bool]:
             apart = True
             left = 1.0 - closing_share(joint, j, error, h)
             for r in range(rows):
-                hinge[k].target[r] = hinge[k].value[r] * left if held(link, k, r) else 0.0
+                hinge[k].target[r] = hinge[k].value[r] * left if acts(link, k, r) else 0.0
             joint[j].touched = 0 if not left > 0.0 else LEFT_APART if was == LEFT_APART else APART
             own = own and was == LEFT_APART
     return edited, apart, own and not edited
@@ -71,7 +71,7 @@ def farthest(W: Workspace) -> float:
     worst = 0.0
     for k in range(W.joints):
         for r in range(link[k].rows):
-            if link[k].bounded == 0 and held(link, k, r):
+            if link[k].bounded == 0 and acts(link, k, r):
                 worst = max(worst, abs(W.J.HINGE[k].value[r]) / W.J.HINGE[k].size)
     return worst
 
@@ -98,7 +98,7 @@ def keep_closed(W: Workspace) -> None:
                 local[i].shift[c] = local[i].pose[c] - local[i].saved_pose[c]
     for k in range(W.joints):
         for r in range(link[k].rows):
-            if hinge[k].target[r] != 0.0 and link[k].bounded == 0 and held(link, k, r):
+            if hinge[k].target[r] != 0.0 and link[k].bounded == 0 and acts(link, k, r):
                 hinge[k].target[r] = hinge[k].value[r]
 
 

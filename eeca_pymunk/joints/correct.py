@@ -19,7 +19,7 @@ from ..model.parameters.joints import (
     REDUNDANT_EPSILON,
     REDUNDANT_PASSES,
 )
-from ..newton.entries import held
+from ..newton.entries import acts
 from ..newton.systems import apply, back, effort, factorise, first_iterate, linearise
 from .bounds import gap, gap_rate, has_bound
 
@@ -139,7 +139,7 @@ def let_go(W: Workspace) -> bool:
 @nonallocating
 def noise(W: Workspace, k: int, r: int) -> float:
     """The impulse that changes the rate of row r of joint k by what is round-off of the velocities before: a limit that
-    pulls no more than that is in nobody's way, and to let it go would only have it met again."""
+    pulls no more than that hinders nothing, and if it were let go it would be met again at once."""
     return float(JOINT_SPEED_ROUND_OFF * terms(W, k, r) * W.J.HINGE[k].scale[r] ** 2)
 
 
@@ -182,7 +182,7 @@ def hold_closing(W: Workspace, kept: bool) -> bool:
 @nonallocating
 def speeds_fit(W: Workspace) -> bool:
     """Whether velocities fit all rows that hold, but for what steps leave: they hold places exactly, and velocities to
-    second or fourth order. To project that too would take energy whenever somebody else begins to step.
+    second or fourth order. To project that too would take energy at every other start of a step.
 
     Rows are those of the present poses.
     """
@@ -190,7 +190,7 @@ def speeds_fit(W: Workspace) -> bool:
     well = True
     for k in range(W.joints):
         for r in range(link[k].rows):
-            if link[k].bounded != 0 or not held(link, k, r):
+            if link[k].bounded != 0 or not acts(link, k, r):
                 continue
             rate, total = 0.0, 0.0
             for c in range(3):

@@ -9,7 +9,7 @@ from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.joint_steps import BodyStep, JointLedger
 from ..model.joints import MOTOR, ROTARY_SPRING, SPRING, Workspace
-from ..newton.entries import held
+from ..newton.entries import acts
 from ..newton.springs import potential
 
 
@@ -53,7 +53,7 @@ def book(W: Workspace, h: float, ledger: JointLedger) -> None:
     for k in range(W.joints):
         kind, j = link[k].kind, link[k].joint
         spring = kind in (SPRING, ROTARY_SPRING)
-        if not spring and not held(link, k, 0):
+        if not spring and not acts(link, k, 0):
             continue
         total, moved = 0.0, 0.0
         for end in range(2):

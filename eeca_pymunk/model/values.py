@@ -65,10 +65,10 @@ class Reading(NamedTuple):
     BODIES (N,), SHAPES (k,): values, in pymunk's order; OWNER (k,): `owner` of the shapes; POINT (v, 2): the vertices
     of all shapes, overwritten. STATES, WALK, EXTRA, ENDS, HELD: see `..layout`. Out: BODY (moving bodies + 1,), SHAPE,
     LINK (k,), VERTEX (v, 4), whose rows in use come first; ORDER (k + N + 2,), the index in SHAPES of every row of
-    SHAPE, and scratch; TOLD: numbers that Python asks for. MEASURED: by `..impacts.new_scene.measure_scene`.
+    SHAPE, and scratch; TOTALS: counts of what was read. MEASURED: by `..impacts.new_scene.measure_scene`.
     """
 
-    TOLD: IntArray
+    TOTALS: IntArray
     BODIES: Rows[BodyValues]
     SHAPES: Rows[ShapeValues]
     OWNER: IntArray
@@ -87,7 +87,7 @@ class Reading(NamedTuple):
 
 
 reading_of = Opener(Reading)
-# Places in TOLD: numbers of single disks; of dynamic bodies; of solid shapes of moving bodies; of rows of VERTEX in
+# Places in TOTALS: numbers of single disks; of dynamic bodies; of solid shapes of moving bodies; of rows of VERTEX in
 # use; of bodies whose centre of mass is not the origin; with velocity functions; with position functions.
 DISKS, DYNAMICS, CARRIED, CORNERS, ECCENTRICS, STEERERS, MOVERS = 0, 1, 2, 3, 4, 5, 6
-TOLD = 7
+TOTALS = 7

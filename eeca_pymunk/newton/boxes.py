@@ -39,7 +39,7 @@ from ..model.parameters.joints import (
 from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, on_disc
 from .condensed import factor, substitute
 from .dual import STRIDE
-from .entries import held, interval_of, put_free
+from .entries import acts, interval_of, put_free
 
 ROOM = 8  # arrays of one number per row, beside the columns (and a right side) and a matrix with its factors
 
@@ -47,7 +47,7 @@ ROOM = 8  # arrays of one number per row, beside the columns (and a right side) 
 @nonallocating
 def rows_of(link: Rows[Coupling], k: int) -> int:
     """The rows of joint k that act, if it is boxed; 0 if not."""
-    if link[k].bounded != BOXED or not held(link, k, 0):
+    if link[k].bounded != BOXED or not acts(link, k, 0):
         return 0
     return 1 if link[k].kind == GROOVE and link[k].side == 0 else int(link[k].rows)
 

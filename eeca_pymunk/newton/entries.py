@@ -24,7 +24,7 @@ def is_limit(kind: int) -> bool:
 
 
 @inlined
-def held(link: Rows[Coupling], k: int, r: int) -> bool:
+def acts(link: Rows[Coupling], k: int, r: int) -> bool:
     """Whether row r of joint k acts: rows of limits do where the joint stands on one."""
     kind = link[k].kind
     if kind == GROOVE:
@@ -36,7 +36,7 @@ def held(link: Rows[Coupling], k: int, r: int) -> bool:
 def idle(link: Rows[Coupling], k: int) -> bool:
     """Whether joint k is a limit on which it does not stand: steps go without it, and look at it when they are solved
     (`..joints.bounds.first_bound`)."""
-    return not held(link, k, 0) and link[k].bounded == 0
+    return not acts(link, k, 0) and link[k].bounded == 0
 
 
 @inlined

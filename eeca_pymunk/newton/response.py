@@ -17,7 +17,7 @@ from ..compiled.records import Rows
 from ..model.joint_steps import FULL_BEND, NO_BEND, STEP
 from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, GEAR, GROOVE, Coupling, Workspace
 from ..model.parameters.joints import CONDENSED_PASSES, REDUNDANT_EPSILON, RESPONSE_PASSES, TAUT
-from .entries import held
+from .entries import acts
 from .motion import move
 from .rows import joint_rows, start_joint
 from .systems import assemble, back, decompose, first_iterate
@@ -121,7 +121,7 @@ def factor_response(W: Workspace, what: int, h: float) -> int:
             for c in range(3):
                 local[i].inertia[c] = 1.0
         for k in range(W.joints):
-            if link[k].rows > 0 and held(link, k, 0):
+            if link[k].rows > 0 and acts(link, k, 0):
                 bend_rows(W, k, h)
     else:
         first_iterate(W, what, h)

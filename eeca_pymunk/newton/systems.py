@@ -33,7 +33,7 @@ from .bounded import put_bounded
 from .boxes import leave_box
 from .condensed import back_condensed, factor, put_row
 from .dual import back_dual, factor_dual
-from .entries import along, held, idle, put_free, put_idle, put_stiffness, scale_rows
+from .entries import acts, along, idle, put_free, put_idle, put_stiffness, scale_rows
 from .motion import move
 from .rows import joint_rows, start_joint
 
@@ -62,7 +62,7 @@ def put_exact(W: Workspace, what: int, k: int, h: float, give: float, system: in
     a, b = link[k].body[0], link[k].body[1]
     per, slopes, bounded, farthest = 2.0 / h, what == STEP, link[k].bounded != 0, 0.0
     for r in range(link[k].rows):
-        if bounded or not held(link, k, r):
+        if bounded or not acts(link, k, r):
             put_free(W, k, r, system, build)
             continue
         scale = hinge[k].scale[r]
@@ -119,15 +119,15 @@ def assemble(W: Workspace, what: int, h: float, give: float, first: bool, system
         a, b = link[k].body[0], link[k].body[1]
         if first or hinge[k].scale[0] == 0.0:
             scale_rows(W, k)
-        if not still and (link[k].rows == 0 or held(link, k, 0)):
+        if not still and (link[k].rows == 0 or acts(link, k, 0)):
             for c in range(3):
                 local[a].impulse[c] += hinge[k].force[c]
                 local[b].impulse[c] += hinge[k].force[c + 3]
             if build and bend != NO_BEND:
                 put_stiffness(W, k, bend, h, system)
-        if link[k].bounded == BOUNDED and not still and held(link, k, 0):
+        if link[k].bounded == BOUNDED and not still and acts(link, k, 0):
             off = put_bounded(W, k, slopes, h, system, build)
-        elif link[k].bounded == BOXED and not still and held(link, k, 0):
+        elif link[k].bounded == BOXED and not still and acts(link, k, 0):
             off = put_bounded(W, k, slopes, h, system, False)
             leave_box(W, k, system, build)
         else:

@@ -60,9 +60,9 @@ def _mp4(frames: Frames, path: Path, fps: float) -> None:
             ffmpeg.kill()
             raise
         ffmpeg.stdin.close()
-        said = ffmpeg.stderr.read().decode(errors="replace")
+        message = ffmpeg.stderr.read().decode(errors="replace")
     if ffmpeg.returncode:
-        raise OSError(f"ffmpeg could not write {path}: {said.strip()}")
+        raise OSError(f"ffmpeg could not write {path}: {message.strip()}")
 
 
 def _html(frames: Frames, path: Path, fps: float) -> None:

@@ -53,8 +53,8 @@ def trace(ax: Axes, recording: Recording) -> Trace:
     """The stack of a ledger with losses or external work; otherwise energy and momentum."""
     held, size = recording.ledger, float(np.abs(recording.energy).max(initial=0.0))
     if held.kept and np.isfinite(recording.kinetic).all():
-        told = max(float(np.abs(x).max()) for x in (held.restitution, held.friction, held.damping, held.external))
-        if told > _WORTH * size:
+        most = max(float(np.abs(x).max()) for x in (held.restitution, held.friction, held.damping, held.external))
+        if most > _WORTH * size:
             return Stack(ax, recording)
     return Lines(ax, recording)
 

@@ -51,7 +51,7 @@ def works(problem: AnyProblem, L: FloatArray, V: FloatArray) -> tuple[float, flo
 
 @nonallocating
 def scale_to_lose(p: float, q: float, owed: float, exact: bool) -> tuple[float, float]:
-    """The scale s of impulses that lose D(s) = s p - s^2 q: see `lock`, which also tells what is returned."""
+    """The scale s of impulses that lose D(s) = s p - s^2 q: see `lock`, also for what is returned."""
     if not q > 0.0:
         return 1.0, max(owed, 0.0)
     if not exact and p - q >= owed:

@@ -20,7 +20,7 @@ from ..impacts.new_scene import measure_scene
 from ..layout import EXTRA_COLUMNS, HELD, STATE_COLUMNS
 from ..model.bodies import Body
 from ..model.shapes import Link, Shape
-from ..model.values import CORNERS, STATIC, TOLD, Reading
+from ..model.values import CORNERS, STATIC, TOTALS, Reading
 from ..world_rows import read_space, write_rows
 from .bodies import Bodies
 from .checks import check_shape, shape_body
@@ -120,7 +120,7 @@ def shape_counts(bodies: Bodies, records: Records) -> dict[Any, int]:
 @cache
 def _arrays() -> Plan[Reading]:
     return Plan(
-        Reading, ("TOLD", "BODY", "SHAPE", "LINK", "VERTEX", "ORDER", "SHAPES", "OWNER", "POINT", "MEASURED"), 6,
+        Reading, ("TOTALS", "BODY", "SHAPE", "LINK", "VERTEX", "ORDER", "SHAPES", "OWNER", "POINT", "MEASURED"), 6,
         ("BODIES", "STATES", "WALK", "EXTRA", "ENDS", "HELD"), {},
         {
             "VERTEX": (COUNT, 4), "POINT": (COUNT, 2), "STATES": (2, COUNT, STATE_COLUMNS), "WALK": (4, COUNT),
@@ -138,7 +138,7 @@ class Packed:
 
     Attributes:
         shapes: the pymunk shapes, by row of SHAPE.  owner: (k,) places of their bodies in pymunk's order.
-        BODY, SHAPE, LINK, VERTEX: see `..model`.  told: see `Reading`.  status: see `read_space`.
+        BODY, SHAPE, LINK, VERTEX: see `..model`.  totals: see `Reading`.  status: see `read_space`.
         table: all arrays.  bound: see `Layout`.
     """
 
@@ -155,7 +155,7 @@ class Packed:
         moving, v = N - bodies.VALUES["kind"].tolist().count(STATIC), len(points) // _POINT
         self._layout = layout = Layout(_arrays()) if past is None else past._layout
         counts = {
-            "TOLD": TOLD, "MEASURED": 1, "BODY": moving + 1, "SHAPE": k, "LINK": k, "VERTEX": v, "ORDER": k + N + 2,
+            "TOTALS": TOTALS, "MEASURED": 1, "BODY": moving + 1, "SHAPE": k, "LINK": k, "VERTEX": v, "ORDER": k + N + 2,
             "BODIES": N, "SHAPES": k, "OWNER": k, "POINT": v, "STATES": N, "WALK": N, "EXTRA": N,
             "ENDS": len(crossing.ENDS), "HELD": N,
         }  # fmt: skip
@@ -168,11 +168,11 @@ class Packed:
         self.bound = layout.bound
         self._write, read = layout.bound(write_rows, read_space)
         self.status = read(bodies.arranged)
-        self.told: list[int] = layout.integers("TOLD").tolist()
+        self.totals: list[int] = layout.integers("TOTALS").tolist()
         self.BODY: Rows[Body] = layout.array("BODY")
         self.SHAPE: Rows[Shape] = layout.array("SHAPE")
         self.LINK: Rows[Link] = layout.array("LINK")
-        self.VERTEX: FloatArray = layout.array("VERTEX")[: self.told[CORNERS]]
+        self.VERTEX: FloatArray = layout.array("VERTEX")[: self.totals[CORNERS]]
         order = layout.integers("ORDER")[:k].tolist()
         self.shapes = tuple([solid[i] for i in order])
         self.owner: IntArray = np.array([owner[i] for i in order], np.int64)

@@ -89,7 +89,7 @@ class World(Crossing):
         if self.frictionless:
             self.SHAPE["friction"] = 0.0
             self.BODY["friction"] = 0.0
-        self.disks, self.dynamic, self._carried, _, eccentric, *self._functions = packed.told
+        self.disks, self.dynamic, self._carried, _, eccentric, *self._functions = packed.totals
         self.eccentric = eccentric > 0
         self.patches = 0
         self.parted: set[tuple[int, int]] = set()
