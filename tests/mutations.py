@@ -187,7 +187,7 @@ MUTATIONS = (
              "jointed/test_taut.py", "groove"),
     Mutation("joints: what pushes a body pulls", "newton/response.py", "turns_over(W, k))", "False)",
              "jointed/test_taut.py", "pushes_a_body"),
-    Mutation("joints: motors in parts of a step", "jointed/bounded.py", "low = high = hinge.total[r]", "low = low",
+    Mutation("joints: motors in parts of a step", "jointed/bounded_rows.py", "low = high = hinge.total[r]", "low = low",
              "jointed/test_bounded.py", "different_bounds"),
     Mutation("joints: what pulls gives way", "newton/response.py", "not (pulls or slight):", "not slight:",
              "jointed/test_taut.py", "derivative"),

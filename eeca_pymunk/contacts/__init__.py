@@ -4,12 +4,11 @@ In: bodies (pose, velocity, mobility, acceleration), pairs of shapes that may to
 interval h. Out: velocities at its end (each path is the parabola between), impulses, losses, penetration corrections.
 Open `interval.py` first: rows (`geometry.py`), targets (`targets.py`), test for static forces (`statics.py`), solve
 (`relaxation.py`), energy lock, works (`works.py`), penetration correction (`correction.py`), memory of forces
-(`memory.py`). `single.py` is the closed law of one disk's impact; `unmet.py` notes budgets and tolerances that were not
-met.
+(`memory.py`). `single.py` is the closed law of one disk's impact; `counts.py` notes budgets and tolerances that were
+not met, and the work of solves.
 
-Names of arguments are those of `..rows`, where A, B are the local bodies of rows; S is the scene there, but A is the
-scene in files of the whole scene (`single.py`, `unmet.py`). V and VN (k, 3) are velocities at the start and the end of
-an interval of length h, ACC (k, 3) accelerations without contacts, EXTENT (k,) largest distances of points of bodies
+Names of arguments are those of `..rows`; A is the scene. V and VN (k, 3) are velocities at the start and the end of an
+interval of length h, ACC (k, 3) accelerations without contacts, EXTENT (k,) largest distances of points of bodies
 from their centres of mass. |a| is the largest acceleration of any point (`pull`), |a| h the velocity that others are
 measured by. v- and v+ (u-, u+) are velocities at the start and the end.
 """

@@ -40,19 +40,19 @@ def way_about(POSE: FloatArray, V: FloatArray, a: int, b: int, extent: float) ->
 
 @kernel
 def gather(
-    S: Scene, isle: Island, contacts: IslandContacts, MIDDLE: FloatArray, REACH: FloatArray, h: float, free: bool
+    A: Scene, isle: Island, contacts: IslandContacts, MIDDLE: FloatArray, REACH: FloatArray, h: float, free: bool
 ) -> int:  # fmt: skip
     """Write the ROWS of all contacts of an island's pairs whose gap is at most the sum of both bodies' REACH.
 
     Args:
-        S: the scene.  h: length of the interval.  isle, contacts: the island, and its contacts, out.
+        h: length of the interval.  isle, contacts: the island, and its contacts, out.
         MIDDLE: (k, 3) poses predicted for h/2.  REACH: (k,) length.
         free: whether impulses move all k bodies.
 
     Returns:
         The number of rows, or -1 if they need more memory.
     """
-    SHAPE, LINK = S.SHAPE, S.LINK
+    SHAPE, LINK = A.SHAPE, A.LINK
     POSE, V, EXTENT, PAIRS = isle.POSE, isle.V, isle.EXTENT, isle.PAIRS
     ROWS = contacts.ROWS
     NOW, THEN = np.empty((2, 5)), np.empty((2, 5))  # (n_x, n_y, p_x, p_y, g) of up to two points
@@ -65,12 +65,12 @@ def gather(
             continue
         small = min(SHAPE[s].extent, SHAPE[r].extent)
         reach = REACH[a] + REACH[b]
-        count = manifold(S, s, r, POSE, a, b, reach, MANIFOLD_ROUND_OFF * small, NOW)
+        count = manifold(A, s, r, POSE, a, b, reach, MANIFOLD_ROUND_OFF * small, NOW)
         if count == 0:
             continue
         if m + count > len(ROWS):
             return -1
-        note_side(S, s, r, NOW[0, 0], NOW[0, 1], True)
+        note_side(A, s, r, NOW[0, 0], NOW[0, 1], True)
         # How far points of both bodies move against each other in h/2; about: in the frame of a body that rotates.
         way = half * (
             math.sqrt((V[b, 0] - V[a, 0]) ** 2 + (V[b, 1] - V[a, 1]) ** 2)
@@ -87,7 +87,7 @@ def gather(
         far = SHAPE[s].rounding + SHAPE[r].rounding if LINK[s].vertices == 1 and LINK[r].vertices == 1 else small
         ahead = MIDPOINT_SAME * small < way and about <= 0.5 * INTERVAL_WAY * far
         if ahead:
-            again = manifold(S, s, r, MIDDLE, a, b, reach + about, MANIFOLD_ROUND_OFF * small, THEN)
+            again = manifold(A, s, r, MIDDLE, a, b, reach + about, MANIFOLD_ROUND_OFF * small, THEN)
             ahead = again == count
         if not ahead:
             x, y = 0.0, 0.0
@@ -102,7 +102,7 @@ def gather(
                     THEN[z, q] = NOW[z, q]
                 THEN[z, 2] += x
                 THEN[z, 3] += y
-        elasticity, friction, sx, sy = law(S, s, r)
+        elasticity, friction, sx, sy = law(A, s, r)
         for z in range(count):
             i = m + z
             row = ROWS[i]

@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import Table, kernel, nonallocating
 from ..compiled.records import Rows, empty, zeros
-from ..model.contacts import ROW, SOLVED, Force, Problem, Row
+from ..model.contacts import ROW, SOLVED, Problem, Row
 from ..model.islands import IslandContacts, contacts_of, island_of
 from ..model.parameters.impulses import WEDGED
 from ..model.parameters.intervals import (
@@ -22,7 +22,7 @@ from ..model.parameters.intervals import (
     LARGE_ISLAND,
 )
 from ..model.parameters.joints import COLUMN_CONTACTS
-from ..model.scene import scene_of
+from ..model.scene import Scene, scene_of
 from ..rows.blocks import clear_report
 from ..rows.build import conserves, rates
 from ..rows.energy import lock, works
@@ -38,12 +38,9 @@ from .works import moved
 
 
 @nonallocating
-def recall(
-    ROWS: Rows[Row], m: int, KEYS: IntArray, FORCES: Rows[Force], stamp: float, h: float, forces: bool, L: FloatArray,
-    EXPECTED: FloatArray,
-) -> None:  # fmt: skip
-    """Set the initial impulses L (m, 2), and those of loads EXPECTED (m,), from remembered forces of this step, whose
-    number is `stamp`, or the last.
+def recall(A: Scene, ROWS: Rows[Row], m: int, h: float, forces: bool, L: FloatArray, EXPECTED: FloatArray) -> None:
+    """Set the initial impulses L (m, 2), and those of loads EXPECTED (m,), from remembered forces of this step or the
+    last.
 
     forces: they act over the whole of h, as loads do. Else L is no more than the impulses from which forces are known:
     what stops bodies in a short interval is a force that grows as the interval shrinks. Sweeps over many contacts,
@@ -52,12 +49,12 @@ def recall(
     for i in range(m):
         L[i, 0] = L[i, 1] = 0.0
         EXPECTED[i] = 0.0
-        row = find(KEYS, ROWS[i].key)
-        if row >= 0 and FORCES[row].stamp >= stamp - 1.0:
-            span = h if forces else min(h, FORCES[row].length)
-            L[i, 0] = span * FORCES[row].normal
-            L[i, 1] = span * FORCES[row].tangential
-            EXPECTED[i] = h * FORCES[row].load
+        row = find(A.KEYS, ROWS[i].key)
+        if row >= 0 and A.FORCES[row].stamp >= A.PAR.stamp - 1.0:
+            force = A.FORCES[row]
+            span = h if forces else min(h, force.length)
+            L[i, 0], L[i, 1] = span * force.normal, span * force.tangential
+            EXPECTED[i] = h * force.load
 
 
 @nonallocating
@@ -125,7 +122,7 @@ def step_island(
         The number m of contacts; 0 if only the test is done and finds no static forces; -1, with no result, if the
             contacts or the memory of forces need more memory.
     """
-    S, isle, contacts = scene_of(SCENE), island_of(ISLE), contacts_of(CONTACTS)
+    A, isle, contacts = scene_of(SCENE), island_of(ISLE), contacts_of(CONTACTS)
     ROWS, VN, OUT = contacts.ROWS, contacts.VN, contacts.OUT
     V, ACC, IM, II, EXTENT = isle.V, isle.ACC, isle.IM, isle.II, isle.EXTENT
     clear_report(OUT[0])
@@ -134,8 +131,8 @@ def step_island(
     slow, fast, pull = speeds(V, ACC, EXTENT, IM, n, h, REACH)
     for i in range(k):
         REACH[i] = max(REACH[i], least)
-    m = gather(S, isle, contacts, moved(isle.POSE, V, 0.5 * h), REACH, h, k == n)
-    if m < 0 or 2 * (S.COUNT.remembered + m) > len(S.KEYS):
+    m = gather(A, isle, contacts, moved(isle.POSE, V, 0.5 * h), REACH, h, k == n)
+    if m < 0 or 2 * (A.COUNT.remembered + m) > len(A.KEYS):
         return -1
     FREE = moved(V, ACC, h)
     copy(VN, FREE)
@@ -143,7 +140,7 @@ def step_island(
     if m > 0:
         problem = Problem(ROWS, IM, II, isle.POSE, n, m)
         L, EXPECTED = contacts.L[:m], np.empty(m)
-        recall(ROWS, m, S.KEYS, S.FORCES, S.PAR.stamp, h, True, L, EXPECTED)
+        recall(A, ROWS, m, h, True, L, EXPECTED)
         rates(ROWS, V, m)
         target(ROWS, m, ACC, EXPECTED, pull, h)
         if rest_speed != 0.0:
@@ -151,7 +148,7 @@ def step_island(
             OUT[0].direct = factors
             if found:
                 OUT[0].at_rest = 1
-                remember_loads(ROWS, L, m, h, S.KEYS, S.FORCES, S.COUNT, S.PAR.stamp)
+                remember_loads(A, ROWS, L, m, h)
                 return m
             if rest_speed < 0.0:
                 return 0
@@ -165,7 +162,7 @@ def step_island(
         rounds = DIRECT if elastic or slow < pull * h else (DIRECT_MOVING if few else 0)
         coarse = 0.0 if elastic or few else INTERVAL_RESIDUAL_MOVING * scale + INTERVAL_RESIDUAL_SPEED * slow
         sweeps, polishes, worst = relax(
-            problem, L, VN, FREE, rounds, INTERVAL_RESIDUAL * scale, coarse, S.RESTING[isle.WHO[0]], most
+            problem, L, VN, FREE, rounds, INTERVAL_RESIDUAL * scale, coarse, A.RESTING[isle.WHO[0]], most
         )  # fmt: skip
         # Velocities are computed again from the impulses, without the round-off of many sweeps.
         velocities(problem, L, FREE, VN)
@@ -179,7 +176,7 @@ def step_island(
         OUT[0].direct += polishes
         OUT[0].residual, OUT[0].tolerance = worst, INTERVAL_UNMET * scale if exactly else np.inf
         OUT[0].restitution, OUT[0].friction = works(problem, L, VN)
-        remember_loads(ROWS, L, m, h, S.KEYS, S.FORCES, S.COUNT, S.PAR.stamp)
+        remember_loads(A, ROWS, L, m, h)
     else:
         OUT[0].owed = owed
     return m

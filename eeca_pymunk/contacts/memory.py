@@ -58,16 +58,14 @@ def remember(
 
 
 @nonallocating
-def remember_loads(
-    ROWS: Rows[Row], L: FloatArray, m: int, h: float, KEYS: IntArray, FORCES: Rows[Force], COUNT: Count, stamp: float
-) -> None:
+def remember_loads(A: Scene, ROWS: Rows[Row], L: FloatArray, m: int, h: float) -> None:
     """Write the forces of the active ones of m contacts, from their impulses L (m, 2) over h, and their loads, without
     the part that stops an approach."""
     for i in range(m):
         if L[i, 0] > 0.0:
             stopped = max(max(ROWS[i].target, 0.0) - ROWS[i].un, 0.0) * ROWS[i].k_n
             load = max(L[i, 0] - stopped, 0.0)
-            remember(KEYS, FORCES, COUNT, ROWS[i].key, L[i, 0] / h, L[i, 1] / h, load / h, h, stamp)
+            remember(A.KEYS, A.FORCES, A.COUNT, ROWS[i].key, L[i, 0] / h, L[i, 1] / h, load / h, h, A.PAR.stamp)
 
 
 @nonallocating

@@ -4,7 +4,7 @@ early."""
 from __future__ import annotations
 
 from ..compiled import kernel, nonallocating
-from ..contacts.unmet import note_unmet
+from ..contacts.counts import note_unmet
 from ..islands.accounting import close_interval
 from ..islands.building import build_islands
 from ..islands.intervals import begin_interval, lift_here

@@ -7,8 +7,8 @@ older path version of the partner is predicted again when it is taken from the q
 from __future__ import annotations
 
 from ..compiled import inlined, kernel, nonallocating
+from ..contacts.counts import note_unmet
 from ..contacts.single import alone, strike_disk
-from ..contacts.unmet import note_unmet
 from ..geometry.sides import remembers
 from ..islands.accounting import end_interval
 from ..islands.building import comes_to_rest, hits_of, most_hits, passed_over

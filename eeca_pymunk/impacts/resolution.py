@@ -10,9 +10,9 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, zeros
+from ..contacts.counts import note_lock, note_unmet, spend
 from ..contacts.memory import shapes_of
 from ..contacts.single import note
-from ..contacts.unmet import note_lock, note_unmet, spend
 from ..contacts.works import carried
 from ..islands.building import spread
 from ..islands.local import clear_places

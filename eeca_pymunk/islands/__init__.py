@@ -19,6 +19,6 @@ States of rest, `Member.rest` of the root of an island, and the transitions betw
 `space/sleeping.py` turns islands at rest into pymunk's sleepers after `space.sleep_time_threshold`.
 
 Names of arguments: A is the scene; `root` the first body of an island, MINE its n bodies; a, b shapes, i, j bodies; t
-an instant after the start of the step, h the length of an interval; `isle` the island in local numbering, ROWS,
-KEY its m contacts (`..model.islands`).
+an instant after the start of the step, h the length of an interval; `isle` the island in local numbering, ROWS its
+m contacts (`..model.islands`).
 """

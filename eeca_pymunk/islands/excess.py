@@ -13,9 +13,9 @@ import numpy as np
 
 from ..arrays import IntArray
 from ..compiled import inlined, kernel, nonallocating
+from ..contacts.counts import count_solve
 from ..contacts.interval import make_contacts, step_island
 from ..contacts.single import move_to
-from ..contacts.unmet import count_solve
 from ..model.contacts import ENDED
 from ..model.parameters.intervals import INTERVAL_RETRY, REPAY_ROUND_OFF
 from ..model.scene import Scene

@@ -9,9 +9,9 @@ import numpy as np
 from ..arrays import FlagArray, FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..contacts.correction import budget_of, lifting
+from ..contacts.counts import count_solve, note_lock, note_unmet
 from ..contacts.geometry import gather
 from ..contacts.interval import make_contacts, step_island
-from ..contacts.unmet import count_solve, note_lock, note_unmet
 from ..contacts.works import moved
 from ..model.bodies import MOVED
 from ..model.contacts import Problem

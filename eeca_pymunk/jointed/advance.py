@@ -16,7 +16,7 @@ from ..model.joints import Joints
 from ..model.parameters.joints import ARM_ERROR, ARM_ITERATIONS, COLUMN_CONTACTS
 from ..model.scene import Scene
 from ..rows.build import push_contact
-from .bounded import fill_rows, list_rows, note_rows
+from .bounded_rows import fill_rows, list_rows, note_rows
 from .columns import fill_group
 from .component import ready, step_component
 from .gathered import find_places, gather_component, lead_component, rewind_joints

@@ -11,7 +11,7 @@ from ..model.joints import Joints
 from ..model.scene import Scene
 from ..rows.gentle import sweep_gently
 from .advance import Interval, advance, align
-from .bounded import with_bounded
+from .bounded_rows import with_bounded
 from .columns import fill_free, weigh
 
 

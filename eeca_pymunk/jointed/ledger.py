@@ -6,7 +6,7 @@ import math
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import nonallocating
-from ..contacts.unmet import note_unmet
+from ..contacts.counts import note_unmet
 from ..joints.ledger import clear_interval
 from ..joints.welds import pass_on, pinned_row, push_weld
 from ..layout import BODY_ROW, LEFT

@@ -52,11 +52,11 @@ from ..rows.gentle import excessive
 from ..rows.inplace import copy
 from ..rows.laws import give_slips, solve_columns, solve_wedged, take_slips
 from .advance import Interval, advance, advance_aligned, align, farthest_apart
-from .bounded import make_bounded, settle_bounded, with_bounded
+from .bounded_rows import make_bounded, settle_bounded, with_bounded
 from .columns import fill_free, leave_out, weigh
 from .gentle import solve_gently
 from .groups import Groups, hangs
-from .lock import lock, lost, work_error
+from .losses import lock, lost, work_error
 from .secant import fit_columns
 
 

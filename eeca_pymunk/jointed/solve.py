@@ -7,10 +7,10 @@ import math
 import numpy as np
 
 from ..compiled import kernel
+from ..contacts.counts import note_unmet, spend
 from ..contacts.geometry import gather
 from ..contacts.interval import make_contacts, recall, speeds
 from ..contacts.memory import remember_loads, shapes_of
-from ..contacts.unmet import note_unmet, spend
 from ..contacts.works import moved
 from ..islands.candidates import before_end, pairs_within
 from ..islands.local import (
@@ -39,7 +39,7 @@ from .groups import find_groups
 from .ledger import work_left
 from .lengths import excess, led_in, sinks, too_deep_on_way
 from .lifting import lift_island
-from .lock import lost, slip_of
+from .losses import lost, slip_of
 from .press import press
 
 
@@ -112,12 +112,12 @@ def try_interval(A: Scene, J: Joints, root: int, t: float, h: float, last: bool)
     held, before = True, J.PROGRESS.effort
     J.PROGRESS.share = before + INTERVAL_SHARE * max(work_left(A, J), 0.0)
     if m > 0:
-        recall(ROWS, m, A.KEYS, A.FORCES, A.PAR.stamp, h, m > COLUMN_CONTACTS, L, EXPECTED)
+        recall(A, ROWS, m, h, m > COLUMN_CONTACTS, L, EXPECTED)
         owed = max(-A.RESTING[root].lost, 0.0)
         held = press(A, J, interval, L, EXPECTED, slow, fast, pull, owed)
         if held or m > COLUMN_CONTACTS:
             # Of few contacts impulses that are no solution are no loads to begin with either.
-            remember_loads(ROWS, L, m, h, A.KEYS, A.FORCES, COUNT, A.PAR.stamp)
+            remember_loads(A, ROWS, L, m, h)
     if m == 0:
         advance(A, J, interval, L, room_for_rows(0, 0), False, np.empty((0, 3)))
     COUNT.solves += 1

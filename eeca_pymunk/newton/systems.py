@@ -29,13 +29,13 @@ from ..model.joint_steps import LINEAR_STEP, NO_BEND, POSES, SPEEDS, STEP
 from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, WHOLE, Component, Workspace
 from ..model.parameters.joints import FACTOR_BAND, ROW_WORK, STIFFEST
 from .banded import back_banded, factor_banded
-from .bounded import put_bounded
 from .boxes import leave_box
 from .condensed import back_condensed, factor, put_row
 from .dual import back_dual, factor_dual
 from .entries import acts, along, idle, put_free, put_idle, put_stiffness, scale_rows
 from .motion import move
 from .rows import joint_rows, start_joint
+from .saturation import put_bounded
 
 
 @inlined

@@ -39,7 +39,7 @@ from ..model.parameters.intervals import TOUCH
 from ..model.scene import Scene
 from ..pairs.lists import face_tolerance
 from .axes import Closing, Motion, bends, fixed_axis, motion, pulled_along, speed_bound, turning_axis
-from .bounds import carried_circles_meet, circles_meet
+from .bounding_circles import carried_circles_meet, circles_meet
 from .work import most_work
 
 

@@ -7,10 +7,10 @@ of the problem. Users: impacts at one instant (`blocks.py`, to round-off), islan
 `..jointed`: bounded work, warm start). Both alternate projected Gauss-Seidel sweeps (`sweeps.py`, with the closed law
 of one contact in `coulomb.py`, accelerated by `conjugate.py`) with a direct solve on the active contacts (`direct.py`:
 `dense.py` for few contacts, else `polish.py` on the sparse factor of `cholesky.py`), or up to some dozen contacts with
-homotopies (`laws.py`, `homotopy.py`, `pivots.py`), and where that has no answer that makes sense without friction or
-by few sweeps (`gentle.py`); `equilibrium.py` finds contact forces that balance (on the
-edges of the cones, `cones.py`); `energy.py` takes losses, and scales impulses that would give energy; `lifting.py`
-moves bodies out of each other. Open `build.py` first.
+homotopies (`laws.py`, `homotopy.py`, `pivots.py`); where neither has a sensible solution, without friction or by few
+sweeps (`gentle.py`). `equilibrium.py` finds contact forces that balance (on the edges of the cones, `cones.py`);
+`energy.py` computes losses, and scales impulses that would give energy; `lifting.py` moves bodies out of each other.
+Open `build.py` first.
 
 Symbols: u_n, u_t are the normal and tangential velocity of a contact, u- before its impulses and u+ after; e its
 elasticity, mu its friction, b its target; lam, beta its impulses along n and t; j, G, T rows of velocities along n and
@@ -18,7 +18,7 @@ t (`..model.contacts.Row` defines all of these). A = (G, T) M^-1 (G, T)^T, with 
 velocities by unit impulses, A_nn one of its diagonal entries; W is M^-1 or the response of jointed bodies. D_n, D_t are
 losses, energies (`energy.py`).
 
-Names of arguments: A, B (m,) local bodies of the rows ROWS (m,); L (m, 2) impulses lam and beta; V (k, 3) velocities,
+Names of arguments: ROWS (m,) between local bodies; L (m, 2) impulses lam and beta; V (k, 3) velocities,
 FREE those without impulses; IM, II (k,) inverse masses and moments; the first n of the k bodies move. `worst` is the
 largest change of a contact's velocity in the last sweep, by which solves end. R is the stiffness of the augmentation of
 a direct solve, dimensionless. The active set is held, stuck, slip, rest (`polish.classify`). G, EDGE (K,) are edges of

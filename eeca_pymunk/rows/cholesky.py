@@ -15,7 +15,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Row
-from .ordering import dissect, neighbours, pattern
+from .dissection import dissect, neighbours, pattern
 
 
 class Factor(NamedTuple):

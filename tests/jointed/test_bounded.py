@@ -11,7 +11,7 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk.compiled import plain
-from eeca_pymunk.jointed.bounded import list_rows
+from eeca_pymunk.jointed.bounded_rows import list_rows
 from eeca_pymunk.model.joints import PRESCRIBED
 from eeca_pymunk.rows.bounded import room_for_rows
 

@@ -14,7 +14,7 @@ import eeca_pymunk as ep
 from eeca_pymunk.compiled.records import kind_of, zeros
 from eeca_pymunk.jointed.ends import take_back
 from eeca_pymunk.jointed.ledger import account_component
-from eeca_pymunk.jointed.lock import slip_of
+from eeca_pymunk.jointed.losses import slip_of
 from eeca_pymunk.model.contacts import Pair, Pushed, Row
 from eeca_pymunk.model.joint_steps import JointLedger
 from eeca_pymunk.model.step import Step

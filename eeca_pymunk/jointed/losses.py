@@ -12,7 +12,7 @@ from ..model.scene import Scene
 from ..rows.build import normal_rate, slip_rate, tangent_rate
 from ..rows.columns import push_columns
 from .advance import Interval, advance_aligned
-from .bounded import settle_bounded
+from .bounded_rows import settle_bounded
 
 
 @nonallocating
