@@ -10,12 +10,14 @@ from itertools import pairwise
 import numpy as np
 
 from .arrays import FloatArray, IntArray
+from .compiled import table_of
 from .energy.ledger import entries
 from .errors import NotFiniteError
 from .events import Events
 from .impacts.run_buffers import RunBuffers
 from .impacts.scene import EventLoop
 from .layout import BODY_ROW
+from .model.values import reading_of
 from .packed_space import TOO_FAR
 from .runs import RunningStepper
 from .space.bodies import moving
@@ -48,7 +50,12 @@ class Copy:
     def __init__(self, world: World, loop: EventLoop, rows: IntArray) -> None:
         self.world, self.rows = world, rows
         self.loop = copy.deepcopy(loop)
-        self.states = world.STATES.copy(), world.WALK.copy(), world.EXTRA.copy(), np.zeros_like(world.ENDS)
+        self._reading = table_of(
+            reading_of(world.reading)._replace(
+                STATES=world.STATES.copy(), WALK=world.WALK.copy(), EXTRA=world.EXTRA.copy(),
+                ENDS=np.zeros_like(world.ENDS),
+            )
+        )  # fmt: skip
         self._place = np.full(len(world.bodies), -1, np.intp)
         self._place[rows] = np.arange(len(rows))
         self._at = world.WALK[BODY_ROW, rows]
@@ -73,7 +80,7 @@ class Copy:
         buffers.arrays = buffers.arrays._replace(OWN=self.loop.own, FRESH=self.loop.fresh)
         RUN = buffers.progress
         RUN.until, RUN.rollouts = job.steps, last - first
-        status = self.loop.follow(buffers, self.states)
+        status = self.loop.follow(buffers, self._reading)
         if status < 0:
             raise NotFiniteError(f"rollout {first + int(RUN.rollout)}, after {int(RUN.done)} steps: {TOO_FAR}")
         job.ledger[first:last] = buffers.arrays.SUMS.reshape(last - first, T, 6)

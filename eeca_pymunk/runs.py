@@ -187,12 +187,11 @@ class RunningStepper(PackedStepper):
         """Take the steps; returns status bits or a negative code."""
         RUN, loop, stretch, status = buffers.progress, self.event_loop, _FIRST, 0
         assert loop is not None
-        states = world.STATES, world.WALK, world.EXTRA, world.ENDS
         with tqdm(total=steps, desc=type(self).__name__, unit="step", disable=not progress) as bar:
             while status >= 0 and RUN.done < steps:
                 RUN.until = min(steps, int(RUN.done) + stretch)
                 began, before = perf_counter(), int(RUN.done)
-                status = loop.follow(buffers, states)
+                status = loop.follow(buffers, world.reading)
                 took = perf_counter() - began
                 stretch = 2 * stretch if took < _SHORT else max(stretch // 2, 1) if took > _LONG else stretch
                 bar.update(int(RUN.done) - before)

@@ -86,7 +86,7 @@ ENTRIES = {
     "impacts.new_scene:tie_components": "{Scene} {Joints}",
     "islands.accounting:flag_pairs": "{Scene}",
     "impacts.step:step": "{Scene} {Joints} {Reading} f8 f8 f8 f8 i8",
-    "impacts.run:run": "{Scene} {Joints} {RunArrays} f8[3] i8[2] f8[2] f8[1]",
+    "impacts.run:run": "{Scene} {Joints} {RunArrays} {Reading}",
     "joints.workspace:plan_components": "{Joints} Body[1] i8[1]",
     "joints.pinned:find_pinned": "Body[1] Body[1] Joint[1] i8[1] Shape[1] Link[1] i8[1] i8[2]",
     # Only tests call this, which solves single islands: some hundred times slower as plain Python.

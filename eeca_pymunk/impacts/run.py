@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import math
 
-from ..arrays import FloatArray, IntArray
 from ..compiled import Table, kernel, nonallocating
 from ..layout import BODY_ROW, LEFT
 from ..layout import NOW as READ
 from ..model.joints import joints_of
 from ..model.run import AFTER, BETWEEN, WITHIN, RunArrays, run_arrays_of
 from ..model.scene import Scene, scene_of
+from ..model.values import Reading, reading_of
 from .step import resume, start
 
 ROOM_FOR_IMPACTS = -13  # status of a run that needs more rows of EVENTS
@@ -21,11 +21,11 @@ ENERGY = -5  # and of one whose energy overflows
 
 
 @nonallocating
-def carry_on(STATES: FloatArray, WALK: IntArray) -> None:
+def carry_on(R: Reading) -> None:
     """Let the next step begin with the poses and velocities at the end of the last one, without forces."""
-    now, after = STATES[READ], STATES[LEFT]
-    for i in range(WALK.shape[1]):
-        if WALK[BODY_ROW, i] >= 0:
+    now, after = R.STATES[READ], R.STATES[LEFT]
+    for i in range(R.WALK.shape[1]):
+        if R.WALK[BODY_ROW, i] >= 0:
             for c in range(6):
                 now[i, c] = after[i, c]
             for c in range(6, 9):
@@ -33,17 +33,17 @@ def carry_on(STATES: FloatArray, WALK: IntArray) -> None:
 
 
 @nonallocating
-def set_back(A: Scene, F: RunArrays, STATES: FloatArray, WALK: IntArray) -> None:
+def set_back(A: Scene, F: RunArrays, R: Reading) -> None:
     """Begin a rollout: clear the results of earlier steps, and set bodies to INITIAL."""
-    now, after = STATES[READ], STATES[LEFT]
+    now, after = R.STATES[READ], R.STATES[LEFT]
     if A.COUNT.remembered > 0:
         for q in range(A.KEYS.shape[0]):
             A.KEYS[q] = -1
     for q in range(F.OWN.shape[0]):
         F.OWN[q] = F.FRESH[q]
     # With the end of the last step unknown (NaN), `take` regards all bodies as edited.
-    for i in range(WALK.shape[1]):
-        if WALK[BODY_ROW, i] >= 0:
+    for i in range(R.WALK.shape[1]):
+        if R.WALK[BODY_ROW, i] >= 0:
             for c in range(6):
                 after[i, c] = math.nan
             for c in range(6, 9):
@@ -58,13 +58,13 @@ def set_back(A: Scene, F: RunArrays, STATES: FloatArray, WALK: IntArray) -> None
 
 
 @nonallocating
-def before_step(A: Scene, F: RunArrays, STATES: FloatArray, WALK: IntArray) -> None:
+def before_step(A: Scene, F: RunArrays, R: Reading) -> None:
     """Set the states from which the next step starts."""
-    RUN, now = F.RUN, STATES[READ]
+    RUN, now = F.RUN, R.STATES[READ]
     if RUN.done > 0:
-        carry_on(STATES, WALK)
+        carry_on(R)
     elif RUN.rollouts > 0:
-        set_back(A, F, STATES, WALK)
+        set_back(A, F, R)
     if F.PUSH.shape[0] > 0:
         # `frame` counts those of earlier rollouts too.
         b = F.KEPT.shape[0]
@@ -74,7 +74,7 @@ def before_step(A: Scene, F: RunArrays, STATES: FloatArray, WALK: IntArray) -> N
 
 
 @nonallocating
-def after_step(A: Scene, F: RunArrays, STATES: FloatArray) -> int:
+def after_step(A: Scene, F: RunArrays, R: Reading) -> int:
     """Store the results of a step. Returns 0, or ENERGY or ROOM_FOR_IMPACTS with nothing done."""
     RUN, PAR, COUNT, LOG, T = F.RUN, A.PAR, A.COUNT, A.LOG, F.TOTAL
     if not math.isfinite(PAR.after):
@@ -86,10 +86,8 @@ def after_step(A: Scene, F: RunArrays, STATES: FloatArray) -> int:
         if LOG[k].duration == 0.0 and LOG[k].normal != 0.0:
             RUN.impacts += 1
             if room > 0:
-                row, one = F.EVENTS[RUN.kept], LOG[k]
-                row.first, row.second, row.when = one.first, one.second, RUN.done * RUN.dt + one.when
-                row.normal, row.tangential, row.nx, row.ny = one.normal, one.tangential, one.nx, one.ny
-                row.px, row.py, row.gap, row.change, row.duration = one.px, one.py, one.gap, one.change, 0.0
+                F.EVENTS[RUN.kept] = LOG[k]
+                F.EVENTS[RUN.kept].when = RUN.done * RUN.dt + LOG[k].when
                 RUN.kept += 1
     RUN.done += 1
     RUN.time += RUN.dt
@@ -109,7 +107,7 @@ def after_step(A: Scene, F: RunArrays, STATES: FloatArray) -> int:
     T[4] += PAR.damped
     T[5] += change - (PAR.external - PAR.restitution - PAR.frictional - PAR.damped)
     if RUN.every > 0 and RUN.done % RUN.every == 0:
-        after, b = STATES[LEFT], F.KEPT.shape[0]
+        after, b = R.STATES[LEFT], F.KEPT.shape[0]
         for q in range(b):
             for c in range(6):
                 F.FRAMES[RUN.frame * b + q, c] = after[F.KEPT[q], c]
@@ -133,34 +131,32 @@ def next_rollout(F: RunArrays) -> bool:
 
 
 @kernel
-def run(
-    TABLE: Table, JOINTS: Table, ARRAYS: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray,
-) -> int:  # fmt: skip
+def run(TABLE: Table, JOINTS: Table, ARRAYS: Table, READING: Table) -> int:
     """Take steps until RUN.until of them are done, of each rollout if there are any.
 
     Args:
-        TABLE, JOINTS: see `step.step`.  ARRAYS: `table_of` a RunArrays.
+        TABLE, JOINTS, READING: see `step.step`.  ARRAYS: `table_of` a RunArrays.
 
     Returns:
         the bits of all steps; a negative code of a step, or ENERGY, with the state at its start in STATES; or a code
             for more memory: provide it, and call again.
     """
-    A, J, F = scene_of(TABLE), joints_of(JOINTS), run_arrays_of(ARRAYS)
+    A, J, F, R = scene_of(TABLE), joints_of(JOINTS), run_arrays_of(ARRAYS), reading_of(READING)
     RUN = F.RUN
     while True:
         while RUN.done < RUN.until:
             if RUN.stage == BETWEEN:
-                before_step(A, F, STATES, WALK)
-                RUN.bits = start(A, J, STATES, WALK, EXTRA, RUN.dt, RUN.gravity_x, RUN.gravity_y, RUN.half_damping)
+                before_step(A, F, R)
+                RUN.bits = start(A, J, R, RUN.dt, RUN.gravity_x, RUN.gravity_y, RUN.half_damping)
                 if RUN.bits < 0:
                     return RUN.bits
                 RUN.stage = WITHIN
             if RUN.stage == WITHIN:
-                status = resume(A, J, STATES, WALK, EXTRA, ENDS, RUN.bits)
+                status = resume(A, J, R, RUN.bits)
                 if status < 0:
                     return status
                 RUN.bits, RUN.stage = status, AFTER
-            status = after_step(A, F, STATES)
+            status = after_step(A, F, R)
             if status < 0:
                 return status
         if not next_rollout(F):

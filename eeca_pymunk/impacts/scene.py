@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arrays import AnyArray, FloatArray, IntArray
+from ..arrays import FloatArray, IntArray
 from ..compiled import Table, replaced
 from ..compiled.library import check
 from ..compiled.records import R, Rows, columns, from_bytes, put, rows
@@ -144,10 +144,11 @@ class EventLoop(Remembering):
             status = self._bind_to(reading)(dt, gx, gy, half_damping, bits)
         return status
 
-    def follow(self, buffers: RunBuffers, states: tuple[AnyArray, ...]) -> int:
-        """Take the steps of `buffers`; returns all bits, a negative code of `transfer.py`, or `run.ENERGY`."""
+    def follow(self, buffers: RunBuffers, reading: Table) -> int:
+        """Take the steps of `buffers` on the states of a reading; returns all bits, a negative code of `transfer.py`,
+        or `run.ENERGY`."""
         while True:
-            call = buffers.call = buffers.call or run.bind(self.table, self.ties, buffers.table, *states)
+            call = buffers.call = buffers.call or run.bind(self.table, self.ties, buffers.table, reading)
             status = check("run", call())
             if status == ROOM_FOR_IMPACTS:
                 buffers.more_events()

@@ -3,7 +3,6 @@ written to it."""
 
 from __future__ import annotations
 
-from ..arrays import FloatArray, IntArray
 from ..compiled import Table, kernel
 from ..jointed.ledger import account_joints, load_welds, start_joints
 from ..joints.pinned import put_pinned
@@ -11,7 +10,7 @@ from ..model.joints import Joints, joints_of
 from ..model.parameters.joints import MEET_INSTANT
 from ..model.scene import Scene, scene_of
 from ..model.step import DONE, LOG_FULL, POOL_FULL, PUSHES_FULL
-from ..model.values import reading_of
+from ..model.values import Reading, reading_of
 from ..prediction.scheduling import predict_due
 from ..transfer import EVENTS as SOME
 from ..transfer import give, take
@@ -26,20 +25,17 @@ ROOM_FOR_LISTS, ROOM_FOR_EVENTS, ROOM_FOR_CONTACTS = -10, -11, -12
 
 
 @kernel
-def start(
-    A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, dt: float, gx: float, gy: float,
-    half_damping: float,
-) -> int:  # fmt: skip
+def start(A: Scene, J: Joints, R: Reading, dt: float, gx: float, gy: float, half_damping: float) -> int:
     """Take the states read from pymunk, and begin a step of length dt; returns the bits so far, or a negative code."""
     if len(J.JOINT) > 0:
-        start_joints(A, J, STATES, WALK, dt)
-    status = take(STATES, WALK, EXTRA, A.BODY, gx, gy, half_damping)
+        start_joints(A, J, R.STATES, R.WALK, dt)
+    status = take(R.STATES, R.WALK, R.EXTRA, A.BODY, gx, gy, half_damping)
     if status >= 0:
         lost = put_pinned(A.PINNED, A.BODY)
         A.PAR.planned = dt
         A.PAR.dt, A.PAR.gravity_x, A.PAR.gravity_y, A.PAR.half_damping = dt, gx, gy, half_damping
         A.PAR.instant = MEET_INSTANT * dt
-        begin(A, WALK)
+        begin(A, R.WALK)
         # The kinetic energy that `put_pinned` has taken from held bodies is a loss of this step.
         A.PAR.before += lost
         A.PAR.restitution += lost
@@ -47,17 +43,15 @@ def start(
 
 
 @kernel
-def finish(
-    A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, status: int
-) -> int:  # fmt: skip
+def finish(A: Scene, J: Joints, R: Reading, status: int) -> int:
     """Close the step, and write the states at its end; returns the bits of the step, or a negative code."""
     account_joints(A, J)
-    close(A, WALK)
+    close(A, R.WALK)
     if len(A.PINNED) > 0:
-        load_welds(A, J, STATES, WALK)
+        load_welds(A, J, R.STATES, R.WALK)
     if A.COUNT.logged > 0 or A.COUNT.unmet > 0:
         status |= SOME
-    return give(STATES, WALK, EXTRA, A.BODY, ENDS, A.PAR.dt, A.PAR.half_damping, status)
+    return give(R.STATES, R.WALK, R.EXTRA, A.BODY, R.ENDS, A.PAR.dt, A.PAR.half_damping, status)
 
 
 @kernel
@@ -86,9 +80,7 @@ def act(A: Scene, J: Joints) -> int:
 
 
 @kernel
-def resume(
-    A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, status: int
-) -> int:  # fmt: skip
+def resume(A: Scene, J: Joints, R: Reading, status: int) -> int:
     """The rest of a step, whose bits so far are `status`. Returns the bits of the step, a negative code, or a code for
     more memory."""
     met = act(A, J)
@@ -98,7 +90,7 @@ def resume(
         return ROOM_FOR_CONTACTS
     if met == LOG_FULL or A.COUNT.logged + A.COUNT.pushes > A.LOG.shape[0]:
         return ROOM_FOR_EVENTS
-    return finish(A, J, STATES, WALK, EXTRA, ENDS, status)
+    return finish(A, J, R, status)
 
 
 @kernel
@@ -118,7 +110,7 @@ def step(
     """
     A, J, R = scene_of(TABLE), joints_of(JOINTS), reading_of(READING)
     if bits < 0:
-        bits = start(A, J, R.STATES, R.WALK, R.EXTRA, dt, gx, gy, half_damping)
+        bits = start(A, J, R, dt, gx, gy, half_damping)
         if bits < 0:
             return bits
-    return resume(A, J, R.STATES, R.WALK, R.EXTRA, R.ENDS, bits)
+    return resume(A, J, R, bits)
