@@ -8,6 +8,7 @@ from ..arrays import IntArray
 from ..compiled import kernel
 from ..compiled.records import Rows
 from ..model.joints import CONDENSED, PIVOT, WHOLE, Component, ComponentBody, Coupling
+from ..rows.dissection import neighbours
 
 
 @kernel
@@ -15,7 +16,7 @@ def order_nodes(start: IntArray, near: IntArray, nodes: int, order: IntArray) ->
     """Write the reverse Cuthill-McKee order of a graph to `order` (nodes,), from a node far out, ties by number.
 
     Args:
-        start, near: the neighbours of node i are near[start[i] : start[i + 1]].
+        start, near: of `..rows.dissection.neighbours`.
     """
     level = np.empty(nodes, np.int64)
     placed = np.zeros(nodes, np.int64)
@@ -75,28 +76,17 @@ def order_unknowns(
         width[i] = member[b0 + i].freedoms
     for k in range(joints):
         width[bodies + k] = link[j0 + k].rows
-    start = np.zeros(nodes + 1, np.int64)
-    near = np.empty(6 * joints, np.int64)
-    for fill in range(2):
-        at = start.copy()
-        for k in range(joints):
-            a, b = link[j0 + k].body[0], link[j0 + k].body[1]
-            for p in range(2 if condensed else 0, 3):
-                u, v = (a, b) if p == 2 else (bodies + k, a if p == 0 else b)
-                # A pivot bends by the turn of each body alone: its bodies are coupled by its rows only.
-                uncoupled = p == 2 and not condensed and link[j0 + k].kind == PIVOT
-                if width[u] == 0 or width[v] == 0 or uncoupled:
-                    continue
-                if fill == 0:
-                    start[u + 1] += 1
-                    start[v + 1] += 1
-                else:
-                    near[at[u]], near[at[v]] = v, u
-                    at[u] += 1
-                    at[v] += 1
-        if fill == 0:
-            for i in range(nodes):
-                start[i + 1] += start[i]
+    EDGE, edges = np.empty((3 * joints, 2), np.int64), 0
+    for k in range(joints):
+        a, b = link[j0 + k].body[0], link[j0 + k].body[1]
+        for p in range(2 if condensed else 0, 3):
+            u, v = (a, b) if p == 2 else (bodies + k, a if p == 0 else b)
+            # A pivot bends by the turn of each body alone: its bodies are coupled by its rows only.
+            uncoupled = p == 2 and not condensed and link[j0 + k].kind == PIVOT
+            if width[u] > 0 and width[v] > 0 and not uncoupled:
+                EDGE[edges, 0], EDGE[edges, 1] = u, v
+                edges += 1
+    start, near = neighbours(EDGE, edges, nodes)
     order = np.empty(nodes, np.int64)
     order_nodes(start, near, nodes, order)
     first = np.zeros(bodies + joints, np.int64)
@@ -136,26 +126,21 @@ def order_rows(component: Rows[Component], member: Rows[ComponentBody], link: Ro
             if link[j0 + k].rows > 0 and member[i].freedoms > 0:
                 link[j0 + k].following[end] = member[i].first
                 member[i].first = 2 * k + end
-    start = np.zeros(joints + 1, np.int64)
-    near = np.empty(0, np.int64)
+    EDGE, edges = np.empty((0, 2), np.int64), 0
     for fill in range(2):
-        at = start.copy()
+        if fill == 1:
+            EDGE, edges = np.empty((edges, 2), np.int64), 0
         for i in range(b0, b1):
             one = member[i].first
             while one >= 0:
-                other = member[i].first
+                other = link[j0 + (one >> 1)].following[one & 1]
                 while other >= 0:
-                    if other != one and fill == 0:
-                        start[(one >> 1) + 1] += 1
-                    elif other != one:
-                        near[at[one >> 1]] = other >> 1
-                        at[one >> 1] += 1
+                    if fill == 1:
+                        EDGE[edges, 0], EDGE[edges, 1] = one >> 1, other >> 1
+                    edges += 1
                     other = link[j0 + (other >> 1)].following[other & 1]
                 one = link[j0 + (one >> 1)].following[one & 1]
-        if fill == 0:
-            for k in range(joints):
-                start[k + 1] += start[k]
-            near = np.empty(start[joints], np.int64)
+    start, near = neighbours(EDGE, edges, joints)
     order = np.empty(joints, np.int64)
     order_nodes(start, near, joints, order)
     total, band = 0, 1

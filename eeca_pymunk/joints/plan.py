@@ -41,7 +41,7 @@ def find_components(
         parent[i] = i
     for j in range(joints):
         a, b = joint[j].body[0], joint[j].body[1]
-        if movable(bodies, a) and movable(bodies, b) and acts(bodies, joint[j]):
+        if movable(bodies, a) and movable(bodies, b) and moves_body(bodies, joint[j]):
             p, q = root(parent, a), root(parent, b)
             if p != q:
                 parent[max(p, q)] = min(p, q)
@@ -50,7 +50,7 @@ def find_components(
     for j in range(joints):
         a, b = joint[j].body[0], joint[j].body[1]
         component_of[j] = -1
-        if acts(bodies, joint[j]):
+        if moves_body(bodies, joint[j]):
             top = root(parent, a if movable(bodies, a) else b)
             if number[top] < 0:
                 number[top] = count
@@ -66,7 +66,7 @@ def movable(bodies: Rows[Body], i: int) -> bool:
 
 
 @kernel
-def acts(bodies: Rows[Body], joint: Joint) -> bool:
+def moves_body(bodies: Rows[Body], joint: Joint) -> bool:
     """Whether a joint can move one of its bodies: not if it binds the angles of two that nothing turns."""
     a, b = joint.body[0], joint.body[1]
     if joint.kind >= GEAR:

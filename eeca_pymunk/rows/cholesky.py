@@ -15,7 +15,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Row
-from .dissection import dissect, neighbours, pattern
+from .dissection import dissect, pattern, touching
 
 
 class Factor(NamedTuple):
@@ -35,7 +35,7 @@ class Factor(NamedTuple):
 @kernel
 def make_factor(ROWS: Rows[Row], m: int, n: int, used: IntArray, POSE: FloatArray) -> Factor:
     """Room for the factor of n bodies at POSE (k, 3) with the contacts with used[i] != 0, and its order."""
-    start, other = neighbours(ROWS, m, n, used)
+    start, other = touching(ROWS, m, n, used)
     place = np.empty(n, np.int64)
     dissect(POSE, n, start, other, place)
     columns, rows = pattern(n, start, other, place)

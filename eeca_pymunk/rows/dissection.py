@@ -17,33 +17,39 @@ from .inplace import sort
 
 
 @kernel
-def neighbours(ROWS: Rows[Row], m: int, n: int, used: IntArray) -> tuple[IntArray, IntArray]:
-    """Neighbours of n bodies by the contacts with used[i] != 0: `start` (n + 1,) and `other`; those of body i are
-    other[start[i] : start[i + 1]], some repeatedly."""
+def neighbours(EDGE: IntArray, edges: int, n: int) -> tuple[IntArray, IntArray]:
+    """Neighbours of n nodes of a graph by its edges EDGE (., 2): `start` (n + 1,) and `other`; those of node i are
+    other[start[i] : start[i + 1]], some repeatedly, in the order of the edges."""
     start = np.zeros(n + 1, np.int64)
-    for i in range(m):
-        a, b = ROWS[i].a, ROWS[i].b
-        if used[i] != 0 and a < n and b < n:
-            start[a + 1] += 1
-            start[b + 1] += 1
+    for e in range(edges):
+        for end in range(2):
+            start[EDGE[e, end] + 1] += 1
     for i in range(n):
         start[i + 1] += start[i]
-    other = np.empty(start[n], np.int64)
-    fill = start[:n].copy()
-    for i in range(m):
-        a, b = ROWS[i].a, ROWS[i].b
-        if used[i] != 0 and a < n and b < n:
-            other[fill[a]] = b
-            fill[a] += 1
-            other[fill[b]] = a
-            fill[b] += 1
+    other, fill = np.empty(start[n], np.int64), start[:n].copy()
+    for e in range(edges):
+        for end in range(2):
+            i = EDGE[e, end]
+            other[fill[i]] = EDGE[e, 1 - end]
+            fill[i] += 1
     return start, other
+
+
+@kernel
+def touching(ROWS: Rows[Row], m: int, n: int, used: IntArray) -> tuple[IntArray, IntArray]:
+    """`neighbours` of n bodies by the contacts with used[i] != 0."""
+    EDGE, edges = np.empty((m, 2), np.int64), 0
+    for i in range(m):
+        if used[i] != 0 and ROWS[i].a < n and ROWS[i].b < n:
+            EDGE[edges, 0], EDGE[edges, 1] = ROWS[i].a, ROWS[i].b
+            edges += 1
+    return neighbours(EDGE, edges, n)
 
 
 @kernel
 def dissect(POSE: FloatArray, n: int, start: IntArray, other: IntArray, place: IntArray) -> None:
     """Set place (n,), the position of each body in the order of elimination, from the poses POSE (k, 3) of the bodies
-    and their neighbours (`neighbours`). A set of bodies is divided at the mean of the longer side of its box; those
+    and their neighbours (`touching`). A set of bodies is divided at the mean of the longer side of its box; those
     left of it with a neighbour on the right are the separator, which is eliminated after both parts."""
     ids, end, count = np.empty(n, np.int64), n, 0
     for i in range(n):
