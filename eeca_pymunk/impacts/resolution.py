@@ -119,8 +119,4 @@ def rejoin(A: Scene, a: int, b: int, t: float, n: int, rest: bool, lost: float) 
         if STATE[BODIES[q]].island != root:
             BODIES[free] = BODIES[q]
             free += 1
-    MINE = np.empty(A.MEMBER[root].bodies, np.int64)
-    more = members(A, root, MINE)
-    for q in range(more):
-        BODIES[free + q] = MINE[q]
-    return free + more
+    return free + members(A, root, BODIES[free:])

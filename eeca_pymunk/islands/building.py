@@ -25,7 +25,7 @@ from .accounting import end_interval
 from .at_rest import wake_changed
 from .intervals import begin_interval
 from .local import drop_contacts
-from .membership import approach, budget_spent, fixed_support, jointed, largest_island, members, persists, unite
+from .membership import approach, budget_spent, fixed_support, jointed, largest_island, members_of, persists, unite
 from .partial_rest import rests_in_part
 from .penetration import hold_penetrating
 from .support import support
@@ -222,11 +222,10 @@ def passed_over(A: Scene, a: int, b: int, t: float) -> bool:
     if (speed + max(A.PAR.pulled, pulled) * h) * h > INTERVAL_DEPTH_WIDTH * thick:
         return False
     if lossy:
-        MINE = np.empty(A.BODY.shape[0], np.int64)
         for k in (i, j):
             if A.BODY[k].inv_mass > 0.0:
                 A.MEMBER[k].busy = BUSY_STEPS
             if STATE[k].island >= 0:
-                for q in range(members(A, STATE[k].island, MINE)):
-                    A.MEMBER[MINE[q]].busy = BUSY_STEPS
+                for member in members_of(A, STATE[k].island):
+                    A.MEMBER[member].busy = BUSY_STEPS
     return True

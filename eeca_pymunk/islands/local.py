@@ -16,15 +16,15 @@ from ..pairs.lists import mark_pair
 from ..rows.build import normal_rate, tangent_rate
 from ..rows.inplace import sort
 from .candidates import before_end
-from .membership import members
+from .membership import members_of
 from .rest import spins_freely
 
 
 @kernel
 def bodies_of(A: Scene, root: int) -> IntArray:
     """The bodies of an island, in the order of their rows."""
-    MINE = np.empty(A.MEMBER[root].bodies, np.int64)
-    sort(MINE, members(A, root, MINE))
+    MINE = members_of(A, root)
+    sort(MINE, len(MINE))
     return MINE
 
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ..arrays import IntArray
-from ..compiled import nonallocating
+from ..compiled import kernel, nonallocating
 from ..contacts.memory import find, key_of
 from ..contacts.targets import hardly_bounces
 from ..geometry.gap import gap_at
@@ -96,6 +98,14 @@ def members(A: Scene, root: int, MINE: IntArray) -> int:
         n += 1
         i = A.MEMBER[i].following
     return n
+
+
+@kernel
+def members_of(A: Scene, root: int) -> IntArray:
+    """The bodies of an island, in the order of its chain."""
+    MINE = np.empty(A.MEMBER[root].bodies, np.int64)
+    members(A, root, MINE)
+    return MINE
 
 
 @nonallocating

@@ -28,7 +28,7 @@ from ..rows.equilibrium import equilibrium
 from .accounting import wake
 from .intervals import begin_interval
 from .local import clear_places
-from .membership import members
+from .membership import members_of
 from .rest import candidate_speed, postpone_test, spins_freely
 
 
@@ -59,9 +59,8 @@ def supports_load(A: Scene, root: int) -> bool:
     """Whether contacts of an island at rest can support the present loads; then their impulses are set to the forces
     found. If not, the next tests for rest of its bodies are postponed."""
     BODY, dt = A.BODY, A.PAR.dt
-    n = A.MEMBER[root].bodies
-    MINE = np.empty(n, np.int64)
-    members(A, root, MINE)
+    MINE = members_of(A, root)
+    n = len(MINE)
     # One local body, the last, stands for all fixed ones that support the island.
     POSE, IMS, IIS, FELT = np.zeros((n + 1, 3)), np.zeros(n + 1), np.zeros(n + 1), np.zeros(n + 1)
     START = np.zeros((n + 1, 3))

@@ -68,8 +68,8 @@ def find_hit(groups: Groups, ROWS: Rows[Row], m: int) -> IntArray:
 
 @nonallocating
 def stays(J: Joints, groups: Groups, g: int, PUSHED: FloatArray, ACC: FloatArray) -> bool:
-    """Whether the component of group g has moved under the accelerations ACC before, and would move so again: where
-    rows are redundant, its impulses are the smaller the nearer a solution begins."""
+    """Whether the present motion of the component of group g is that under the accelerations ACC. Not where rows are
+    redundant: their impulses become the smaller the nearer a solution begins."""
     same = J.COMPONENT[groups.COMPONENT[g]].loops == 0
     for w in range(groups.FIRST[g], groups.FIRST[g + 1]):
         for c in range(3):

@@ -60,7 +60,7 @@ def size_joints(W: Workspace, length: float) -> None:
 @nonallocating
 def fit_speeds(J: Joints, s: int, length: float) -> None:
     """Make the velocities that `gather_component` has put into the scratch fit the joints, closed limits included, as
-    an impact at which nothing bounces. What this costs is the caller's to book."""
+    an impact at which nothing bounces. The caller accounts for the loss."""
     W = workspace(J, s)
     size_joints(W, length)
     correct(W, SPEEDS)
@@ -68,7 +68,8 @@ def fit_speeds(J: Joints, s: int, length: float) -> None:
 
 @nonallocating
 def keep_apart(W: Workspace) -> None:
-    """Let what is apart at the present poses, whose rows are there, stay as far apart."""
+    """Set the targets of all rows to their present values: joints that are apart stay as far apart. Rows must be those
+    of the present poses."""
     for k in range(W.joints):
         for r in range(W.link[k].rows):
             W.J.HINGE[k].target[r] = W.J.HINGE[k].value[r]

@@ -1,4 +1,4 @@
-"""The end of the interval of an island with joints, brought to an earlier instant, and its books there."""
+"""The end of the interval of an island with joints: brought to an earlier instant, and accounted for there."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from ..arrays import IntArray
 from ..compiled import kernel, nonallocating
 from ..islands.accounting import account_contact, move_to_end
 from ..islands.local import drop_contacts
-from ..islands.membership import members
+from ..islands.membership import members_of
 from ..model.joint_steps import LINEAR
 from ..model.joints import Joints
 from ..model.parameters.intervals import INTERVAL_RETRY
@@ -23,12 +23,9 @@ from .solve import try_interval
 @kernel
 def components_of(A: Scene, J: Joints, root: int) -> IntArray:
     """The components in an island."""
-    MINE = np.empty(A.MEMBER[root].bodies, np.int64)
-    n = members(A, root, MINE)
-    found = np.empty(n, np.int64)
-    count = 0
-    for q in range(n):
-        s = J.OF[MINE[q]]
+    found, count = np.empty(A.MEMBER[root].bodies, np.int64), 0
+    for i in members_of(A, root):
+        s = J.OF[i]
         if s < 0:
             continue
         known = False
@@ -74,7 +71,7 @@ def shorten(A: Scene, J: Joints, root: int, t: float) -> int:
 
 @kernel
 def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
-    """End the interval of an island at instant t, its own end: book it, and bring its bodies there."""
+    """End the interval of an island at instant t, its own end: account for it, and move its bodies there."""
     if not under_way(A, root):
         return
     for c in range(A.COUNT.pushes):
@@ -85,13 +82,10 @@ def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
         A.RESTING[root].lost -= J.STEPPED[s].lifted
         account_component(A, J, s)
     A.MEMBER[root].open = 0
-    MINE = np.empty(A.MEMBER[root].bodies, np.int64)
-    n = members(A, root, MINE)
-    for q in range(n):
-        i = MINE[q]
+    for i in members_of(A, root):
         A.STATE[i].version += 1
         if empty:
-            # The path is that of an interval that is not to be.
+            # The path is that of an interval that was given up.
             A.BODY[i].since = t
             A.BODY[i].ax, A.BODY[i].ay, A.BODY[i].angular = 0.0, 0.0, 0.0
         else:

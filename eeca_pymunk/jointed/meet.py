@@ -99,7 +99,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
     if not (under_way(A, roots[0]) or under_way(A, roots[1])):
         # They have been brought to t, and have no paths beyond it: only others that they touch have joints.
         return t, False
-    # Nobody goes back in time, to where what overlaps would have met, or on to where an interval would be too long.
+    # Not back in time, to where overlapping shapes would have met, nor on to where an interval would be too long.
     least, latest = A.BODY[i].since, A.PAR.dt
     if A.BODY[j].inv_mass > 0.0:
         least = max(least, A.BODY[j].since)
@@ -166,7 +166,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
         fits = not (crosses or late < math.inf)
         if fits:
             break
-        if late <= apart:  # what is passed is passed before, too
+        if late <= apart:  # it is passed before, too
             apart = least
         crossed, t = True, 0.5 * (apart + t)
         shorten_both(A, J, roots[0], roots[1], t)

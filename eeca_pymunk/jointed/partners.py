@@ -30,9 +30,9 @@ def has_moving_partner(A: Scene, J: Joints, s: int) -> bool:
 
 @kernel
 def carry(A: Scene, J: Joints, root: int, t: float) -> None:
-    """Let the bodies of an island that have been brought to another instant than t, at which the step ends, go where
-    joints with moving partners have them at t, along M^-1 G^T: these would be apart by the partners' way. Partners do
-    the work, against all forces on the bodies."""
+    """Move the bodies of an island that are at another instant than t, the end of the step, to where joints with moving
+    partners have them at t, along M^-1 G^T: else joints would be apart by the partners' way. Partners do the work,
+    against all forces on the bodies."""
     began = A.BODY[root].since
     if began == t:
         return

@@ -62,7 +62,7 @@ from .secant import fit_columns
 
 @nonallocating
 def some_taut(J: Joints, groups: Groups) -> bool:
-    """Whether a component hardly gives way across, for the pull of its joints."""
+    """Whether the pull of its joints holds a component across them (`..joints.taut`)."""
     for s in groups.JOINTED:
         if J.COMPONENT[s].taut > 0:
             return True
@@ -80,8 +80,9 @@ def some_give(J: Joints, groups: Groups) -> bool:
 
 @nonallocating
 def aims(change: float, slow: float, fast: float, elastic: bool) -> tuple[float, float, float]:
-    """The speed that errors of an island are parts of; the difference of velocities of contacts and components at which
-    their iterations end, and the residual of laws. change: |a| h.  slow, fast: speeds of the island."""
+    """The speed by which errors of an island are measured; the difference between the velocities of contacts and those
+    of components at which iterations end; the residual of the contacts' laws. change: |a| h.  slow, fast: speeds of the
+    island."""
     if elastic:
         return change + fast, AGREE_ELASTIC * (change + fast), 1e-15 * (change + fast)
     scale, rests = change + slow, slow < change
@@ -100,8 +101,8 @@ def clear(L: FloatArray) -> bool:
 
 @kernel
 def accelerations(interval: Interval, L: FloatArray, B: Bounded, EFFECT: FloatArray) -> float:
-    """EFFECT (k, 3), out: accelerations of the bodies without the impulses L of contacts, under which they have moved,
-    by the columns; the largest one of a point."""
+    """EFFECT (k, 3), out: accelerations of the bodies without contacts: those of the motion, less what the columns give
+    for its impulses L. Returns the largest one of a point."""
     isle, motion, h = interval.isle, interval.motion, interval.h
     copy(EFFECT, motion.MEAN)
     push_columns(interval.C, L, interval.m, -1.0, EFFECT)
@@ -168,7 +169,7 @@ def press(
                 give_slips(ROWS, m, SLIP)
                 limited, best = True, np.inf
             if not exactly and off <= worst:
-                # Laws are not solved as well as that: other impulses may break them less, and agree less.
+                # The residual of the laws is larger: other impulses may lower it, and agree less.
                 agreed = True
                 break
             if off < best:
@@ -221,7 +222,7 @@ def press(
         if not off <= best:
             copy(L, LEAST)
             advance(A, J, interval, L, B, False, UNKNOWN)
-        # What gives way is as stiff as its joints pull: round-off of its ways does not fall further.
+        # Joints that give way leave round-off of their ways, times their stiffness: more iterations do not lower it.
         converged = (converged and off <= agree) or (best <= AGREE * scale and some_give(J, groups))
     # Impulses that are no solution may take any work from walls.
     quick = fast + pull * h

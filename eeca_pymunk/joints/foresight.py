@@ -11,9 +11,9 @@ are six functions that six parts determine. WEIGHTS[p] foretells part p exactly 
 the sixth last; impulses over the lengths of their parts go the same way. Newton's method then begins with errors
 smaller by (h rate)^2 than with the last accelerations. It decides where Newton's method begins, not where it ends.
 
-`ladder.take_parts` asks before each part whether six parts in steps of this length are known (`recalls`), begins with
-what is foretold if so (`foretell`), and keeps each part that was solved (`remember`); what ends the sequence, such as
-an edit or a limit, calls `forget`.
+Before each part `ladder.take_parts` tests whether six parts in steps of this length are stored (`recalls`), begins with
+the extrapolated values if so (`foretell`), and stores each part that was solved (`remember`). An edit, a limit, or
+whatever else ends the sequence calls `forget`.
 """
 
 from __future__ import annotations
@@ -36,14 +36,15 @@ WEIGHTS: FloatArray = np.array([
 
 @nonallocating
 def forget(W: Workspace) -> None:
-    """Let no part be known: foretelling begins anew."""
+    """Forget all parts, so that the next six are not foretold."""
     for k in range(W.joints):
         W.J.JOINT[W.link[k].joint].known_parts = 0
 
 
 @nonallocating
 def recalls(W: Workspace, h: float) -> bool:
-    """Whether the parts of a step h of these joints can be foretold; where they know not the same, they begin anew."""
+    """Whether the parts of a step h of these joints can be foretold. If joints have stored different numbers of parts,
+    or parts of other steps, they forget them."""
     joint, link = W.J.JOINT, W.link
     count, same = joint[link[0].joint].known_parts, True
     for k in range(W.joints):
@@ -57,13 +58,13 @@ def recalls(W: Workspace, h: float) -> bool:
 
 @inlined
 def weigh(part: int, last: int, place: int) -> float:
-    """The weight for this part of what stands at a place of the ring of DEPTH parts, whose newest is at `last`."""
+    """The weight for this part of the values at a place of the ring of DEPTH parts, whose newest is at `last`."""
     return float(WEIGHTS[part, last - place if place <= last else last - place + DEPTH])
 
 
 @inlined
 def extrapolate(past: FloatArray, c: int, w0: float, w1: float, w2: float, w3: float, w4: float, w5: float) -> float:
-    """What follows the six values past[c] of the ring, by the weights of their places."""
+    """The value that follows the six values past[c] of the ring, by the weights of their places."""
     old = w0 * past[c, 0] + w1 * past[c, 1] + w2 * past[c, 2]
     return float(old + (w3 * past[c, 3] + w4 * past[c, 4] + w5 * past[c, 5]))
 

@@ -53,7 +53,7 @@ def gives_way(W: Workspace) -> bool:
 def limit_work(W: Workspace) -> None:
     """Set the share of the work of a step of the scene that this component may take: PROGRESS.limit and hurry."""
     component, progress = W.J.COMPONENT[W.s], W.J.PROGRESS
-    # What no longer has a share of the work can still be solved where it is not hard.
+    # Components whose share of the work is spent can still be solved where that is easy.
     least = LEAST_SOLUTIONS * effort(component.system, True, component.boxes, W.joints, component)
     progress.limit = progress.effort + max((progress.budget - progress.effort) * COMPONENT_BUDGET, least)
     progress.hurry = progress.effort + HASTE * (progress.limit - progress.effort)
@@ -163,7 +163,7 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
         if done and (rung >= ELASTIC_RUNG or repaid(W, h, own)):
             first.compliance = compliance
             return EXACT if rung <= WHOLE_STEP else HALVED if rung < ELASTIC_RUNG else ELASTIC
-        # What has begun with what was foretold, or with impulses of redundant rows, is taken again without.
+        # A step that began with foretold values, or with impulses of redundant rows, is taken again without these.
         again = cold != loops or (rung == ORDER_4 and recalls(W, h))
         restore(W)
         forget(W)

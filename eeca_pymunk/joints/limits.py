@@ -149,8 +149,7 @@ def seek(W: Workspace, S: Parts, gap_now: float) -> None:
 
 @nonallocating
 def at_limit(W: Workspace, S: Parts) -> int:
-    """What comes after a solve to the instant at which a limit is thought to be met: MEETS if it is, and no other one
-    before."""
+    """What comes after a solve to the instant at which a limit may be met: MEETS if it is, and no other one before."""
     look(W, S.limit, S.when)
     gap_now, touch = gap(W, S.limit, S.side), JOINT_TOUCH * W.J.HINGE[S.limit].size
     S.secants += 1

@@ -1,9 +1,9 @@
-"""Energy that a step of joints has gained without anything having worked: taken from what moves against each other.
+"""Energy that a step of joints has gained without any work: taken from the motion of bodies against each other.
 
 A step whose joints did not hold (elastic stand-ins, linear rows), and closing what it left apart, may gain energy. Of
-all velocities with the same momentum and angular momentum those of a rigid body have the least energy, and no joint
-minds them. So velocities go part of the way to these, v = v_r + s (v - v_r), K = K_r + s^2 K_rel, until the gain is
-gone; where a component hangs on what stands still v_r = 0.
+all velocities with the same momentum and angular momentum those of a rigid body have the least energy, and they fit all
+joints. So velocities go part of the way to these, v = v_r + s (v - v_r), K = K_r + s^2 K_rel, until the gain is
+gone; where a component hangs on something that stands still v_r = 0.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from ..model.parameters.joints import LOCK_ITERATIONS
 
 @nonallocating
 def centre_of(local: Rows[BodyStep], bodies: int) -> tuple[bool, float, float, float, float, float, float]:
-    """Whether the component hangs on something; then of what moves the centre of mass (x, y), its velocity (vx, vy) and
-    its acceleration (ax, ay)."""
+    """Whether the component hangs on something; and the centre of mass (x, y) of its moving bodies, with its velocity
+    (vx, vy) and acceleration (ax, ay)."""
     mass = x = y = vx = vy = ax = ay = 0.0
     hangs = False
     for i in range(bodies):

@@ -70,7 +70,7 @@ def begin_as_before(W: Workspace, before: float, h: float) -> None:
 @nonallocating
 def weaken_lead(W: Workspace, share: float) -> None:
     """Let the next part begin with this share of the accelerations by joints in the part before: the shorter that was,
-    the more they tell of velocities that did not fit, and the less of forces."""
+    the more of them is due to velocities that did not fit, and the less to forces."""
     for i in range(W.bodies):
         for c in range(3):
             W.J.LOCAL[i].lead[c] *= share

@@ -1,4 +1,4 @@
-"""Who hangs together by joints, and in which order the unknowns of each component stand in its banded matrix.
+"""Which bodies joints connect to components, and the order of the unknowns of each in its banded matrix.
 
 A plan stays valid while the set of bodies and joints, their kinds, anchors and bodies, and what moves, stay the same.
 Bodies that joints cannot move bind nothing: they are partners of several components. Nodes of a component's graph

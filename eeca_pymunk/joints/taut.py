@@ -1,7 +1,7 @@
-"""Components whose joints pull so hard that bodies hardly give way across: a string, a bridge as long as its gap.
+"""Components whose joints pull so hard that bodies hardly move across them: a string, a bridge as long as its gap.
 
-To first order such joints let bodies go across; only their pull, which turns as the bodies move, holds them. A solution
-has to begin with that pull.
+To first order such joints allow motion across; only their pull, which turns as the bodies move, holds the bodies. A
+solution has to begin with that pull.
 """
 
 from __future__ import annotations

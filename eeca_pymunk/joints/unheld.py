@@ -56,8 +56,8 @@ def stop_joints(W: Workspace, h: float) -> None:
 
 @nonallocating
 def take_gain(W: Workspace, h: float, status: int, before: float) -> int:
-    """Close the ledger of a step that was ELASTIC or LINEAR, and take what it has gained beyond what is `owed` from
-    what moves; the status. Where that is not enough, or linear rows have moved joints apart, which were `before`, all
+    """Close the ledger of a step that was ELASTIC or LINEAR, and take what it has gained beyond what is `owed` from the
+    motion; the status. Where that is not enough, or linear rows have moved joints apart, which were `before`, all
     bodies move as one. What elastic joints hold they may give back; linear rows hold nothing."""
     local, part, first, stopped = W.J.LOCAL, W.J.PART, W.J.JOINT[W.link[0].joint], False
     close_ledger(local, W.bodies, part)
