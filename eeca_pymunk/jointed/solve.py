@@ -72,6 +72,34 @@ def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
 
 
 @kernel
+def times_too_long(A: Scene, J: Joints, interval: Interval, root: int, effort: float, held: bool, last: bool) -> float:
+    """How many times too long the interval of an island is, whose motion took so much effort; also sets its `strays`.
+
+    Args:
+        held: whether contacts are solved.  last: whether no other attempt follows, see `try_interval`.
+    """
+    isle, groups, ROWS, motion, _, m, n, t, h = interval
+    far = 2.0 if not held and J.PROGRESS.effort > J.PROGRESS.share else 0.0
+    for s in groups.JOINTED:
+        if J.STEPPED[s].status >= ELASTIC:
+            far = 2.0
+    if last and held:
+        A.RESTING[root].strays = too_deep_on_way(A, isle, ROWS, motion, m, h)
+        return far
+    strays = excess(A, isle, ROWS, motion, m, n, t, h)
+    A.RESTING[root].strays, far = 0.0 if held else strays, max(far, strays)
+    if held:
+        return far
+    # The motion is not that of a solution: how long it may be does not follow from it. Contacts that are not solved in
+    # a long interval may be in a short one, if the step has work for many of these; and bodies that sink into others
+    # by unsolved contacts would sink further in the next interval.
+    payable = RESOLUTION * effort <= J.PROGRESS.budget
+    hard = (m <= COLUMN_CONTACTS and payable) or (n < LARGE_ISLAND and sinks(A, ROWS, motion.WAY, m))
+    hard = hard and h * UNSOLVED_PART**2 > A.PAR.dt / RESOLUTION
+    return UNSOLVED_PART if hard else min(far, UNSOLVED_PART)
+
+
+@kernel
 def try_interval(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) -> tuple[int, float]:
     """`begin_jointed` of length h. AGAIN, with nothing done, if that is too long, and how long it may be; not if it is
     the `last` attempt."""
@@ -122,22 +150,7 @@ def try_interval(A: Scene, J: Joints, root: int, t: float, h: float, last: bool)
         advance(A, J, interval, L, room_for_rows(0, 0), False, np.empty((0, 3)))
     COUNT.solves += 1
     COUNT.solved += n
-    far = 2.0 if not held and J.PROGRESS.effort > J.PROGRESS.share else 0.0
-    for s in groups.JOINTED:
-        if J.STEPPED[s].status >= ELASTIC:
-            far = 2.0
-    if not (last and held):
-        strays = excess(A, isle, ROWS, motion, m, n, t, h)
-        A.RESTING[root].strays, far = 0.0 if held else strays, max(far, strays)
-    else:
-        A.RESTING[root].strays = too_deep_on_way(A, isle, ROWS, motion, m, h)
-    if not held:  # the motion is not that of a solution: how long it may be does not follow from it
-        # Contacts that are not solved in a long interval may be in a short one, if the step has work for many of these;
-        # and what sinks in by them would sink further in the next one.
-        payable = RESOLUTION * (J.PROGRESS.effort - before) <= J.PROGRESS.budget
-        hard = (m <= COLUMN_CONTACTS and payable) or (n < LARGE_ISLAND and sinks(A, ROWS, motion.WAY, m))
-        hard = hard and h * UNSOLVED_PART**2 > A.PAR.dt / RESOLUTION
-        far = UNSOLVED_PART if hard else min(far, UNSOLVED_PART)
+    far = times_too_long(A, J, interval, root, J.PROGRESS.effort - before, held, last)
     if far > INTERVAL_RETRY and not last:
         for s in groups.JOINTED:
             restore_joints(J, s)

@@ -200,7 +200,4 @@ def newton(
             if kind[k] == 0 and stuck[i] == 0:
                 L[i, 1] = slip[i] * L[i, 0]
         velocities(problem, L, FREE, V)
-    clamped = clamp(ROWS, L, m)
-    if clamped > 0:
-        velocities(problem, L, FREE, V)
-    return worst, clamped
+    return worst, clamp(problem, L, FREE, V)

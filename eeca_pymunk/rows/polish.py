@@ -77,10 +77,10 @@ def classify(
 
 
 @nonallocating
-def clamp(ROWS: Rows[Row], L: FloatArray, m: int) -> int:
-    """Move impulses back into their cones; returns how many were outside."""
-    clamped = 0
-    for i in range(m):
+def clamp(problem: AnyProblem, L: FloatArray, FREE: FloatArray, V: FloatArray) -> int:
+    """Move impulses back into their cones, with V as `velocities` has it; returns how many were outside."""
+    ROWS, clamped = problem.ROWS, 0
+    for i in range(problem.m):
         most = ROWS[i].friction * L[i, 0]
         if L[i, 0] < 0.0:
             L[i, 0] = L[i, 1] = 0.0
@@ -90,6 +90,8 @@ def clamp(ROWS: Rows[Row], L: FloatArray, m: int) -> int:
             if abs(L[i, 1]) > most * (1.0 + 1e-14):
                 clamped += 1
             L[i, 1] = most if L[i, 1] > 0.0 else -most
+    if clamped > 0:
+        velocities(problem, L, FREE, V)
     return clamped
 
 
@@ -161,10 +163,7 @@ def polish_free(
                 L[i, 1] = slip[i] * L[i, 0]
         velocities(problem, L, FREE, V)
     share(ROWS, L, m)
-    clamped = clamp(ROWS, L, m)
-    if clamped > 0:
-        velocities(problem, L, FREE, V)
-    return worst, clamped
+    return worst, clamp(problem, L, FREE, V)
 
 
 @nonallocating
