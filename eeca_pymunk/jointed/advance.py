@@ -149,23 +149,23 @@ def join_points(row: Row, along: float, across: float) -> None:
 
 
 @nonallocating
-def align(isle: Island, ROWS: Rows[Row], m: int, motion: Motion, change: bool) -> float:
+def align(interval: Interval, change: bool) -> float:
     """How far the arms r of contacts between moving bodies are from being about one point where their forces act, over
     the size of bodies and places; and `change` them so, unless a body is off by more than its size.
 
     An impulse p spread over a step changes the angular momentum of a body by (x + r) x p, x its mean place.
     """
-    worst = 0.0
-    for i in range(m):
+    isle, ROWS, MID, worst = interval.isle, interval.ROWS, interval.motion.MID, 0.0
+    for i in range(interval.m):
         a, b = ROWS[i].a, ROWS[i].b
         if isle.IM[a] == 0.0 or isle.IM[b] == 0.0:
             continue
-        x, y = motion.MID[b, 0] - motion.MID[a, 0], motion.MID[b, 1] - motion.MID[a, 1]
+        x, y = MID[b, 0] - MID[a, 0], MID[b, 1] - MID[a, 1]
         along, across = apart(ROWS[i], x, y)
         off, size = abs(along) + abs(across), min(isle.EXTENT[a], isle.EXTENT[b])
         if not off <= size:
             continue
-        worst = max(worst, off / (size + abs(motion.MID[a, 0]) + abs(motion.MID[a, 1])))
+        worst = max(worst, off / (size + abs(MID[a, 0]) + abs(MID[a, 1])))
         if not change:
             continue
         join_points(ROWS[i], along, across)
@@ -188,6 +188,5 @@ def advance_aligned(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: B
     the motion. At its end they are those that it has been under."""
     for turn in range(ARM_ITERATIONS):
         advance(A, J, interval, L, B, False, np.empty((0, 3)))
-        isle, _, ROWS, motion, _, m, _, _, _ = interval
-        if not free or align(isle, ROWS, m, motion, turn + 1 < ARM_ITERATIONS) <= ARM_ERROR:
+        if not free or align(interval, turn + 1 < ARM_ITERATIONS) <= ARM_ERROR:
             break

@@ -23,7 +23,7 @@ def solve_gently(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Boun
         L[k, 0] = L[k, 1] = 0.0
     advance(A, J, interval, L, B, True, np.empty((0, 3)))
     if free:
-        align(isle, ROWS, m, interval.motion, True)
+        align(interval, True)
     fill_free(groups, C, ROWS, isle.IM, isle.II, m)
     weigh(groups, C, ROWS, m)
     V, BOTH = interval.motion.MEAN.copy(), with_bounded(B, L, m)

@@ -13,19 +13,16 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
-from ..compiled.records import Rows
 from ..contacts.memory import key_of, shapes_of
 from ..geometry.flight import norm
 from ..islands.depths import closes_too_far, depth_limit, too_deep_at_end
-from ..model.contacts import Row
-from ..model.islands import Island
 from ..model.joints import Joints
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_WAY, UNSOLVED_DEPTH
 from ..model.scene import Scene
 from ..pairs.lists import far_apart
 from ..pairs.rules import barred
 from ..rows.build import normal_rate
-from .advance import Motion
+from .advance import Interval
 
 _CUBIC = 4.0 / 27.0  # largest value of s^2 (1 - s)
 
@@ -91,8 +88,9 @@ def excess_alone(A: Scene, J: Joints, s: int, t: float, h: float) -> float:
 
 
 @kernel
-def excess(A: Scene, isle: Island, ROWS: Rows[Row], motion: Motion, m: int, n: int, t: float, h: float) -> float:
-    """How many times too long the interval h is in which n bodies move so, under m contacts."""
+def excess(A: Scene, interval: Interval) -> float:
+    """How many times too long an interval is for the motion of its bodies."""
+    isle, _, ROWS, motion, _, m, n, t, h = interval
     far, KEY = 0.0, np.empty(m, np.int64)
     for z in range(m):
         KEY[z] = ROWS[z].key
@@ -100,23 +98,25 @@ def excess(A: Scene, isle: Island, ROWS: Rows[Row], motion: Motion, m: int, n: i
         i, turned = int(isle.WHO[q]), motion.END[q, 2] - isle.POSE[q, 2]
         far = max(far, strays(A, i, motion.WAY[q, 0], motion.WAY[q, 1], turned, motion.V[q], isle.ACC[q], t, h, KEY, m))
     far = max(far, closes_too_far(A, isle, ROWS, motion.MEAN, m, h))
-    return max(far, too_deep_on_way(A, isle, ROWS, motion, m, h))
+    return max(far, too_deep_on_way(A, interval))
 
 
 @kernel
-def too_deep_on_way(A: Scene, isle: Island, ROWS: Rows[Row], motion: Motion, m: int, h: float) -> float:
-    """How many times too long the interval h is, as one of m contacts is deeper at its end, or in its middle, than the
+def too_deep_on_way(A: Scene, interval: Interval) -> float:
+    """How many times too long an interval is, as one of m contacts is deeper at its end, or in its middle, than the
     linear rows predict: what slides along a wall that turns may be past the end of the wall by the end."""
+    isle, _, ROWS, motion, _, m, _, _, h = interval
     MIDDLE = isle.POSE + 0.25 * (h * isle.V + motion.WAY)
     half = too_deep_at_end(A, isle, MIDDLE, ROWS, m, 0.5 * h, True)
     return max(2.0 * half, too_deep_at_end(A, isle, motion.END, ROWS, m, h, True))
 
 
 @nonallocating
-def led_in(A: Scene, ROWS: Rows[Row], OUT: IntArray, WAY: FloatArray, m: int) -> int:
+def led_in(A: Scene, interval: Interval) -> int:
     """A contact that joints lead deeper than an interval allows, -1 if there is none: those that are left out (OUT) are
     not moved by any impulse."""
-    for z in range(m):
+    ROWS, OUT, WAY = interval.ROWS, interval.C.OUT, interval.motion.WAY
+    for z in range(interval.m):
         closed = normal_rate(ROWS[z], WAY)
         a, b = shapes_of(A, ROWS[z])
         if OUT[z] != 0 and closed < 0.0 and ROWS[z].gap + closed < -depth_limit(A, a, b):
@@ -125,9 +125,10 @@ def led_in(A: Scene, ROWS: Rows[Row], OUT: IntArray, WAY: FloatArray, m: int) ->
 
 
 @nonallocating
-def sinks(A: Scene, ROWS: Rows[Row], WAY: FloatArray, m: int) -> bool:
-    """Whether any of m contacts becomes deeper on the way by more than UNSOLVED_DEPTH of what an interval allows."""
-    for z in range(m):
+def sinks(A: Scene, interval: Interval) -> bool:
+    """Whether any contact becomes deeper in an interval by more than UNSOLVED_DEPTH of what an interval allows."""
+    ROWS, WAY = interval.ROWS, interval.motion.WAY
+    for z in range(interval.m):
         closed = normal_rate(ROWS[z], WAY)
         a, b = shapes_of(A, ROWS[z])
         if closed + max(ROWS[z].gap, 0.0) < -UNSOLVED_DEPTH * depth_limit(A, a, b):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
-from ..compiled.records import Rows
 from ..model.contacts import Bounded, Row
 from ..model.joints import Joints
 from ..model.parameters.joints import PRESS_LOCKS
@@ -23,11 +22,12 @@ def slip_of(row: Row, WAY: FloatArray, h: float) -> float:
 
 
 @nonallocating
-def lost(ROWS: Rows[Row], L: FloatArray, WAY: FloatArray, m: int, h: float) -> float:
-    """What contacts lose with impulses L while bodies go WAY: their part in the energy of the island, exactly."""
-    total = 0.0
-    for i in range(m):
-        total -= (L[i, 0] * normal_rate(ROWS[i], WAY) + L[i, 1] * slip_of(ROWS[i], WAY, h)) / h
+def lost(interval: Interval, L: FloatArray) -> float:
+    """What contacts lose with impulses L in an interval: their part in the energy of the island, exactly."""
+    WAY, h, total = interval.motion.WAY, interval.h, 0.0
+    for i in range(interval.m):
+        row = interval.ROWS[i]
+        total -= (L[i, 0] * normal_rate(row, WAY) + L[i, 1] * slip_of(row, WAY, h)) / h
     return total
 
 
@@ -51,9 +51,9 @@ def lock(
 ) -> None:  # fmt: skip
     """Scale the impulses L of contacts by s until these lose `owed` at least, or if `elastic` just that, but for
     `error`. The loss is a quadratic function, D(s) = s p - s^2 q."""
-    _, _, ROWS, motion, C, m, _, _, h = interval
+    ROWS, motion, C, m = interval.ROWS, interval.motion, interval.C, interval.m
     for tries in range(PRESS_LOCKS + 1):
-        loss = lost(ROWS, L, motion.WAY, m, h)
+        loss = lost(interval, L)
         if loss >= owed - error and (not elastic or loss <= owed + error):
             break
         p, q2 = 0.0, 0.0

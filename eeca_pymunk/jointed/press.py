@@ -154,7 +154,7 @@ def press(
             break
         anew = outer % CHORD == 0
         advance(A, J, interval, L, B, anew, FORESEEN if outer > 0 else UNKNOWN)
-        bent = align(isle, ROWS, m, motion, True) if free else 0.0
+        bent = align(interval, True) if free else 0.0
         if outer > 0:
             off = farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n)
             reached = min(reached, off)
@@ -162,7 +162,7 @@ def press(
             if off <= agree or (off <= OUTER_FLOOR * scale and stalls):
                 # Velocities agree; as long as contacts gain energy by them they do not agree well enough.
                 error = work_error(interval, L, slow, pull, PRESS_WORK_ROUND_OFF)
-                pays = elastic or lost(ROWS, L, motion.WAY, m, h) >= owed - error
+                pays = elastic or lost(interval, L) >= owed - error
                 if pays or (stalls and limited):
                     converged, agreed = True, True
                     break

@@ -78,15 +78,15 @@ def times_too_long(A: Scene, J: Joints, interval: Interval, root: int, effort: f
     Args:
         held: whether contacts are solved.  last: whether no other attempt follows, see `try_interval`.
     """
-    isle, groups, ROWS, motion, _, m, n, t, h = interval
+    m, n, h = interval.m, interval.n, interval.h
     far = 2.0 if not held and J.PROGRESS.effort > J.PROGRESS.share else 0.0
-    for s in groups.JOINTED:
+    for s in interval.groups.JOINTED:
         if J.STEPPED[s].status >= ELASTIC:
             far = 2.0
     if last and held:
-        A.RESTING[root].strays = too_deep_on_way(A, isle, ROWS, motion, m, h)
+        A.RESTING[root].strays = too_deep_on_way(A, interval)
         return far
-    strays = excess(A, isle, ROWS, motion, m, n, t, h)
+    strays = excess(A, interval)
     A.RESTING[root].strays, far = 0.0 if held else strays, max(far, strays)
     if held:
         return far
@@ -94,7 +94,7 @@ def times_too_long(A: Scene, J: Joints, interval: Interval, root: int, effort: f
     # a long interval may be in a short one, if the step has work for many of these; and bodies that sink into others
     # by unsolved contacts would sink further in the next interval.
     payable = RESOLUTION * effort <= J.PROGRESS.budget
-    hard = (m <= COLUMN_CONTACTS and payable) or (n < LARGE_ISLAND and sinks(A, ROWS, motion.WAY, m))
+    hard = (m <= COLUMN_CONTACTS and payable) or (n < LARGE_ISLAND and sinks(A, interval))
     hard = hard and h * UNSOLVED_PART**2 > A.PAR.dt / RESOLUTION
     return UNSOLVED_PART if hard else min(far, UNSOLVED_PART)
 
@@ -156,7 +156,7 @@ def try_interval(A: Scene, J: Joints, root: int, t: float, h: float, last: bool)
             restore_joints(J, s)
         clear_places(A, MINE)
         return AGAIN, h / far
-    led = led_in(A, ROWS, interval.C.OUT, motion.WAY, m)
+    led = led_in(A, interval)
     if not held or led >= 0:
         a, b = shapes_of(A, ROWS[max(led, 0)])
         note_unmet(A, CONTACTS, a, b, math.nan, math.nan)
@@ -170,7 +170,7 @@ def try_interval(A: Scene, J: Joints, root: int, t: float, h: float, last: bool)
     WHERE, HELD = motion.END.copy(), np.zeros(m)
     if not conserves(ROWS, m):
         if not before_end(A, t + h):
-            lift_island(A, J, interval, root, t + h, lost(ROWS, L, motion.WAY, m, h), False)
+            lift_island(A, J, interval, root, t + h, lost(interval, L), False)
         HELD = fit(A, J, interval, L, t + h, slow + pull * h)
     clear_places(A, MINE)
     first = COUNT.pushes
