@@ -114,8 +114,9 @@ def keep_allowed(J: Joints, block: Block, groups: Groups, g: int, n: int, INDEX:
 
 @kernel
 def bear(A: Scene, J: Joints, block: Block, groups: Groups, L: FloatArray, FREE: FloatArray, t: float) -> None:
-    """Add to the joints' `struck` what they have answered to the impulses L of an impact at instant t, and to the part
-    of the velocities FREE before it that they do not allow; of what partners move, to the impulses alone."""
+    """Add to the joints' `struck` their impulses in answer to the impulses L of an impact at instant t, and to the part
+    of the velocities FREE before it that they do not allow; of components that partners move, to the impulses alone.
+    """
     ROWS = block.ROWS
     INDEX = np.full(len(block.IM), -1, np.int64)
     for g in range(len(groups.COMPONENT)):

@@ -68,7 +68,7 @@ def lies_still(A: Scene, J: Joints, s: int) -> bool:
 @nonallocating
 def begin_alone(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) -> float:
     """Begin an interval of length h, without contacts, of an island that `is_component` at instant t, at which all its
-    bodies are; 0, or how many times too long it is, with nothing done; not if it is the `last` attempt."""
+    bodies are. Returns 0; or, with nothing done, how many times too long it is, never in the `last` attempt."""
     s = J.OF[root]
     keep_joints(J, s)
     clear_interval(J.STEPPED[s])
@@ -97,7 +97,8 @@ def begin_alone(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
 
 @nonallocating
 def account_turning(A: Scene, J: Joints, s: int, body: int, angle: float, way: float) -> None:
-    """Torques work along the way chi = h w_m, which is not quite what a body of component s turns by, to `angle`."""
+    """Account for the work of the torque on a body of component s: it acts along the way chi = h w_m, which differs a
+    little from the angle by which the body turns, to `angle`."""
     b = A.BODY[body]
     if b.inv_inertia > 0.0 and A.PULL[body, 2] != 0.0:
         J.STEPPED[s].turned_work += A.PULL[body, 2] * (way - (angle - b.angle)) / b.inv_inertia
@@ -105,15 +106,15 @@ def account_turning(A: Scene, J: Joints, s: int, body: int, angle: float, way: f
 
 @nonallocating
 def stay(A: Scene, body: int) -> None:
-    """Let a body without velocity and acceleration be lifted nowhere at the end of its interval."""
+    """Set the correction of a body without velocity and acceleration to none."""
     rest = A.RESTING[body]
     rest.lift_x = rest.lift_y = rest.lift_angle = rest.lift_vx = rest.lift_vy = rest.lift_spin = 0.0
 
 
 @nonallocating
 def set_path(A: Scene, body: int, h: float, POSE: FloatArray, END: FloatArray, V: FloatArray) -> None:
-    """Let a body go on a parabola from where it is to POSE (3,), after h; there it is lifted to END, with velocity
-    V."""
+    """Set the path of a body: a parabola from its pose to POSE (3,) after h, where the correction moves it to END, with
+    velocity V."""
     A.STATE[body].version += 1
     b, rest = A.BODY[body], A.RESTING[body]
     b.ax = 2.0 * (POSE[0] - b.x - h * b.vx) / (h * h)

@@ -1,4 +1,4 @@
-"""What joints are at the start of a step, and what they have done at its end."""
+"""The joints of a scene at the start of a step, and their works and impulses at its end."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def mark_edited(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray) -> None
     for j in range(J.JOINT.shape[0]):
         a, b = J.JOINT[j].body[0], J.JOINT[j].body[1]
         if (a < n and A.PLACE[a] > 0) or (b < n and A.PLACE[b] > 0):
-            # Bodies that were put elsewhere start as those that are new: they go the same ways again, bit by bit.
+            # Bodies that were put elsewhere start as new ones do, so that equal states give equal paths, bit by bit.
             J.JOINT[j].touched = EDITED
             J.JOINT[j].impulse[0] = J.JOINT[j].impulse[1] = 0.0
             for c in range(6):
@@ -61,25 +61,25 @@ def start_joints(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray, dt: fl
 
 @nonallocating
 def work_left(A: Scene, J: Joints) -> float:
-    """Work for joints that a step has left, in operations: what events have taken of their budget is not there for
-    joints either, as both take time."""
+    """Work for joints that a step has left, in operations. Events and joints share the time of a step: the part of
+    their budget that events have used is deducted from that of joints."""
     return float(J.PROGRESS.budget * (1.0 - A.COUNT.work / most_work(A)) - J.PROGRESS.effort)
 
 
 @nonallocating
 def most_looks(A: Scene, J: Joints) -> float:
-    """Largest work of the events of this step, in looks: `most_work`, but for the part that joints have taken of their
-    budget."""
+    """Largest work of the events of this step, in looks: `most_work`, less the part of their budget that joints have
+    used."""
     taken = J.PROGRESS.effort / J.PROGRESS.budget if J.TALLY.components > 0 else 0.0
     return float(most_work(A) * (1.0 - taken))
 
 
 @nonallocating
 def account_component(A: Scene, J: Joints, s: int) -> None:
-    """Book what the joints of component s have done in their interval.
+    """Account for the works of the joints of component s in their interval.
 
-    A joint that holds works by its impulse over the time h in which a limit stops its bodies, times the round-off of
-    its place, over h: the shorter, the more. The limit loses as much less; only the sum is a loss.
+    Where a limit stops bodies within a short time h, a joint that holds works by its impulse times the round-off of its
+    place over h. The loss of the limit is smaller by as much; only the sum is a loss.
     """
     PAR, B = A.PAR, J.STEPPED[s]
     passed = min(max(B.closed, 0.0), max(B.limited, 0.0))
@@ -94,9 +94,9 @@ def account_component(A: Scene, J: Joints, s: int) -> None:
 
 @nonallocating
 def account_joints(A: Scene, J: Joints) -> None:
-    """Book what all joints have done until the end of the step, and leave their impulses as those of a whole step by
-    their last forces: an interval may have been shorter, or the last step longer, of what was not stepped in this one.
-    """
+    """Account for the works of all joints until the end of the step, and scale their impulses to those of a whole step
+    by their last forces: an interval may have been shorter, or, of joints not stepped in this step, the last step
+    longer."""
     for s in range(J.TALLY.components):
         account_component(A, J, s)
     if J.TALLY.worst >= ELASTIC:

@@ -1,4 +1,4 @@
-"""Whom the path of an interval of an island with joints leads through."""
+"""Which shapes an island with joints passes through on the path of its interval."""
 
 from __future__ import annotations
 

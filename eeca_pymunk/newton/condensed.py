@@ -21,7 +21,7 @@ from .entries import put_condensed, put_rows
 
 @nonallocating
 def subtract(row: FloatArray, other: FloatArray, amount: float) -> None:
-    """row -= amount other, as far as the shorter of both reaches."""
+    """row -= amount other, over the length of the shorter one."""
     for j in range(min(len(row), len(other))):
         row[j] -= amount * other[j]
 

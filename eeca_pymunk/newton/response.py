@@ -1,8 +1,8 @@
 """How a component of joints answers impulses on its bodies: the change of velocities per impulse.
 
 About a solved step, d v1 = S p for impulses p spread over the step, S the bodies' block of the inverse of Newton's
-matrix, with springs and bounded joints. Rows turn as bodies move, and the force of joints with them: without that what
-is taut would give way across. Of joints that press hard it is left out: S would not be positive. At one instant (an
+matrix, with springs and bounded joints. Rows turn as bodies move, and the force of joints with them: without that taut
+joints would allow motion across. Of joints that press hard it is left out: S would not be positive. At one instant (an
 impact), S = M^-1 - M^-1 G^T (G M^-1 G^T)^-1 G M^-1: joints that hold exactly let no velocity through, and all others no
 impulse.
 """
