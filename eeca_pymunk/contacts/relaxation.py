@@ -27,7 +27,7 @@ from ..model.parameters.intervals import (
 )
 from ..model.parameters.joints import COLUMN_CONTACTS
 from ..rows.conjugate import iterate
-from ..rows.direct import refine
+from ..rows.direct import refine_and_sweep
 from ..rows.laws import solve_few
 from ..rows.sweeps import sweep
 
@@ -65,14 +65,11 @@ def relax(
     last = worst
     while done < rounds:
         passes = 6 if STATE.augmentation > 6.0 else 1
-        STATE.augmentation, worst = refine(problem, L, V, FREE, STATE.augmentation, passes, 0.1 * fine, worst)
+        STATE.augmentation, worst, taken = refine_and_sweep(
+            problem, L, V, FREE, STATE.augmentation, passes, fine, worst, SWEEPS_AFTER
+        )  # fmt: skip
         done += 1
-        sweeps += 1
-        for _ in range(SWEEPS_AFTER):
-            if worst <= fine:
-                break
-            worst = sweep(problem, L, V)
-            sweeps += 1
+        sweeps += taken
         if worst <= max(fine, coarse):
             break
         # A direct solve has failed if it and the sweeps after it leave more than a fifth of the residual.

@@ -34,10 +34,10 @@ from ..model.parameters.impulses import (
 from ..model.parameters.intervals import DIRECT_MOVING, INTERVAL_RESIDUAL_SPEED, SMALL_SWEEPS
 from .build import aim, conserves, largest_terms, rates, rubs
 from .conjugate import iterate
-from .direct import refine
+from .direct import refine, refine_and_sweep
 from .drift import go_along
 from .energy import lock, works
-from .sweeps import push, sweep, velocities
+from .sweeps import push, velocities
 
 CONVERGED, TRUNCATED = 0, 1  # statuses
 
@@ -72,13 +72,11 @@ def resolve(
         if drifts > 0:
             worst = go_along(problem, L, V, FREE, worst)
             OUT[0].sweeps += 1
-        log_R, worst = refine(problem, L, V, FREE, log_R, 8, 0.1 * tolerance, worst)
+        log_R, worst, taken = refine_and_sweep(problem, L, V, FREE, log_R, 8, tolerance, worst, BLOCK_SWEEPS_AFTER)
+        OUT[0].sweeps += taken
         OUT[0].direct += 1
-        for _ in range(BLOCK_SWEEPS_AFTER):
-            OUT[0].sweeps += 1
-            if worst <= tolerance:
-                return worst
-            worst = sweep(problem, L, V)
+        if worst <= tolerance:
+            return worst
         if worst < 0.5 * least:
             least = worst
             stalled = 0

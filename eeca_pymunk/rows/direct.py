@@ -68,3 +68,19 @@ def refine(
     elif part < 0.3:
         log_R = max(log_R - 2.0, 2.0)
     return log_R, sweep(problem, L, V)
+
+
+@kernel
+def refine_and_sweep(
+    problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, log_R: float, passes: int, tolerance: float,
+    worst: float, most: int,
+) -> tuple[float, float, int]:  # fmt: skip
+    """A round of a solve: `refine`, and up to `most` sweeps until one changes no velocity by more than `tolerance`.
+    Returns log_R for the next round, the change of velocity in the last sweep, and the number of sweeps, with that of
+    `refine`."""
+    log_R, worst = refine(problem, L, V, FREE, log_R, passes, 0.1 * tolerance, worst)
+    sweeps = 1
+    while sweeps <= most and worst > tolerance:
+        worst = sweep(problem, L, V)
+        sweeps += 1
+    return log_R, worst, sweeps
