@@ -1,8 +1,8 @@
 """The end of an island's interval: the works of its contacts up to there enter the ledger. They are exact, as forces
 are constant and velocities linear.
 
-If an interval is cut, its forces up to there may have given energy: then they are replaced (`excess.py`). They may also
-have changed the angular momentum, since the arms are those of the middle of the whole interval.
+If an interval is cut, its forces up to there may have given energy: then they are replaced (`shortened.py`). They may
+also have changed the angular momentum, since the arms are those of the middle of the whole interval.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from ..model.scene import Scene, scene_of
 from ..pairs.lists import mark_pair
 from ..rows.energy import offset_gain
 from .at_rest import log_contact, mark_changed, wake_supported
-from .excess import losses, repay
 from .membership import unite
 from .rest import spins_freely
+from .shortened import losses, repay
 
 
 @nonallocating

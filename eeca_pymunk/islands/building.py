@@ -195,7 +195,7 @@ def hits_of(A: Scene, a: int, b: int) -> int:
 @nonallocating
 def most_hits(A: Scene, a: int, b: int) -> int:
     """Largest number of hits in a step on the islands of shapes a and b: RESOLUTION; of lossy ones that divided by the
-    number of bodies, or by half of it where bodies hang together by joints, which a hit moves all at once."""
+    number of bodies, or by half of it where joints connect bodies, as a hit moves all of these at once."""
     if law(A, a, b)[0] >= 1.0:
         return RESOLUTION
     hung = jointed(A, A.LINK[a].owner) or jointed(A, A.LINK[b].owner)

@@ -1,5 +1,5 @@
-"""Initial penetration: bodies that the program has placed into others. As nothing makes their contacts persistent, no
-island would correct the overlap; they are in one until it is corrected."""
+"""Initial penetration: bodies that the program has placed into others. Their contacts need not persist, so that no
+island would correct the overlap: they are united to one until it is corrected."""
 
 from __future__ import annotations
 

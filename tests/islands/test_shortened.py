@@ -1,4 +1,4 @@
-"""Intervals that are cut short give no energy (`islands/excess.py`)."""
+"""Intervals that are cut short give no energy (`islands/shortened.py`)."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 import eeca_pymunk as ep
 from eeca_pymunk.compiled.records import rows
 from eeca_pymunk.contacts.single import move_to
-from eeca_pymunk.islands.excess import losses, scale_impulses
+from eeca_pymunk.islands.shortened import losses, scale_impulses
 from eeca_pymunk.model.bodies import Body, Member, Next
 from eeca_pymunk.model.contacts import Pair, Pushed
 from eeca_pymunk.model.scene import scene_with
