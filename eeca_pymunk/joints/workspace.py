@@ -31,7 +31,7 @@ def measure_plan(J: Joints, ROOM: IntArray) -> bool:
     """Write to ROOM the most that one component needs; whether the arrays of J have it.
 
     Args:
-        ROOM (6,): out, bodies, joints, rows of a matrix, its entries, entries of a right side, and of scratch.
+        ROOM (6,): out, bodies, joints, numbers of pivots, entries of a matrix, entries of a right side, and of scratch.
     """
     for k in range(6):
         ROOM[k] = 1
@@ -41,7 +41,7 @@ def measure_plan(J: Joints, ROOM: IntArray) -> bool:
         boxes = (C.boxes + 1) * (C.unknowns + C.impulses + 3 * C.boxes + BOX_ROOM) if C.boxes > 0 else 0
         ROOM[0] = max(ROOM[0], C.end_body - C.first_body)
         ROOM[1] = max(ROOM[1], C.end_joint - C.first_joint)
-        ROOM[2] = max(ROOM[2], C.unknowns, C.dual_size)
+        ROOM[2] = max(ROOM[2], 2 * C.unknowns, C.dual_size)
         ROOM[3] = max(ROOM[3], whole, dual if C.rigid > 0 else 0)
         ROOM[4] = max(ROOM[4], 2 * (C.unknowns + C.impulses))
         ROOM[5] = max(ROOM[5], STRIDE * C.dual_size + boxes)

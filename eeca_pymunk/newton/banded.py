@@ -8,12 +8,13 @@ from ..compiled import nonallocating
 
 @nonallocating
 def factor_banded(matrix: FloatArray, size: int, band: int, pivots: IntArray) -> bool:
-    """LU factors in place of `matrix`; False if a pivot vanishes.
+    """LU factors in place of `matrix`, reciprocals on the diagonal; False if a pivot vanishes.
 
     `matrix` (size (3 band + 1) or more,): A[i, j] at i (3 band + 1) + j - i + band for |i - j| <= band; the last `band`
-    entries of each row are room for what rows swap in, and begin at 0. Cost: size band^2 operations.
+    entries of each row are room for what rows swap in, and begin at 0. `pivots` (2 size or more,): out, the row that
+    each row was exchanged with, then the last column of each that is not 0. Cost: size band^2 operations.
     """
-    width = 3 * band + 1
+    width, end = 3 * band + 1, 0
     for k in range(size):
         last = min(size, k + band + 1)
         at = k * width + band
@@ -25,7 +26,9 @@ def factor_banded(matrix: FloatArray, size: int, band: int, pivots: IntArray) ->
         pivots[k] = pivot
         if not largest > 1e-300:
             return False
-        reach = min(2 * band + 1, size - k)  # columns k .. k + 2 band
+        end = max(end, min(pivot + band, size - 1))
+        pivots[size + k] = end
+        reach = end - k + 1
         if pivot != k:
             other = pivot * width + k - pivot + band
             for j in range(reach):
@@ -33,6 +36,7 @@ def factor_banded(matrix: FloatArray, size: int, band: int, pivots: IntArray) ->
                 matrix[at + j] = matrix[other + j]
                 matrix[other + j] = keep
         inverse = 1.0 / matrix[at]
+        matrix[at] = inverse
         for i in range(k + 1, last):
             to = i * width + k - i + band
             below = matrix[to]
@@ -60,6 +64,7 @@ def back_banded(matrix: FloatArray, size: int, band: int, pivots: IntArray, righ
     for k in range(size - 1, -1, -1):
         total = right[k]
         at = k * width + band
-        for j in range(1, min(2 * band + 1, size - k)):
+        # What was found last comes last: nothing else waits for it.
+        for j in range(pivots[size + k] - k, 0, -1):
             total -= matrix[at + j] * right[k + j]
-        right[k] = total / matrix[at]
+        right[k] = total * matrix[at]

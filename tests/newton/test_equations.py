@@ -38,14 +38,14 @@ def test_banded_systems_with_zeros_on_the_diagonal(n: int, band: int) -> None:
         full[::3, ::3] = 0.0
     right = rng.normal(size=n)
     expected = np.linalg.solve(full, right)
-    packed, pivots = band_of(full, band, 3 * band + 1), np.zeros(n, np.int64)
+    packed, pivots = band_of(full, band, 3 * band + 1), np.zeros(2 * n, np.int64)
     assert factor_banded(packed, n, band, pivots)
     back_banded(packed, n, band, pivots, right)
     np.testing.assert_allclose(right, expected, rtol=1e-9, atol=1e-11 * np.abs(expected).max())
 
 
 def test_banded_tells_of_singular_systems() -> None:
-    assert not factor_banded(np.zeros(21), 3, 2, np.zeros(3, np.int64))
+    assert not factor_banded(np.zeros(21), 3, 2, np.zeros(6, np.int64))
 
 
 @pytest.mark.parametrize("band", [6, 11])
