@@ -10,16 +10,17 @@ from ..model.contacts import Solved
 from ..model.parameters.events import BODY_LOOKS, DIRECT_LOOKS, EVENT_LOOKS, PAIR_LOOKS, SWEEP_LOOKS
 from ..model.parameters.impulses import DENSE_CONTACTS
 from ..model.scene import Scene
+from ..model.step import SOLVES
 
 
 @nonallocating
 def note_unmet(A: Scene, kind: int, a: int, b: int, value: float, limit: float) -> None:
     """Note that a quantity of `kind` (`..model.step`) was `value` for shapes a and b (-1: unknown), beyond `limit`.
-    Rows of the first ones in a step are stored, all are counted."""
-    k = A.COUNT.unmet
+    Rows of the first ones in a step are stored, and in any case why a step has ended early; all are counted."""
+    k, room = A.COUNT.unmet, A.MISSED.shape[0]
     A.COUNT.unmet = k + 1
-    if k < A.MISSED.shape[0]:
-        row = A.MISSED[k]
+    if k < room or kind == SOLVES:
+        row = A.MISSED[min(k, room - 1)]
         row.kind, row.first, row.second, row.value, row.limit = kind, a, b, value, limit
 
 

@@ -230,5 +230,5 @@ def effort(system: int, fresh: bool, boxes: int, joints: int, component: Compone
     size, band = (component.dual_size, component.dual_band) if system == DUAL else (component.unknowns, component.band)
     turns = 1 + boxes if fresh else 1
     # Wide bands take several numbers at once.
-    factors = (4.0 if system == WHOLE else 0.5 if band >= FACTOR_BAND else 2.0) * size * band * band
-    return float(ROW_WORK * joints + (factors if fresh else 0.0) + 6.0 * turns * size * (band + 4))
+    factors = (2.7 if system == WHOLE else 0.5 if band >= FACTOR_BAND else 2.0) * size * band * band
+    return float(ROW_WORK * joints + (factors if fresh else 0.0) + 5.8 * turns * size * (band + 4))
