@@ -7,6 +7,7 @@ import numpy as np
 
 from .arrays import FloatArray
 from .compiled.records import Rows, columns, rows
+from .compiled.sources import sources_hash
 from .geometry.sides import keep_sides
 from .impacts.scene import EventLoop
 from .layout import ANEW, BODY_ROW, LEFT, NUDGED
@@ -25,7 +26,8 @@ _TIE = "kind", "body", "bounded"  # fields of JOINT that decide the plan
 class Saved:
     """The event loop of a world and everything else that determines its next step; pickled with the space.
 
-    It has copies of shapes, bodies and joints, and is used only for a space in which all of them are equal.
+    It has copies of shapes, bodies and joints, and is used only for a space in which all of them are equal, and by the
+    version of the package that made it: the arrays of others may be shorter.
     """
 
     def __init__(self, world: World, method: EventLoop, decisions: Decisions) -> None:
@@ -37,10 +39,13 @@ class Saved:
         self._rates = {} if joints is None else joints.rates
         # After edits of joints that no step has used yet, the copy reads all joints again.
         self._fresh = joints is None or not (joints.replan or joints.edited)
+        self._made_by = sources_hash()
 
     def resume(self, world: World, decisions: Decisions) -> bool:
         """Continue with a world that was just read, and decisions of its handlers; False, and nothing changed, if it is
         not equal."""
+        if getattr(self, "_made_by", "") != sources_hash():
+            return False
         scene = self.method.scene
         row = world.bodies.row
         if not self._fresh or row.keys() != set(self.items) or world.shapes != self.shapes:
