@@ -25,7 +25,7 @@ from ..model.islands import Island, IslandContacts
 from ..model.parameters.intervals import INTERVAL_WAY, MANIFOLD_ROUND_OFF, MIDPOINT_SAME
 from ..model.scene import Scene
 from ..pairs.rules import law
-from ..rows.build import place_row
+from ..rows.build import normal_rate, place_row
 from .memory import key_of
 
 
@@ -36,6 +36,14 @@ def way_about(POSE: FloatArray, V: FloatArray, a: int, b: int, extent: float) ->
     x = V[b, 0] - V[a, 0] + V[a, 2] * (POSE[b, 1] - POSE[a, 1])
     y = V[b, 1] - V[a, 1] - V[a, 2] * (POSE[b, 0] - POSE[a, 0])
     return math.sqrt(x * x + y * y) + abs(V[b, 2] - V[a, 2]) * extent
+
+
+@nonallocating
+def gap_rate(POSE: FloatArray, V: FloatArray, a: int, b: int, nx: float, ny: float, px: float, py: float) -> float:
+    """Velocity of local body b's point (px, py) relative to body a's along the normal n. POSE, V: (k, 3)."""
+    x = V[b, 0] - V[b, 2] * (py - POSE[b, 1]) - V[a, 0] + V[a, 2] * (py - POSE[a, 1])
+    y = V[b, 1] + V[b, 2] * (px - POSE[b, 0]) - V[a, 1] - V[a, 2] * (px - POSE[a, 0])
+    return nx * x + ny * y
 
 
 @kernel
@@ -77,11 +85,11 @@ def gather(
             + abs(V[a, 2]) * EXTENT[a]
             + abs(V[b, 2]) * EXTENT[b]
         )
-        about = way
+        about, turning = way, False
         if isle.IM[a] == 0.0 and V[a, 2] != 0.0:
-            about = half * way_about(POSE, V, a, b, EXTENT[b])
+            about, turning = half * way_about(POSE, V, a, b, EXTENT[b]), True
         elif isle.IM[b] == 0.0 and V[b, 2] != 0.0:
-            about = half * way_about(POSE, V, b, a, EXTENT[a])
+            about, turning = half * way_about(POSE, V, b, a, EXTENT[a]), True
         centre = MIDDLE
         # Normals rotate as circles move around each other, slowly around a large one.
         far = SHAPE[s].rounding + SHAPE[r].rounding if LINK[s].vertices == 1 and LINK[r].vertices == 1 else small
@@ -111,5 +119,9 @@ def gather(
             row.elasticity, row.friction, row.surface = elasticity, friction, 0.0
             place_row(row, THEN[z, 2], THEN[z, 3], centre, isle.IM, isle.II)
             row.surface = row.nx * sy - row.ny * sx
+            row.turned = 0.0
+            if ahead and turning:
+                u = gap_rate(POSE, V, a, b, NOW[z, 0], NOW[z, 1], NOW[z, 2], NOW[z, 3])
+                row.turned = max(u - normal_rate(row, V), 0.0)
         m += count
     return m

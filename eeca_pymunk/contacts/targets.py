@@ -9,6 +9,10 @@ bounce is e max(-u, 0) for e < 1, -u for e = 1.
 * e = 1 with a gap, or u < -2 |a| h: an impact. b is the bounce, if the gap would close without it: the contact is
   inactive while u_n+ is above its activation velocity `wake`, with which the gap is just closed at the end.
 * Else the surfaces meet softly at the end of the interval: b = min(bounce, -u - 2 max(g, 0)/h).
+
+Where a body without mobility turns, u is by a part c of -u less than with the geometry of the start, and u+ more than
+with that of the end: u + c bounces, and c is added to the bounce. What the body carries along neither sinks nor loses
+energy so, to second order: with the bounce 0 it would go along the tangent of the middle, through the wall.
 """
 
 from __future__ import annotations
@@ -40,14 +44,16 @@ def target(ROWS: Rows[Row], m: int, ACC: FloatArray, EXPECTED: FloatArray, pull:
     for i in range(m):
         a, b, u, e = ROWS[i].a, ROWS[i].b, ROWS[i].un, ROWS[i].elasticity
         close = -u - 2.0 * ROWS[i].gap / h  # end velocity that closes the gap
-        bounce = -e * u if u < 0.0 else 0.0
+        begins = u + min(ROWS[i].turned, max(-u, 0.0))
+        bounce = -e * begins if begins < 0.0 else 0.0
         ROWS[i].wake = np.inf
         if e >= 1.0:
             bounce = -u
         else:
             along = ROWS[i].nx * (ACC[b, 0] - ACC[a, 0]) + ROWS[i].ny * (ACC[b, 1] - ACC[a, 1])
-            if hardly_bounces(e, u, max(-along * h, EXPECTED[i] / ROWS[i].k_n)):
+            if hardly_bounces(e, begins, max(-along * h, EXPECTED[i] / ROWS[i].k_n)):
                 bounce = 0.0
+            bounce += begins - u
         if u < -IMPACT_SPEED * pull * h or (e >= 1.0 and ROWS[i].gap > 0.0):
             ROWS[i].target = bounce
             ROWS[i].wake = close

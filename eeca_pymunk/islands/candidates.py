@@ -80,7 +80,7 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                     g, u, closing, _, mass = approach(A, s, o, t)
                     if not together:
                         if not busy:
-                            reach = 1.1 * (max(-u, 0.0) * h + A.PAR.pulled * h * h) + TOUCH * small
+                            reach = 1.1 * (max(-u, 0.0) * h + max(A.PAR.pulled, closing) * h * h) + TOUCH * small
                         # Within an interval bodies move no farther; other pairs meet at their times of impact.
                         reach = min(reach, 2.0 * INTERVAL_WAY * small)
                     if g > reach:

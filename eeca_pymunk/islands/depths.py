@@ -9,6 +9,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
+from ..contacts.geometry import gap_rate
 from ..contacts.memory import shapes_of
 from ..geometry.gap import gap_at
 from ..geometry.sides import half_width, held_side, remembers, smaller
@@ -134,9 +135,7 @@ def deep_at_end(A: Scene, isle: Island, END: FloatArray, ROWS: Rows[Row], m: int
         return 0.0
     S, V, room = isle.POSE, isle.V, max(gap, 0.0) + depth_limit(A, a, b)
     _, nx, ny, x, y = gap_at(A, a, S[p, 0], S[p, 1], S[p, 2], b, S[q, 0], S[q, 1], S[q, 2])
-    ux = V[q, 0] - V[q, 2] * (y - S[q, 1]) - V[p, 0] + V[p, 2] * (y - S[p, 1])
-    uy = V[q, 1] + V[q, 2] * (x - S[q, 0]) - V[p, 1] - V[p, 2] * (x - S[p, 0])
-    way = max(-h * (nx * ux + ny * uy), 0.0)
+    way = max(-h * gap_rate(S, V, p, q, nx, ny, x, y), 0.0)
     root = math.sqrt(max(way * way + 4.0 * (closing - way) * room, 0.0))
     return max((way + root) / (2.0 * room), 1.01 * INTERVAL_RETRY)
 

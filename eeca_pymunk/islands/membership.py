@@ -135,11 +135,28 @@ def remembered(A: Scene, a: int, b: int, since: float) -> tuple[float, float]:
 
 
 @nonallocating
+def turning(A: Scene, i: int, j: int, nx: float, ny: float, h: float) -> float:
+    """Acceleration (length/time²) with which bodies i and j close along n, from i to j, as one without mobility turns:
+    w² n.(x - c) - 2 w t.(v - v_c), with its spin w and centre c, and n to the other one. The path of i begins now, that
+    of j a time h earlier."""
+    BODY, sign = A.BODY, 1.0
+    if BODY[j].inv_mass == 0.0:
+        i, j, sign = j, i, -1.0
+    spin = BODY[i].spin
+    if BODY[i].inv_mass > 0.0 or spin == 0.0:
+        return 0.0
+    vx, vy = BODY[j].vx - BODY[i].vx, BODY[j].vy - BODY[i].vy
+    x, y = BODY[j].x - BODY[i].x, BODY[j].y - BODY[i].y
+    x, y = (x + BODY[j].vx * h, y + BODY[j].vy * h) if sign > 0.0 else (x - BODY[i].vx * h, y - BODY[i].vy * h)
+    return sign * spin * (spin * (nx * x + ny * y) - 2.0 * (nx * vy - ny * vx))
+
+
+@nonallocating
 def approach(A: Scene, a: int, b: int, t: float) -> tuple[float, float, float, float, float]:
     """Gap (length) of shapes a and b at instant t, its rate u (length/time, negative when closing), the accelerations
-    (length/time²) with which it closes without contacts and on the present paths, and the effective mass of the
-    contact. The path of a's body begins at t; that of b's body may begin earlier, and is extrapolated to t without its
-    acceleration."""
+    (length/time²) with which it closes without contacts and on the present paths, both with `turning`, and the
+    effective mass of the contact. The path of a's body begins at t; that of b's body may begin earlier, and is
+    extrapolated to t without its acceleration."""
     BODY, PULL, i, j = A.BODY, A.PULL, A.LINK[a].owner, A.LINK[b].owner
     h = t - BODY[j].since
     g, nx, ny, px, py = gap_at(
@@ -154,9 +171,10 @@ def approach(A: Scene, a: int, b: int, t: float) -> tuple[float, float, float, f
     closing += arm_i * PULL[i, 2] - arm_j * PULL[j, 2]
     present = nx * (BODY[i].ax - BODY[j].ax) + ny * (BODY[i].ay - BODY[j].ay)
     present += arm_i * BODY[i].angular - arm_j * BODY[j].angular
-    turned = BODY[i].inv_inertia * arm_i * arm_i
-    mass = 1.0 / (BODY[i].inv_mass + BODY[j].inv_mass + turned + BODY[j].inv_inertia * arm_j * arm_j)
-    return g, u, closing, present, mass
+    turns = turning(A, i, j, nx, ny, h)
+    of_spins = BODY[i].inv_inertia * arm_i * arm_i + BODY[j].inv_inertia * arm_j * arm_j
+    mass = 1.0 / (BODY[i].inv_mass + BODY[j].inv_mass + of_spins)
+    return g, u, closing + turns, present + turns, mass
 
 
 @nonallocating

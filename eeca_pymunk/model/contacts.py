@@ -83,6 +83,7 @@ class Row(Record):
     friction: float
     target: float  # b: the law is 0 <= lam _|_ u_n - b >= 0
     surface: float  # t.(surface velocity of B's shape - that of A's): length/time
+    turned: float  # by how much u_n is less than with the geometry of the start, where a body without mobility turns
     # Activation velocity: the contact is inactive while u_n without its own impulse is above it; infinite once active.
     wake: float
     a_nn: float  # change of u_n and u_t by unit impulses along n and t: 1/mass
