@@ -213,7 +213,7 @@ def arrange(stepper: Driven, condensed: bool) -> None:
     C = J.COMPONENT[0]
     loop.joints = J._replace(
         RIGHT=np.zeros(2 * C.unknowns + C.impulses), MATRIX=np.zeros(C.unknowns * (3 * C.band + 1)),
-        MORE=np.zeros(C.unknowns), PIVOTS=np.zeros(C.unknowns, np.int64),
+        MORE=np.zeros(C.unknowns), PIVOTS=np.zeros(2 * C.unknowns, np.int64),
     )  # fmt: skip
 
 
