@@ -27,7 +27,7 @@ from ..arrays import FloatArray
 from ..compiled import inlined, nonallocating
 from ..model.joint_steps import LINEAR_STEP, NO_BEND, POSES, SPEEDS, STEP
 from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, WHOLE, Component, Workspace
-from ..model.parameters.joints import FACTOR_BAND, ROW_WORK, STIFFEST
+from ..model.parameters.joints import CONDENSED_PASSES, FACTOR_BAND, REFINEMENT_WORK, ROW_WORK, STIFFEST
 from .banded import back_banded, factor_banded
 from .boxes import leave_box
 from .condensed import back_condensed, factor, put_row
@@ -226,9 +226,12 @@ def apply(W: Workspace, what: int) -> None:
 @nonallocating
 def effort(system: int, fresh: bool, boxes: int, joints: int, component: Component) -> float:
     """About how many operations an iteration takes: rows, factors (if `fresh`), solutions, with as many again for the
-    columns of `boxes` boxed rows."""
+    columns of `boxes` boxed rows; of a condensed system each is refined by all rows."""
     size, band = (component.dual_size, component.dual_band) if system == DUAL else (component.unknowns, component.band)
     turns = 1 + boxes if fresh else 1
     # Wide bands take several numbers at once.
     factors = (2.7 if system == WHOLE else 0.5 if band >= FACTOR_BAND else 2.0) * size * band * band
-    return float(ROW_WORK * joints + (factors if fresh else 0.0) + 5.8 * turns * size * (band + 4))
+    one = 5.8 * size * (band + 4)
+    if system == CONDENSED:
+        one = CONDENSED_PASSES * (one + REFINEMENT_WORK * joints)
+    return float(ROW_WORK * joints + (factors if fresh else 0.0) + turns * one)
