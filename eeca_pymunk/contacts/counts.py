@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from ..compiled import nonallocating
 from ..model.contacts import Solved
-from ..model.parameters.events import BODY_LOOKS, DIRECT_LOOKS, EVENT_LOOKS, PAIR_LOOKS, SWEEP_LOOKS
+from ..model.parameters.events import BODY_LOOKS, DIRECT_LOOKS, EVENT_LOOKS, OPERATION_LOOKS, PAIR_LOOKS, SWEEP_LOOKS
 from ..model.parameters.impulses import DENSE_CONTACTS
 from ..model.scene import Scene
 from ..model.step import SOLVES
@@ -25,12 +25,18 @@ def note_unmet(A: Scene, kind: int, a: int, b: int, value: float, limit: float) 
 
 
 @nonallocating
-def spend(A: Scene, bodies: int, pairs: int, contacts: int, sweeps: int, direct: int) -> None:
-    """Add the work of a contact solve to that of the step: numbers of its bodies, of pairs of its geometry, of
-    contacts, of sweeps over them, and of direct solves, with dense matrices for few contacts."""
-    few = min(contacts, DENSE_CONTACTS)
-    one = BODY_LOOKS * bodies + PAIR_LOOKS * pairs + contacts * (SWEEP_LOOKS * sweeps + DIRECT_LOOKS * few * direct)
-    A.COUNT.work += EVENT_LOOKS + int(one)
+def looks_of(contacts: int, out: Solved) -> float:
+    """Work of a solve of so many contacts: of sweeps, direct solves, with dense matrices for few contacts, and
+    homotopies."""
+    each = SWEEP_LOOKS * out.sweeps + DIRECT_LOOKS * min(contacts, DENSE_CONTACTS) * out.direct
+    return float(contacts * each + OPERATION_LOOKS * out.operations)
+
+
+@nonallocating
+def spend(A: Scene, bodies: int, pairs: int, solve: float) -> None:
+    """Add the work of an interval, or of an impact, to that of the step: of so many bodies, of pairs of its geometry,
+    and of its solve."""
+    A.COUNT.work += EVENT_LOOKS + int(BODY_LOOKS * bodies + PAIR_LOOKS * pairs + solve)
 
 
 @nonallocating
@@ -44,4 +50,4 @@ def note_lock(A: Scene, out: Solved) -> None:
 def count_solve(A: Scene, n: int, p: int, m: int, out: Solved) -> None:
     """Count the solve of an island of n bodies with m contacts of p pairs, and its work."""
     A.COUNT.solved += n
-    spend(A, n, 2 * p, m, out.sweeps, out.direct)
+    spend(A, n, 2 * p, looks_of(m, out))

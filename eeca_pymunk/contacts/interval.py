@@ -161,19 +161,17 @@ def step_island(
         few = n < LARGE_ISLAND
         rounds = DIRECT if elastic or slow < pull * h else (DIRECT_MOVING if few else 0)
         coarse = 0.0 if elastic or few else INTERVAL_RESIDUAL_MOVING * scale + INTERVAL_RESIDUAL_SPEED * slow
-        sweeps, polishes, worst = relax(
-            problem, L, VN, FREE, rounds, INTERVAL_RESIDUAL * scale, coarse, A.RESTING[isle.WHO[0]], most
-        )  # fmt: skip
+        worst = relax(
+            problem, L, VN, FREE, rounds, INTERVAL_RESIDUAL * scale, coarse, A.RESTING[isle.WHO[0]], most, OUT[0]
+        )
         # Velocities are computed again from the impulses, without the round-off of many sweeps.
         velocities(problem, L, FREE, VN)
         quick, exactly = fast + pull * h, few and m <= COLUMN_CONTACTS
         wedged = exactly and (worst > WEDGED * scale or excessive(L, m, IM, n, quick))
         OUT[0].lock, OUT[0].owed = lock(problem, L, VN, FREE, owed, elastic)
         if wedged or (exactly and OUT[0].lock < 1.0 - WEDGED):
-            worst = unwedge(problem, L, VN, FREE, INTERVAL_RESIDUAL * scale, quick)
+            worst = unwedge(problem, L, VN, FREE, INTERVAL_RESIDUAL * scale, quick, OUT[0])
             OUT[0].lock, OUT[0].owed = lock(problem, L, VN, FREE, owed, elastic)
-        OUT[0].sweeps += sweeps
-        OUT[0].direct += polishes
         OUT[0].residual, OUT[0].tolerance = worst, INTERVAL_UNMET * scale if exactly else np.inf
         OUT[0].restitution, OUT[0].friction = works(problem, L, VN)
         remember_loads(A, ROWS, L, m, h)

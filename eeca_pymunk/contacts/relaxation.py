@@ -15,7 +15,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import kernel
 from ..model.bodies import Rest
-from ..model.contacts import Problem
+from ..model.contacts import Problem, Solved
 from ..model.parameters.intervals import (
     BACKOFF_CONTACTS,
     FAILED_DIRECT,
@@ -35,8 +35,8 @@ from ..rows.sweeps import sweep
 @kernel
 def relax(
     problem: Problem, L: FloatArray, V: FloatArray, FREE: FloatArray, rounds: int, fine: float, coarse: float,
-    STATE: Rest, most: int,
-) -> tuple[int, int, float]:  # fmt: skip
+    STATE: Rest, most: int, out: Solved,
+) -> float:  # fmt: skip
     """Solve a contact problem from the initial impulses L (m, 2) and velocities V (k, 3), which are replaced.
 
     Args:
@@ -46,20 +46,23 @@ def relax(
         coarse: that with which a moving island is content, or one near rest after a direct solve.
         STATE: of the island, changed.
         most: largest number of sweeps of an island that moves, or waits for its next direct solve.
+        out: numbers of sweeps and direct solves, and operations of homotopies, are added.
 
     Returns:
-        Numbers of sweeps and direct solves, and the change of velocity in the last sweep.
+        The change of velocity in the last sweep.
     """
     if rounds == 0 or STATE.wait > 0.0:
         STATE.wait = max(STATE.wait - 1.0, 0.0)
         sweeps, worst = iterate(problem, L, V, max(fine, coarse), most)
-        return sweeps, 0, worst
+        out.sweeps += sweeps
+        return worst
     sweeps, worst = 0, np.inf
     while sweeps < FIRST_SWEEPS and worst > fine:
         worst = sweep(problem, L, V)
         sweeps += 1
+    out.sweeps += sweeps
     if worst <= fine:
-        return sweeps, 0, worst
+        return worst
     # few: of so few contacts and bodies that homotopies can solve it.
     fails, done, few = 0, 0, problem.m <= COLUMN_CONTACTS and problem.n < LARGE_ISLAND
     last = worst
@@ -69,7 +72,7 @@ def relax(
             problem, L, V, FREE, STATE.augmentation, passes, fine, worst, SWEEPS_AFTER
         )  # fmt: skip
         done += 1
-        sweeps += taken
+        out.sweeps += taken
         if worst <= max(fine, coarse):
             break
         # A direct solve has failed if it and the sweeps after it leave more than a fifth of the residual.
@@ -79,11 +82,11 @@ def relax(
         if fails >= (FAILED_DIRECT_AGAIN if few or STATE.backoff > 0.0 else FAILED_DIRECT):
             break
     if few and worst > max(fine, coarse):
-        worst = solve_few(problem, L, V, max(fine, coarse))
-        done += FAILED_DIRECT
+        worst = solve_few(problem, L, V, max(fine, coarse), out)
+    out.direct += done
     if worst > max(fine, coarse) and problem.m > BACKOFF_CONTACTS:
         STATE.backoff = min(2.0 * STATE.backoff + 2.0, LONGEST_BACKOFF)
         STATE.wait = STATE.backoff
     else:
         STATE.backoff = 0.0
-    return sweeps, done, worst
+    return worst

@@ -10,7 +10,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, zeros
-from ..contacts.counts import note_lock, note_unmet, spend
+from ..contacts.counts import looks_of, note_lock, note_unmet, spend
 from ..contacts.memory import shapes_of
 from ..contacts.single import note
 from ..contacts.works import carried
@@ -51,7 +51,7 @@ def finish(A: Scene, block: Block, n: int, m: int, L: FloatArray, OUT: Rows[Solv
                 block.POINTS[z, 0], block.POINTS[z, 1], L[z, 0] / ROWS[z].k_n, math.nan,
             )  # fmt: skip
             COUNT.logged += 1
-    spend(A, n, m, len(ROWS), OUT[0].sweeps, OUT[0].direct)
+    spend(A, n, m, looks_of(len(ROWS), OUT[0]))
     COUNT.blocks += 1 if m > 1 else 0
 
 

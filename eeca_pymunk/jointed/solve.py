@@ -113,7 +113,7 @@ def try_interval(A: Scene, J: Joints, root: int, t: float, h: float, last: bool)
     # As in a whole step where it is cut short: pairs that were left out would not be searched for impacts.
     found = pairs_within(A, root, t, A.PAR.planned - t, lossy(A, root), MINE)
     p = len(found)
-    spend(A, n, 2 * p, 0, 0, 0)  # besides what joints take
+    spend(A, n, 2 * p, 0.0)  # besides what joints take
     if p == 0 and whole:
         clear_places(A, MINE)
         far = begin_alone(A, J, root, t, h, last)

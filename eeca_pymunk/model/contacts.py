@@ -175,6 +175,7 @@ class Solved(Record):
     tolerance: float  # of the residual
     sweeps: int
     direct: int  # direct solutions
+    operations: float  # of homotopies
     at_rest: int  # 1 if the island was put to rest
 
 

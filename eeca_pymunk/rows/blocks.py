@@ -45,7 +45,7 @@ CONVERGED, TRUNCATED = 0, 1  # statuses
 @nonallocating
 def clear_report(out: Solved) -> None:
     """Reset the report of a solve."""
-    out.restitution = out.friction = out.owed = out.residual = out.tolerance = 0.0
+    out.restitution = out.friction = out.owed = out.residual = out.tolerance = out.operations = 0.0
     out.sweeps = out.direct = out.at_rest = 0
     out.lock = 1.0
 

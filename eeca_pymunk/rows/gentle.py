@@ -12,7 +12,7 @@ from math import inf
 
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
-from ..model.contacts import AnyProblem, Problem
+from ..model.contacts import AnyProblem, Problem, Solved
 from ..model.parameters.joints import COLUMN_SWEEPS_AFTER, EXCESSIVE_IMPULSE, GENTLE_SWEEPS
 from .columns import as_columns
 from .inplace import copy
@@ -44,13 +44,17 @@ def sweep_gently(problem: AnyProblem, L: FloatArray, V: FloatArray) -> float:
 
 
 @kernel
-def unwedge(problem: Problem, L: FloatArray, V: FloatArray, FREE: FloatArray, tolerance: float, speed: float) -> float:
+def unwedge(
+    problem: Problem, L: FloatArray, V: FloatArray, FREE: FloatArray, tolerance: float, speed: float, out: Solved
+) -> float:
     """Impulses L (m, 2) and velocities V (k, 3) of contacts that are wedged: without friction, which their rows lose;
     or gentle ones, if these are excessive for such a speed, too. FREE (k, 3): velocities without impulses. Returns how
     far from solved they are (velocity)."""
     L[:] = 0.0
     copy(V, FREE)
-    worst = solve_wedged(as_columns(problem), L, V, tolerance, COLUMN_SWEEPS_AFTER, inf)
+    columns = as_columns(problem)
+    worst = solve_wedged(columns, L, V, tolerance, COLUMN_SWEEPS_AFTER, inf)
+    out.operations += columns.C.WORK[0]
     if excessive(L, problem.m, problem.IM, problem.n, speed):
         L[:] = 0.0
         copy(V, FREE)

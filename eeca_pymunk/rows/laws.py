@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
-from ..model.contacts import JointedProblem, Problem, Row
+from ..model.contacts import JointedProblem, Problem, Row, Solved
 from ..model.parameters.joints import (
     COLUMN_CONTACTS,
     COLUMN_HOMOTOPIES,
@@ -130,10 +130,11 @@ def give_slips(ROWS: Rows[Row], m: int, SLIP: FloatArray) -> None:
 
 
 @kernel
-def solve_few(problem: Problem, L: FloatArray, V: FloatArray, tolerance: float) -> float:
+def solve_few(problem: Problem, L: FloatArray, V: FloatArray, tolerance: float, out: Solved) -> float:
     """`solve_columns` of contacts of free bodies, whose sweeps and direct solutions have come to no end, with Coulomb's
     law alone: friction that energy limits has no solution more often, and the energy lock takes what this may give."""
-    SLIP = take_slips(problem.ROWS, problem.m)
-    worst = solve_columns(as_columns(problem), L, V, tolerance, 0, COLUMN_SWEEPS_AFTER, np.inf)
+    SLIP, columns = take_slips(problem.ROWS, problem.m), as_columns(problem)
+    worst = solve_columns(columns, L, V, tolerance, 0, COLUMN_SWEEPS_AFTER, np.inf)
+    out.operations += columns.C.WORK[0]
     give_slips(problem.ROWS, problem.m, SLIP)
     return worst

@@ -9,7 +9,7 @@ import pytest
 from eeca_pymunk.compiled.records import rows
 from eeca_pymunk.contacts.relaxation import relax
 from eeca_pymunk.model.bodies import Rest
-from eeca_pymunk.model.contacts import Problem, Row
+from eeca_pymunk.model.contacts import Problem, Row, Solved
 from eeca_pymunk.rows.build import normal_rate, place_row, rates
 from eeca_pymunk.rows.sweeps import velocities
 
@@ -57,7 +57,7 @@ def test_a_light_body_wedged_between_heavy_ones_is_solved(unit: float) -> None:
         problem, V = wedged(seed, unit)
         free, L, rest = V.copy(), np.zeros((4, 2)), rows(Rest, 1)
         rest[0].augmentation = 8.0
-        relax(problem, L, V, free, 20, SOLVED * unit, 0.0, rest[0], 40)
+        relax(problem, L, V, free, 20, SOLVED * unit, 0.0, rest[0], 40, rows(Solved, 1)[0])
         after = np.empty_like(V)
         velocities(problem, L, free, after)
         assert off(problem, L, after) <= 10.0 * SOLVED * unit, seed

@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from eeca_pymunk.model.contacts import Problem
+from eeca_pymunk.compiled.records import rows
+from eeca_pymunk.model.contacts import Problem, Solved
 from eeca_pymunk.model.parameters.joints import EXCESSIVE_IMPULSE
 from eeca_pymunk.rows.build import normal_rate
 from eeca_pymunk.rows.columns import as_columns, breach
@@ -43,7 +44,7 @@ def test_a_corner_holds_what_moves_into_it_without_self_stress(unit: float) -> N
     assert np.abs(V).max() <= 1e-6 * unit
     speed = 3.0 * unit
     assert excessive(L, 2, problem.IM, 1, speed)
-    left = unwedge(problem, L, V, block.velocity.copy(), 1e-13 * unit, speed)
+    left = unwedge(problem, L, V, block.velocity.copy(), 1e-13 * unit, speed, rows(Solved, 1)[0])
     assert left <= 1e-13 * unit
     assert np.abs(L - [[6.0 * unit, 0.0], [2.0 * unit, 0.0]]).max() <= 1e-13 * unit
     assert np.abs(V).max() <= 1e-13 * unit
@@ -67,7 +68,7 @@ def test_walls_that_approach_each_other_get_gentle_impulses() -> None:
     block.rows["target"], block.rows["wake"] = 0.0, np.inf
     problem = Problem(block.rows, block.im, block.ii, pose, 1, 2)
     L, V = np.full((2, 2), np.inf), velocity.copy()
-    unwedge(problem, L, V, velocity.copy(), 1e-13, 1.0)
+    unwedge(problem, L, V, velocity.copy(), 1e-13, 1.0, rows(Solved, 1)[0])
     assert np.isfinite(L).all()
     assert np.abs(L).max() <= 1e4
     assert abs(V[0, 0]) <= 1.0

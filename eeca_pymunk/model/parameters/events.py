@@ -40,6 +40,7 @@ SHAPES_LOOK = work(16, "shapes", "Further shapes of a body whose prediction cost
 ENTRY_LOOKS = work(0.75, "looks", "Work of a shape in a near list that a prediction looks through.")
 BODY_LOOKS = work(6, "looks", "Work of a body in a solve.")
 PAIR_LOOKS = work(1, "looks", "Work of the geometry of a pair in a solve.")
+OPERATION_LOOKS = work(0.0008, "looks", "Work of an operation of a homotopy.")
 SWEEP_LOOKS = work(0.15, "looks", "Work of a contact in a sweep.")
 DIRECT_LOOKS = work(0.08, "looks", "Work of a direct solution, times the square of its contacts.")
 INITIAL_PENETRATION = heuristic(1e-06, "of the smaller shape",
