@@ -226,7 +226,7 @@ class Composition:
             clock = time.thread_time()
             report = self.stepper.step(self.dt)
             taken = time.thread_time() - clock
-            if taken > self._longest() and not self.space.constraints:
+            if taken > self._longest():
                 taken = self._bounded(k)
             found.longest = max(found.longest, taken)
             found.unconverged += not report.converged
