@@ -34,6 +34,7 @@ from .memory import find, remember_loads
 from .relaxation import relax
 from .statics import find_static_forces
 from .targets import target
+from .walls import stop_at_walls
 from .works import moved
 
 
@@ -164,9 +165,11 @@ def step_island(
         worst = relax(
             problem, L, VN, FREE, rounds, INTERVAL_RESIDUAL * scale, coarse, A.RESTING[isle.WHO[0]], most, OUT[0]
         )
+        quick, exactly = fast + pull * h, few and m <= COLUMN_CONTACTS
+        if not exactly:
+            stop_at_walls(A, problem, L, VN)
         # Velocities are computed again from the impulses, without the round-off of many sweeps.
         velocities(problem, L, FREE, VN)
-        quick, exactly = fast + pull * h, few and m <= COLUMN_CONTACTS
         wedged = exactly and (worst > WEDGED * scale or excessive(L, m, IM, n, quick))
         OUT[0].lock, OUT[0].owed = lock(problem, L, VN, FREE, owed, elastic)
         if wedged or (exactly and OUT[0].lock < 1.0 - WEDGED):

@@ -25,7 +25,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import Table, nonallocating
 from ..compiled.records import Rows
 from ..model.parameters.detection import STRAIGHT
-from ..model.parameters.intervals import INTERVAL_DEPTH_LEAST, INTERVAL_WAY
+from ..model.parameters.intervals import INTERVAL_DEPTH, INTERVAL_DEPTH_LEAST, INTERVAL_DEPTH_WIDTH, INTERVAL_WAY
 from ..model.scene import Scene, scene_of
 from ..model.shapes import Side
 from .convex import closest, separation
@@ -112,6 +112,13 @@ def half_width(A: Scene, s: int) -> float:
             most = max(most, x * VERTEX[j, 2] + y * VERTEX[j, 3])
         least = min(least, most)
     return A.SHAPE[s].rounding + 0.5 * least
+
+
+@nonallocating
+def depth_limit(A: Scene, a: int, b: int) -> float:
+    """Depth (length) by which a contact of shapes a and b may close in one interval."""
+    small, thick = smaller(A, a, b), half_width(A, a) + half_width(A, b)
+    return max(min(INTERVAL_DEPTH * small, INTERVAL_DEPTH_WIDTH * thick), INTERVAL_DEPTH_LEAST * small)
 
 
 @nonallocating

@@ -12,20 +12,13 @@ from ..compiled.records import Rows
 from ..contacts.geometry import gap_rate
 from ..contacts.memory import shapes_of
 from ..geometry.gap import gap_at
-from ..geometry.sides import half_width, held_side, remembers, smaller
+from ..geometry.sides import depth_limit, half_width, held_side, remembers, smaller
 from ..model.contacts import Row
 from ..model.islands import Island, IslandContacts
-from ..model.parameters.intervals import INTERVAL_DEPTH, INTERVAL_DEPTH_LEAST, INTERVAL_DEPTH_WIDTH, INTERVAL_RETRY
+from ..model.parameters.intervals import INTERVAL_DEPTH_LEAST, INTERVAL_RETRY
 from ..model.scene import Scene
 from ..rows.build import normal_rate
 from .candidates import excess_way
-
-
-@nonallocating
-def depth_limit(A: Scene, a: int, b: int) -> float:
-    """Depth (length) by which a contact of shapes a and b may close in one interval."""
-    small, thick = smaller(A, a, b), half_width(A, a) + half_width(A, b)
-    return max(min(INTERVAL_DEPTH * small, INTERVAL_DEPTH_WIDTH * thick), INTERVAL_DEPTH_LEAST * small)
 
 
 @nonallocating

@@ -15,7 +15,8 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..contacts.memory import key_of, shapes_of
 from ..geometry.flight import norm
-from ..islands.depths import closes_too_far, depth_limit, too_deep_at_end
+from ..geometry.sides import depth_limit
+from ..islands.depths import closes_too_far, too_deep_at_end
 from ..model.joints import Joints
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_WAY, UNSOLVED_DEPTH
 from ..model.scene import Scene

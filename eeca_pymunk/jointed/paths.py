@@ -6,8 +6,7 @@ import math
 
 from ..compiled import nonallocating
 from ..geometry.gap import gap
-from ..geometry.sides import remembers, smaller
-from ..islands.depths import depth_limit
+from ..geometry.sides import depth_limit, remembers, smaller
 from ..model.parameters.events import ENTRY_LOOKS
 from ..model.parameters.intervals import INTERVAL_DEPTH
 from ..model.parameters.joints import MEET_MANY

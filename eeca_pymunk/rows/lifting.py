@@ -5,6 +5,7 @@ from __future__ import annotations
 from ..arrays import FloatArray
 from ..compiled import Choice, inlined, nonallocating
 from ..model.contacts import AnyProblem, JointedProblem, Problem
+from ..model.parameters.intervals import WALL_SWEEPS
 from .build import normal_rate, push_contact
 from .columns import push_column
 
@@ -41,11 +42,16 @@ def meet_gap(problem: AnyProblem, GAP: float, MU: FloatArray, D: FloatArray, i: 
 
 @nonallocating
 def keep_walls(problem: Problem, GAPS: FloatArray, MU: FloatArray, D: FloatArray) -> None:
-    """After a `lift` that has come to no end: displace no body deeper into what nothing moves than it is."""
-    for i in range(problem.m):
-        if max(problem.ROWS[i].a, problem.ROWS[i].b) >= problem.n:
-            if GAPS[i] + normal_rate(problem.ROWS[i], D) < min(GAPS[i], 0.0):
-                meet_gap(problem, max(GAPS[i], 0.0), MU, D, i)
+    """After a `lift` that has come to no end: displace no body deeper into what nothing moves than it is. In sweeps, as
+    a body may have several such contacts: what lifts one end of a face lowers the other one."""
+    for _ in range(WALL_SWEEPS):
+        met = True
+        for i in range(problem.m):
+            if max(problem.ROWS[i].a, problem.ROWS[i].b) >= problem.n:
+                if GAPS[i] + normal_rate(problem.ROWS[i], D) < min(GAPS[i], 0.0):
+                    met = meet_gap(problem, max(GAPS[i], 0.0), MU, D, i) == 0.0 and met
+        if met:
+            break
 
 
 @nonallocating

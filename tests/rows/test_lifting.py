@@ -58,3 +58,20 @@ def test_disks_without_room_go_no_deeper_into_walls(sweeps: int, unit: float) ->
     keep_walls(problem, gaps, mu, D)
     left, walls = after(problem, gaps, D), problem.ROWS["b"] == 5
     assert (left[walls] >= np.minimum(gaps[walls], 0.0) - 1e-12 * unit).all()
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+@pytest.mark.parametrize("turn", [-0.1, 0.0, 0.1])
+def test_no_end_of_a_face_goes_deeper_into_a_wall(turn: float, unit: float) -> None:
+    block = Block(np.array([[0.0, 0.5 * unit, 0.0], [0.0, 0.0, 0.0]]), np.zeros((2, 3)), np.ones(2), np.ones(2))
+    block.im[1] = block.ii[1] = 0.0
+    block.ii[0] = 1.0 / (0.4 * unit * unit)
+    ROWS = rows(Row, 2)
+    for i, x in enumerate((-unit, unit)):
+        ROWS[i].a, ROWS[i].b = 0, 1
+        ROWS[i].nx, ROWS[i].ny = 0.0, -1.0
+        place_row(ROWS[i], x, 0.0, block.pose, block.im, block.ii)
+    problem, gaps = Problem(ROWS, block.im, block.ii, block.pose, 1, 2), np.array([-0.1 * unit, -0.2 * unit])
+    D = np.array([[0.0, -0.1 * unit, turn], [0.0, 0.0, 0.0]])  # what other bodies have displaced it by
+    keep_walls(problem, gaps, np.zeros(2), D)
+    assert (after(problem, gaps, D) >= gaps - 1e-5 * unit).all()
