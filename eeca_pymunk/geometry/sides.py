@@ -166,9 +166,13 @@ def side_of(A: Scene, a: int, b: int) -> tuple[float, float]:
 
 
 @nonallocating
-def corner_of(A: Scene, W: FloatArray, w: int, o: int, x: float, y: float, deep: float) -> tuple[int, float, float]:
-    """The corner of segment w in which shape o lies, whose nearest point of w is (x, y): the end of w there, -1 if
-    there is none, and the normal (2) of the inner side of w. Extends the placed segment W by `deep` beyond that end."""
+def corner_of(
+    A: Scene, W: FloatArray, w: int, o: int, x: float, y: float, nx: float, ny: float, deep: float
+) -> tuple[int, float, float]:  # fmt: skip
+    """The corner of segment w in which shape o lies, whose nearest point of w is (x, y), with the normal n to o: the
+    end of w there, -1 if there is none, and the normal (2) of the inner side of w. Extends the placed segment W by
+    `deep` beyond that end. Where w ends on another segment, both of its sides are inner ones: o is on the one that the
+    pair remembers, else on that of n."""
     ex, ey = W[1, 0] - W[0, 0], W[1, 1] - W[0, 1]
     length = math.sqrt(ex * ex + ey * ey)
     ux, uy = ex / length, ey / length
@@ -186,6 +190,9 @@ def corner_of(A: Scene, W: FloatArray, w: int, o: int, x: float, y: float, deep:
         if sign * (mx * (z * ux + c * uy) - my * (c * ux - z * uy)) <= 0.0:
             continue
         mx, my = side_of(A, w, o)
+        opposite = A.CORNER[4 * w + 2 * end + 1 - turn]
+        if mx == 0.0 and my == 0.0 and opposite.other == corner.other and sign * opposite.sine < -STRAIGHT:
+            mx, my = nx, ny
         if mx * lx + my * ly >= 0.0:
             W[end, 0], W[end, 1] = W[end, 0] - deep * ux, W[end, 1] - deep * uy
             return end, lx, ly
@@ -204,10 +211,10 @@ def closest_on_side(
     deep = held_side(A, a, b)
     end = -1
     if q == 2:
-        end, mx, my = corner_of(A, Q, b, a, x + d * nx, y + d * ny, deep)
+        end, mx, my = corner_of(A, Q, b, a, x + d * nx, y + d * ny, -nx, -ny, deep)
         mx, my = -mx, -my
     if end < 0 and p == 2:
-        end, mx, my = corner_of(A, P, a, b, x, y, deep)
+        end, mx, my = corner_of(A, P, a, b, x, y, nx, ny, deep)
     if end >= 0:
         d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q = closest(P, p, Q, q)
         reach = deep

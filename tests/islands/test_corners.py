@@ -58,6 +58,22 @@ def test_a_rod_that_slides_along_a_wall_stays_in_its_corner(
             assert y > -1e-3
 
 
+@pytest.mark.parametrize("along", [-3.9, 3.8, -6.2, 6.1])
+@pytest.mark.parametrize("upward", [0.0, 0.2])
+def test_a_rod_beside_a_wall_that_stands_on_a_floor_is_on_its_own_side(along: float, upward: float) -> None:
+    """Both sides of a wall that ends on another one are inner sides of a corner."""
+    space, base = pymunk.Space(), pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    space.gravity, base.velocity = (0.0, -G), (0.0, upward)
+    space.add(base)
+    walls(space, base, *ROOM)
+    body = rod(space, along, 0.3, 0.0)
+    stepper = ep.EECA(space)
+    for _ in range(90):
+        stepper.step(1 / 30)
+    assert body.position.x == pytest.approx(along, abs=1e-6)
+    assert body.position.y >= base.position.y - 1e-6
+
+
 def test_what_is_outside_of_a_corner_slides_past_it() -> None:
     """The plane of a wall goes on beyond its end for what is inside of the corner alone."""
     space = pymunk.Space()
