@@ -59,7 +59,7 @@ def lifting(
     D = np.zeros((len(IM), 3))
     MU, near = np.zeros(m), 0.1 * OVERLAP_LEFT * size
     if lift(problem, GAPS, MU, D, near, CORRECTION_SWEEPS + CORRECTION_WORK // m) > near:
-        keep_walls(problem, GAPS, MU, D)
+        keep_walls(problem, n, GAPS, MU, D)
     part = admissible(D, EXTENT, n, size)
     if part < 1.0:
         for i in range(n):

@@ -167,7 +167,7 @@ def step_island(
         )
         quick, exactly = fast + pull * h, few and m <= COLUMN_CONTACTS
         if not exactly:
-            stop_at_walls(A, problem, L, VN)
+            stop_at_walls(A, problem, n, L, VN)
         # Velocities are computed again from the impulses, without the round-off of many sweeps.
         velocities(problem, L, FREE, VN)
         wedged = exactly and (worst > WEDGED * scale or excessive(L, m, IM, n, quick))

@@ -12,23 +12,24 @@ from math import inf
 from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..geometry.sides import depth_limit
-from ..model.contacts import Problem
+from ..model.contacts import AnyProblem
 from ..model.parameters.intervals import WALL_SWEEPS
 from ..model.scene import Scene
 from ..rows.build import normal_rate
-from ..rows.lifting import meet_gap
+from ..rows.lifting import is_out, meet_gap
 from .memory import shapes_of
 
 
 @nonallocating
-def stop_at_walls(A: Scene, problem: Problem, L: FloatArray, V: FloatArray) -> None:
-    """Let no contact with a body without mobility close at velocities V (k, 3) faster than its law says, if it
-    is deeper than an interval allows. Adds normal impulses to L, so that frictions remain within their limits."""
+def stop_at_walls(A: Scene, problem: AnyProblem, n: int, L: FloatArray, V: FloatArray) -> None:
+    """Let no contact with a body without mobility, one of those from number n on, close at velocities V (k, 3) faster
+    than its law says, if it is deeper than an interval allows. Adds normal impulses to L, so that frictions remain
+    within their limits."""
     for _ in range(WALL_SWEEPS):
         met = True
         for i in range(problem.m):
             row = problem.ROWS[i]
-            if max(row.a, row.b) < problem.n or row.wake < inf:
+            if max(row.a, row.b) < n or row.wake < inf or is_out(problem, i):
                 continue
             a, b = shapes_of(A, row)
             if row.gap < -depth_limit(A, a, b) and normal_rate(row, V) < row.target:

@@ -21,7 +21,7 @@ from ..model.scene import Scene
 from ..rows.bounded import room_for_rows
 from ..rows.build import conserves, normal_rate
 from ..rows.inplace import copy
-from ..rows.lifting import lift
+from ..rows.lifting import keep_walls, lift
 from .advance import Interval, Motion
 from .columns import fill_free, fill_group, make_columns, weigh
 from .component import close_joints, ready
@@ -31,14 +31,16 @@ from .motors import keeps_speed
 
 
 @kernel
-def raise_gaps(problem: JointedProblem, GAPS: FloatArray, D: FloatArray, tolerance: float) -> FloatArray:
-    """Displacements D (k, 3) = Y mu, 0 <= mu _|_ g + G D >= 0, of contacts that are not left out; mu (m,)."""
+def raise_gaps(
+    problem: JointedProblem, GAPS: FloatArray, D: FloatArray, tolerance: float
+) -> tuple[FloatArray, float]:  # fmt: skip
+    """Displacements D (k, 3) = Y mu, 0 <= mu _|_ g + G D >= 0, of contacts that are not left out; mu (m,), and the
+    largest change of a gap in the last sweep."""
     MU = np.zeros(problem.m)
     for i in range(problem.m):
         if problem.C.OUT[i] != 0:
             GAPS[i] = np.inf
-    lift(problem, GAPS, MU, D, tolerance, JOINTED_CORRECTION_SWEEPS)
-    return MU
+    return MU, lift(problem, GAPS, MU, D, tolerance, JOINTED_CORRECTION_SWEEPS)
 
 
 @kernel
@@ -106,7 +108,10 @@ def correct(A: Scene, J: Joints, interval: Interval, end: float, budget: float, 
     KEEP = ROWS[:m].copy()
     weigh(groups, C, KEEP, m)
     D = np.zeros_like(V)
-    raise_gaps(JointedProblem(KEEP, C, room_for_rows(0, 0), m), GAPS, D, 1e-3 * -deepest)
+    problem, near = JointedProblem(KEEP, C, room_for_rows(0, 0), m), 1e-3 * -deepest
+    MU, worst = raise_gaps(problem, GAPS, D, near)
+    if worst > near:
+        keep_walls(problem, n, GAPS, MU, D)
     cost, part = -against(isle.ACC, isle.IM, isle.II, n, D), admissible(D, isle.EXTENT, n, size)
     if cost * part > 0.5 * budget:
         part = 0.5 * budget / cost

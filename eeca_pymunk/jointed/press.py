@@ -13,9 +13,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..contacts.targets import target
+from ..contacts.walls import stop_at_walls
 from ..islands.candidates import before_end, sweeps_of
 from ..model.contacts import Bounded, JointedProblem
 from ..model.joints import Joints
@@ -115,13 +116,14 @@ def accelerations(interval: Interval, L: FloatArray, B: Bounded, EFFECT: FloatAr
 
 @kernel
 def press(
-    A: Scene, J: Joints, interval: Interval, L: FloatArray, EXPECTED: FloatArray, slow: float, fast: float, pull: float,
-    owed: float,
+    A: Scene, J: Joints, interval: Interval, KEY: IntArray, L: FloatArray, EXPECTED: FloatArray, slow: float,
+    fast: float, pull: float, owed: float,
 ) -> bool:  # fmt: skip
     """Impulses L (in: guesses) of the m contacts of an island, and the motion under them; whether they have converged.
 
     Args:
-        slow, fast, pull: speeds and acceleration of the island.  owed: energy >= 0 that it has to lose at least.
+        KEY: keys of the contacts.  slow, fast, pull: speeds and acceleration of the island.
+        owed: energy >= 0 that it has to lose at least.
         interval: out, the columns of the contacts in their last solution.
     """
     isle, groups, ROWS, motion, C, m, n, _, h = interval
@@ -204,6 +206,8 @@ def press(
         worst = solve_columns(problem, BOTH, FORESEEN, fine, COLUMN_SWEEPS if anew else 0, most, work)
         if worst > WEDGED * scale and m <= COLUMN_CONTACTS and rubs(ROWS, m):
             worst = solve_wedged(problem, BOTH, FORESEEN, fine, most, work)
+        if not exactly:
+            stop_at_walls(A, problem, n, KEY, BOTH, FORESEEN)
         J.PROGRESS.effort += C.WORK[0]
         for i in range(m):
             L[i, 0], L[i, 1] = BOTH[i, 0], BOTH[i, 1]

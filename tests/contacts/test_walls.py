@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import islice, pairwise
 from random import Random
 
 import pymunk
@@ -41,9 +42,12 @@ def loaded_row(seed: int, unit: float, elastic: float) -> tuple[pymunk.Space, li
     return space, light
 
 
-@pytest.mark.parametrize(("unit", "elastic"), [(1.0, 0.0), (1.0, 0.5), (1e-3, 0.0)])
-def test_light_boxes_under_heavy_ones_stay_above_the_floor(unit: float, elastic: float) -> None:
+@pytest.mark.parametrize(("unit", "elastic", "joined"), [(1.0, 0.0, 0), (1.0, 0.5, 0), (1e-3, 0.0, 0), (1.0, 0.0, 6)])
+def test_light_boxes_under_heavy_ones_stay_above_the_floor(unit: float, elastic: float, joined: int) -> None:
     space, light = loaded_row(1, unit, elastic)
+    heavy = [body for body in space.bodies if body not in light]
+    for a, b in islice(pairwise(heavy), 0, 4 * joined, 4):
+        space.add(pymunk.PinJoint(a, b))
     stepper = ep.EECA(space)
     for _ in range(90):
         energy = ep.measure(space).energy
