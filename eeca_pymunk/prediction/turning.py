@@ -101,8 +101,12 @@ def begin_side(A: Scene, a: int, b: int, start: float, duration: float, toleranc
         other = (resting and pressing < 0.0) or (not resting and d <= tolerance and parting < 0.0)
         sign = -1.0 if p == 2 and q == 2 and other else 1.0
         note_side(A, a, b, sign * nx, sign * ny, True)
-    elif d >= -near_side(A, a, b) and not in_one_island(A, i, j):
-        A.SIDE[side_row(A, pair_number(A, a, b))].deep = 0.0
+    else:
+        # The normal turns with the shapes.
+        side = A.SIDE[side_row(A, pair_number(A, a, b))]
+        side.nx, side.ny = nx, ny
+        if d >= -near_side(A, a, b) and not in_one_island(A, i, j):
+            side.deep = 0.0
 
 
 @nonallocating
