@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..contacts.targets import target
 from ..contacts.walls import stop_at_walls
@@ -116,14 +116,13 @@ def accelerations(interval: Interval, L: FloatArray, B: Bounded, EFFECT: FloatAr
 
 @kernel
 def press(
-    A: Scene, J: Joints, interval: Interval, KEY: IntArray, L: FloatArray, EXPECTED: FloatArray, slow: float,
-    fast: float, pull: float, owed: float,
+    A: Scene, J: Joints, interval: Interval, L: FloatArray, EXPECTED: FloatArray, slow: float, fast: float, pull: float,
+    owed: float,
 ) -> bool:  # fmt: skip
     """Impulses L (in: guesses) of the m contacts of an island, and the motion under them; whether they have converged.
 
     Args:
-        KEY: keys of the contacts.  slow, fast, pull: speeds and acceleration of the island.
-        owed: energy >= 0 that it has to lose at least.
+        slow, fast, pull: speeds and acceleration of the island.  owed: energy >= 0 that it has to lose at least.
         interval: out, the columns of the contacts in their last solution.
     """
     isle, groups, ROWS, motion, C, m, n, _, h = interval
@@ -207,7 +206,7 @@ def press(
         if worst > WEDGED * scale and m <= COLUMN_CONTACTS and rubs(ROWS, m):
             worst = solve_wedged(problem, BOTH, FORESEEN, fine, most, work)
         if not exactly:
-            stop_at_walls(A, problem, n, KEY, BOTH, FORESEEN)
+            stop_at_walls(A, problem, n, BOTH, FORESEEN)
         J.PROGRESS.effort += C.WORK[0]
         for i in range(m):
             L[i, 0], L[i, 1] = BOTH[i, 0], BOTH[i, 1]

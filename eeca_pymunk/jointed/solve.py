@@ -142,7 +142,7 @@ def try_interval(A: Scene, J: Joints, root: int, t: float, h: float, last: bool)
     if m > 0:
         recall(A, ROWS, m, h, m > COLUMN_CONTACTS, L, EXPECTED)
         owed = max(-A.RESTING[root].lost, 0.0)
-        held = press(A, J, interval, KEY, L, EXPECTED, slow, fast, pull, owed)
+        held = press(A, J, interval, L, EXPECTED, slow, fast, pull, owed)
         if held or m > COLUMN_CONTACTS:
             # Of few contacts impulses that are no solution are no loads to begin with either.
             remember_loads(A, ROWS, L, m, h)
