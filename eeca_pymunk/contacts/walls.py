@@ -1,4 +1,4 @@
-"""Contacts with bodies that no impulse moves, after a solve of many contacts that has come to no end.
+"""Contacts with bodies that no impulse moves, after a solve of many contacts, which may have come to no end.
 
 What such a solve leaves lets light bodies under heavy ones sink: in each interval by a part of what it allows, and in
 the end through a floor. Where they are deeper than an interval allows, impulses of the wall alone bring their contacts

@@ -10,6 +10,7 @@ from eeca_pymunk.compiled.records import rows
 from eeca_pymunk.contacts.relaxation import relax
 from eeca_pymunk.model.bodies import Rest
 from eeca_pymunk.model.contacts import Problem, Row, Solved
+from eeca_pymunk.model.parameters.joints import HOMOTOPY_WORK
 from eeca_pymunk.rows.build import normal_rate, place_row, rates
 from eeca_pymunk.rows.sweeps import velocities
 
@@ -53,11 +54,16 @@ def off(problem: Problem, L: np.ndarray, V: np.ndarray) -> float:
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
 def test_a_light_body_wedged_between_heavy_ones_is_solved(unit: float) -> None:
+    homotopies = 0
     for seed in range(40):
         problem, V = wedged(seed, unit)
         free, L, rest = V.copy(), np.zeros((4, 2)), rows(Rest, 1)
         rest[0].augmentation = 8.0
-        relax(problem, L, V, free, 20, SOLVED * unit, 0.0, rest[0], 40, rows(Solved, 1)[0])
+        out = rows(Solved, 1)[0]
+        relax(problem, L, V, free, 20, SOLVED * unit, 0.0, rest[0], 40, out)
+        assert out.operations == 0.0 or out.operations >= HOMOTOPY_WORK * (2 * problem.m) ** 2
+        homotopies += out.operations > 0.0
         after = np.empty_like(V)
         velocities(problem, L, free, after)
         assert off(problem, L, after) <= 10.0 * SOLVED * unit, seed
+    assert homotopies > 0

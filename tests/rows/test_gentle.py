@@ -44,7 +44,9 @@ def test_a_corner_holds_what_moves_into_it_without_self_stress(unit: float) -> N
     assert np.abs(V).max() <= 1e-6 * unit
     speed = 3.0 * unit
     assert excessive(L, 2, problem.IM, 1, speed)
-    left = unwedge(problem, L, V, block.velocity.copy(), 1e-13 * unit, speed, rows(Solved, 1)[0])
+    out = rows(Solved, 1)[0]
+    left = unwedge(problem, L, V, block.velocity.copy(), 1e-13 * unit, speed, out)
+    assert out.operations > 0.0
     assert left <= 1e-13 * unit
     assert np.abs(L - [[6.0 * unit, 0.0], [2.0 * unit, 0.0]]).max() <= 1e-13 * unit
     assert np.abs(V).max() <= 1e-13 * unit
