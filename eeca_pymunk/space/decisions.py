@@ -117,7 +117,7 @@ class Decisions:
         """What holds of pairs of shapes, after pymunk's step has called the handlers."""
         space, places = world.space, world.places
         now, oldest = private.timestamp(space)(), self.since
-        odd = [arbiter for arbiter in private.odd_arbiters(space) if private_arbiters.stamp(arbiter) > oldest]
+        odd = [arbiter for arbiter in private.differing_arbiters(space) if private_arbiters.stamp(arbiter) > oldest]
         rules = Rules.of_arbiters(odd, world)
         if not self.laws:
             return rules
@@ -141,7 +141,7 @@ class Decisions:
         space = world.space
         now, shapes = private.timestamp(space)(), list(space.shapes)
         known: dict[tuple[pymunk.Shape, pymunk.Shape], tuple[Law, int]] = dict(self.laws)
-        for arbiter in private.odd_arbiters(space):
+        for arbiter in private.differing_arbiters(space):
             step = private_arbiters.stamp(arbiter)
             if step <= self.since:
                 continue

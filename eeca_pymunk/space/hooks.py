@@ -117,6 +117,6 @@ class Hooks:
             end[row, POSITION], end[row, ANGLE] = body.position, body.angle
 
     @cached_property
-    def silent(self) -> private_functions.Without:
+    def silent(self) -> private_functions.WithoutFunctions:
         """Within this block pymunk does not call velocity and position functions."""
-        return private_functions.Without(self._steered, self._moved)
+        return private_functions.WithoutFunctions(self._steered, self._moved)

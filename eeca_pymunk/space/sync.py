@@ -29,7 +29,7 @@ from .private import rest as private_rest
 from .private import shapes as private_shapes
 from .private import sleep as private_sleep
 from .private import spaces as private
-from .private.joints import restore_motions, silent, strengthen, weaken, with_laws
+from .private.joints import clear_max_forces, restore_max_forces, restore_motions, silent, with_laws
 
 if TYPE_CHECKING:
     from .world import World
@@ -67,11 +67,11 @@ def rest_step(
         push, calling = awake(push), awake(calling) if calling else calling
     outside = joints.partners.motions()
     if not (calling or joints.own):
-        held = weaken(push)
+        held = clear_max_forces(push)
         try:
             private_rest.rest(space, dt, asleep)
         finally:
-            strengthen(held)
+            restore_max_forces(held)
             restore_motions(outside)
         return
     own, laws = joints.own, joints.laws()
@@ -84,7 +84,7 @@ def rest_step(
             within.enter_context(silent(calling))
         if own:
             within.enter_context(with_laws(own, laws))
-        within.callback(strengthen, weaken(push))
+        within.callback(restore_max_forces, clear_max_forces(push))
         private_rest.rest(space, dt, asleep)
 
 

@@ -1,5 +1,5 @@
-"""Watched: a function of a collision handler or constraint that a rehearsal calls; the others of constraints, which it
-does not."""
+"""Watched: wrappers of the functions of collision handlers and constraints that a rehearsal calls; functions of
+constraints that it must not call are removed meanwhile."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pymunk
 from .joints import JointRows
 from .private import joints as private_joints
 from .private import spaces as private
-from .private.versions import answer
+from .private.versions import to_return
 
 if TYPE_CHECKING:
     from .rehearsal import Rehearsal
@@ -23,8 +23,12 @@ _BEGIN, _PRE_SOLVE, *_ = private.PHASES
 class Watched:
     """Wrapper of a function of a handler or constraint that records changes to bodies, decisions, and exceptions.
 
-    `phase`: of a handler, "" of a constraint. `stage`: number of pymunk's stage in which the function is called, 0 for
-    begin and pre_solve; between two calls of one stage pymunk changes no body.
+    After an exception no further function is called in this rehearsal.
+
+    Args:
+        phase: one of `private.PHASES` for a handler, "" for a constraint.
+        stage: number of pymunk's stage in which the function is called: 0 for begin and pre_solve, 1 for post_solve, 2
+            for separate. Between two calls of one stage pymunk changes no body.
     """
 
     __slots__ = ("_decides", "_phase", "_rehearsal", "_stage", "function")
@@ -39,31 +43,33 @@ class Watched:
             return True
         rehearsal.before_call(self._stage)
         before = private.decision(arguments[0]) if self._decides else None
-        answered: bool | None = True
+        result: bool | None = True
         try:
-            answered = answer(self.function(*arguments), self.function, self._phase)
+            result = to_return(self.function(*arguments), self.function, self._phase)
         except BaseException as error:
-            # pymunk's C code would discard it.
+            # pymunk's C code would discard it; `Rehearsal.run` raises it.
             rehearsal.failure = error
-        if self._decides and (answered is False or private.decision(arguments[0]) != before):
+        if self._decides and (result is False or private.decision(arguments[0]) != before):
             rehearsal.decided = True
         rehearsal.after_call(self._stage)
-        return answered
+        return result
 
 
 @contextmanager
 def silent_joints(rehearsal: Rehearsal, joints: JointRows) -> Iterator[None]:
-    """Within this block `pre_solve` of constraints is wrapped, and their other functions are not called."""
-    mute = [item for item in joints.calling if item.pre_solve is None or item.a.space is None]
-    with ExitStack() as held:
+    """Within this block `pre_solve` of constraints is wrapped, and their other functions are not called: springs use
+    the linear laws of the last step. Bodies outside the space keep their velocities."""
+    # `Hooks.before` calls `pre_solve` where the first body is outside the space: pymunk does not.
+    silenced = [item for item in joints.calling if item.pre_solve is None or item.a.space is None]
+    with ExitStack() as stack:
         if joints.partners.outside:
-            held.callback(private_joints.restore_motions, joints.partners.motions())
-        if mute:
-            held.enter_context(private_joints.silent(mute))
+            stack.callback(private_joints.restore_motions, joints.partners.motions())
+        if silenced:
+            stack.enter_context(private_joints.silent(silenced))
         if joints.own:
-            held.enter_context(private_joints.with_laws(joints.own, joints.laws()))
+            stack.enter_context(private_joints.with_laws(joints.own, joints.laws()))
         if joints.before:
-            held.enter_context(_watched_joints(rehearsal, [item for item in joints.before if item not in mute]))
+            stack.enter_context(_watched_joints(rehearsal, [item for item in joints.before if item not in silenced]))
         yield
 
 
@@ -74,8 +80,8 @@ def _watched_joints(rehearsal: Rehearsal, items: Sequence[pymunk.Constraint]) ->
     try:
         for item, before, after in functions:
             assert before is not None
-            silent = None if after is None else lambda *_: None
-            private_joints.replace_functions(item, Watched(rehearsal, before, "", 0), silent)
+            nothing = None if after is None else lambda *_: None
+            private_joints.replace_functions(item, Watched(rehearsal, before, "", 0), nothing)
         yield
     finally:
         for item, before, after in functions:

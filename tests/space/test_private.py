@@ -152,7 +152,7 @@ def test_functions_of_bodies_are_left_out(kind: str) -> None:
     for one in (body, other):
         setattr(one, f"{kind}_func", lambda *_: calls.append("own"))
     left_out = {"velocity": [], "position": [], kind: [body, other]}
-    with private_functions.Without(left_out["velocity"], left_out["position"]):
+    with private_functions.WithoutFunctions(left_out["velocity"], left_out["position"]):
         space.step(0.001)
         assert calls == []
         assert body.position.x == pytest.approx(-0.0891)

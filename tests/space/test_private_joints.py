@@ -66,16 +66,16 @@ def test_functions_are_called_again_after_an_error_among_silent_constraints() ->
     assert calls == ["before"]
 
 
-def test_weakened_constraints_do_not_push_and_forget_what_they_pushed_with() -> None:
+def test_constraints_with_cleared_max_forces_exert_none_and_lose_their_impulses() -> None:
     space, body, pin = hanging()
     pin.max_force = 50.0
     space.step(DT)
     assert pin.impulse == pytest.approx(0.2)
-    held = private_joints.weaken([pin])
+    held = private_joints.clear_max_forces([pin])
     assert pin.max_force == 0.0
     space.step(DT)
     assert pin.impulse == 0.0
-    private_joints.strengthen(held)
+    private_joints.restore_max_forces(held)
     assert body.velocity.y == pytest.approx(-10.0 * DT)
     assert pin.max_force == 50.0
 

@@ -18,7 +18,7 @@ from scenes.scene import add_disk
 DT = 1 / 60
 Make = Callable[[pymunk.Space], ep.Stepper]
 both = pytest.mark.parametrize("make", [ep.Native, ep.EECA])
-answering = pytest.mark.skipif(not private_versions.ANSWERS, reason="handlers of pymunk 7 return nothing")
+answering = pytest.mark.skipif(not private_versions.BY_RETURN, reason="handlers of pymunk 7 return nothing")
 
 
 def thrown_at_a_wall() -> tuple[pymunk.Space, pymunk.Body]:
@@ -136,7 +136,7 @@ def test_arbiters_tell_whether_a_handler_has_rejected_the_collision() -> None:
         # A pair that touches no more is not rejected: nobody was asked.
         disk.position, disk.velocity = (-5.0, 0.0), (0.0, 0.0)
         space.step(DT)
-        assert [private_versions.processed(one) for one in private.arbiters(space) if private_versions.ANSWERS] in (
+        assert [private_versions.processed(one) for one in private.arbiters(space) if private_versions.BY_RETURN] in (
             [],
             [True],
         )
@@ -147,6 +147,8 @@ def test_answers_are_those_of_begin_and_pre_solve_alone() -> None:
         warnings.simplefilter("ignore")
         for found in (True, False):
             for phase in ("_begin", "_pre_solve"):
-                assert private_versions.answer(found, print, phase) is (found if private_versions.ANSWERS else None)
-        assert private_versions.answer(False, print, "_post_solve") is None
-        assert private_versions.answer(math.pi, print, "_begin") is (True if private_versions.ANSWERS else None)
+                assert private_versions.to_return(found, print, phase) is (
+                    found if private_versions.BY_RETURN else None
+                )
+        assert private_versions.to_return(False, print, "_post_solve") is None
+        assert private_versions.to_return(math.pi, print, "_begin") is (True if private_versions.BY_RETURN else None)

@@ -43,7 +43,7 @@ def stamp(arbiter: pymunk.Arbiter) -> int:
 
 
 def reject(arbiter: pymunk.Arbiter) -> None:
-    """Have the collision of an arbiter whose shapes touch not take place."""
+    """Make the collision of an arbiter whose shapes touch not take place, see `versions.decide`."""
     decide(arbiter._arbiter, False)
 
 
@@ -53,8 +53,8 @@ def asleep(arbiter: Any) -> bool:
 
 
 def set_impulse(arbiter: Any, impulse: tuple[float, float] | None) -> list[tuple[float, float]]:
-    """Set the impulse of an arbiter on its second shape, divided among its points, if it has any; None for 0. Returns
-    the old values."""
+    """Set the impulse of an arbiter on its second shape (mass length/time), in equal parts at its points, if it has
+    any; None for 0. Returns the old normal and tangential impulse of each point, for `restore_impulse`."""
     old = [(arbiter.contacts[k].jnAcc, arbiter.contacts[k].jtAcc) for k in range(arbiter.count)]
     x, y = (0.0, 0.0) if impulse is None else impulse
     nx, ny = arbiter.n.x, arbiter.n.y
@@ -71,7 +71,7 @@ def restore_impulse(arbiter: Any, old: Sequence[tuple[float, float]]) -> None:
 
 
 def _centre(shape: pymunk.Shape) -> tuple[float, float, float, float]:
-    """Centre of mass of the shape's body, inverse mass and moment."""
+    """Centre of mass of the shape's body (x, y), its inverse mass and inverse moment; 0 unless it is dynamic."""
     body = shape.body
     assert body is not None
     x, y = body.local_to_world(body.center_of_gravity)
@@ -84,16 +84,21 @@ def make_arbiter(
     a: pymunk.Shape, b: pymunk.Shape, normal: tuple[float, float], points: Sequence[tuple[float, float]],
     impulse: tuple[float, float],
 ) -> Any:  # fmt: skip
-    """An arbiter, in no space, of two shapes that touched at these points (1 or 2) with this impulse on b."""
+    """An arbiter, in no space, of two shapes that touched at these points (1 or 2) with this impulse on b.
+
+    The normal is a unit vector from a to b. `nMass` and `tMass` are the effective masses of a point along the normal
+    and the tangent.
+    """
     nx, ny = normal
     contacts, arbiter = ffi.new("cpContact[]", len(points)), ffi.new("cpArbiter *")
     (xa, ya, ma, ia), (xb, yb, mb, ib) = _centre(a), _centre(b)
     for contact, (px, py) in zip(contacts, points, strict=True):
         contact.r1.x, contact.r1.y, contact.r2.x, contact.r2.y = px - xa, py - ya, px - xb, py - yb
-        turn_a, turn_b = (px - xa) * ny - (py - ya) * nx, (px - xb) * ny - (py - yb) * nx
-        slide_a, slide_b = (px - xa) * nx + (py - ya) * ny, (px - xb) * nx + (py - yb) * ny
-        contact.nMass = 1.0 / (ma + mb + ia * turn_a * turn_a + ib * turn_b * turn_b)
-        contact.tMass = 1.0 / (ma + mb + ia * slide_a * slide_a + ib * slide_b * slide_b)
+        # Arms of the normal and of the tangential impulse.
+        n_arm_a, n_arm_b = (px - xa) * ny - (py - ya) * nx, (px - xb) * ny - (py - yb) * nx
+        t_arm_a, t_arm_b = (px - xa) * nx + (py - ya) * ny, (px - xb) * nx + (py - yb) * ny
+        contact.nMass = 1.0 / (ma + mb + ia * n_arm_a * n_arm_a + ib * n_arm_b * n_arm_b)
+        contact.tMass = 1.0 / (ma + mb + ia * t_arm_a * t_arm_a + ib * t_arm_b * t_arm_b)
     body_a, body_b = a.body, b.body
     assert body_a is not None
     assert body_b is not None
@@ -107,7 +112,7 @@ def make_arbiter(
 
 
 def turn_to(arbiter: Any, body: pymunk.Body) -> None:
-    """Order the shapes of an arbiter so that the first one belongs to a body."""
+    """Order the shapes of an arbiter so that the first one belongs to `body`."""
     arbiter.swapped = 1 if arbiter.body_b == body._body else 0
 
 

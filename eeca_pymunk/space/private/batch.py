@@ -14,6 +14,8 @@ from ...arrays import AnyArray, FloatArray, IntArray
 
 OF_LIBRARY = ("cpSpaceEachBody", "pmSpaceBodyGetIteratorFuncBatched", "pmSpaceBodySetIteratorFuncBatched")
 TYPES = ("pmBatchedData *", "pmFloatArray *", "pmIntArray *")
+# The readers and writers of whole spaces have attributes: `values` and `numbers`, the C arrays to which a later call
+# may give other memory (`last`), and `held`, the present memory, which is not freed before.
 
 
 def reader(
@@ -25,8 +27,8 @@ def reader(
     at every call: pymunk would replace memory that is too small by its own, and free it.
 
     Args:
-        last: a reader of the same fields of the same space, which from now on is this one; making another one takes
-            three times as long.
+        last: a reader of the same fields of the same space. It is changed to use these arrays, and returned; making a
+            new one takes three times as long.
     """
     if last is not None:
         _point(last.values, "cpFloat[]", floats)
@@ -49,7 +51,7 @@ def reader(
 
 
 def reader_of(bodies: Sequence[pymunk.Body], fields: batch.BodyFields, floats: FloatArray) -> Callable[[], None]:
-    """The same for some bodies, which may be in no space, one after the other."""
+    """As `reader`, without ids, for some bodies, one call for each; they need not be in a space."""
     values, numbers = _array("pmFloatArray *", "cpFloat[]", floats), ffi.new("pmIntArray *")
     data = _batched(fields, values, numbers)
     return _one_by_one(lib.pmSpaceBodyGetIteratorFuncBatched, bodies, data, values, (floats, numbers))
@@ -102,8 +104,8 @@ def writer(
 def _one_by_one(
     one: Any, bodies: Sequence[pymunk.Body], data: Any, values: Any, arrays: tuple[object, ...]
 ) -> Callable[[], None]:
-    """A function that calls `one`, of pymunk's library, for each of the bodies, with `values` from their start; it
-    holds the arrays."""
+    """A function that calls `one`, of pymunk's library, for each of the bodies, and reads or writes `values` from their
+    start. It refers to `arrays`, whose memory `data` points to."""
     pointers = [body._body for body in bodies]
 
     def call(held: object = arrays) -> None:
@@ -122,11 +124,13 @@ def _array(kind: str, items: str, memory: FloatArray | IntArray) -> Any:
 
 
 def _point(array: Any, items: str, memory: FloatArray | IntArray) -> None:
+    """Let one of pymunk's arrays, now empty, use this memory."""
     array.arr = ffi.from_buffer(items, memory)
     array.num, array.max = 0, memory.size
 
 
 def _batched(fields: batch.BodyFields, floats: Any, ints: Any) -> Any:
+    """The argument of pymunk's batch functions."""
     data = ffi.new("pmBatchedData *")
     data.fields, data.floatArray, data.intArray = fields.value, floats, ints
     return data

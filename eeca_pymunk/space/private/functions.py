@@ -13,35 +13,38 @@ OF_LIBRARY = (
     "cpBodySetVelocityUpdateFunc", "cpBodySetPositionUpdateFunc", "cpBodyUpdateVelocity", "ext_cpBodyVelocityFunc",
     "ext_cpBodyPositionFunc",
 )  # fmt: skip
+# Chipmunk's own velocity and position functions.
 _ACCELERATE, _MOVE = ffi.addressof(lib, "cpBodyUpdateVelocity"), ffi.addressof(lib, "cpBodyUpdatePosition")
 
 
 def velocity_changes(
     bodies: Sequence[pymunk.Body], gravity: pymunk.Vec2d, damping: float, dt: float
 ) -> list[tuple[float, float, float]]:
-    """Changes of velocity and spin by the velocity functions of bodies; the bodies are restored.
+    """Changes of velocity (x, y) and spin by one call of each body's velocity function; the bodies are restored.
 
-    The public properties take four times as long.
+    `damping`: factor on velocities over dt, as velocity functions receive it. The public properties take four times as
+    long.
     """
     velocity, spin = lib.cpBodyGetVelocity, lib.cpBodyGetAngularVelocity
     put_velocity, put_spin = lib.cpBodySetVelocity, lib.cpBodySetAngularVelocity
     found: list[tuple[float, float, float]] = []
     for body in bodies:
         c: Any = body._body
-        before, turned = velocity(c), spin(c)
+        old_velocity, old_spin = velocity(c), spin(c)
         try:
             body._velocity_func(body, gravity, damping, dt)  # type: ignore[misc]
-            after = velocity(c)
-            found.append((after.x - before.x, after.y - before.y, spin(c) - turned))
+            new = velocity(c)
+            found.append((new.x - old_velocity.x, new.y - old_velocity.y, spin(c) - old_spin))
         finally:
-            put_velocity(c, before)
-            put_spin(c, turned)
+            put_velocity(c, old_velocity)
+            put_spin(c, old_spin)
     return found
 
 
-class Without:
-    """Within this block, which may be entered again later, pymunk's steps use its own functions in the place of these
-    velocity functions and position functions of bodies. A class as `reentry.FunctionsCalled`."""
+class WithoutFunctions:
+    """Within this block pymunk's steps use Chipmunk's own functions instead of the velocity functions and position
+    functions of these bodies. The block may be entered again later. A class, which is faster than a generator with
+    `contextmanager`."""
 
     __slots__ = ("_position", "_velocity")
 
@@ -55,7 +58,7 @@ class Without:
             lib.cpBodySetPositionUpdateFunc(body._body, _MOVE)
 
     def __exit__(self, *_: object) -> None:
-        # Functions that were called meanwhile may have removed them.
+        # Collision handlers that were called within the block may have reset a function to None.
         for body in self._velocity:
             if body._velocity_func is not None:
                 lib.cpBodySetVelocityUpdateFunc(body._body, lib.ext_cpBodyVelocityFunc)

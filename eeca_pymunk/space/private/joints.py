@@ -24,7 +24,8 @@ OF_SPRINGS = ((pymunk.DampedSpring, FORCE[1:]), (pymunk.DampedRotarySpring, TORQ
 
 class TimeStep:
     """Within this block, for calls of functions of the program, `space.current_time_step` is dt. Afterwards it is that
-    of pymunk's last step again, with which pymunk scales its stored impulses. A class as `reentry.FunctionsCalled`."""
+    of pymunk's last step again, with which pymunk scales its stored impulses. A class, which is faster than a generator
+    with `contextmanager`."""
 
     __slots__ = ("_before", "_dt", "_space")
 
@@ -42,9 +43,9 @@ class TimeStep:
 def replace_functions(
     constraint: pymunk.Constraint, before: Callable[..., Any] | None, after: Callable[..., Any] | None
 ) -> None:
-    """Let pymunk call these functions in the place of the constraint's `pre_solve` and `post_solve`.
+    """Let pymunk call these functions instead of the constraint's `pre_solve` and `post_solve`.
 
-    The public setters would also change Chipmunk, and count as edits.
+    The public setters would also change Chipmunk's constraint, and would be recorded as edits.
     """
     constraint.__dict__[BEFORE], constraint.__dict__[AFTER] = before, after
 
@@ -76,14 +77,13 @@ def motions(bodies: Iterable[pymunk.Body]) -> list[tuple[Any, Any, float]]:
 
 
 def restore_motions(kept: Iterable[tuple[Any, Any, float]]) -> None:
-    """Restore velocities and spins of bodies."""
+    """Restore the result of `motions`. Unchanged bodies are not written, since a write wakes a sleeping body."""
     velocity, spin = lib.cpBodyGetVelocity, lib.cpBodyGetAngularVelocity
-    for c, before, turned in kept:
+    for c, old_velocity, old_spin in kept:
         now = velocity(c)
-        # Reading is cheaper than writing, which would wake bodies.
-        if now.x != before.x or now.y != before.y or spin(c) != turned:
-            lib.cpBodySetVelocity(c, before)
-            lib.cpBodySetAngularVelocity(c, turned)
+        if now.x != old_velocity.x or now.y != old_velocity.y or spin(c) != old_spin:
+            lib.cpBodySetVelocity(c, old_velocity)
+            lib.cpBodySetAngularVelocity(c, old_spin)
 
 
 def awake(constraints: Sequence[pymunk.Constraint]) -> list[pymunk.Constraint]:
@@ -92,20 +92,20 @@ def awake(constraints: Sequence[pymunk.Constraint]) -> list[pymunk.Constraint]:
     return [c for c in constraints if not (sleeps(a(c._constraint)) or sleeps(b(c._constraint)))]
 
 
-def weaken(constraints: Iterable[Any]) -> list[tuple[Any, float]]:
-    """Set the force bound of constraints to 0, so that they exert no force in pymunk's steps, which then forget their
-    impulses. Returns the argument of `strengthen`."""
-    limit, read = lib.cpConstraintSetMaxForce, lib.cpConstraintGetMaxForce
-    held = [(c := one._constraint, read(c)) for one in constraints]
-    for c, _ in held:
-        limit(c, 0.0)
-    return held
+def clear_max_forces(constraints: Iterable[Any]) -> list[tuple[Any, float]]:
+    """Set `max_force` of constraints to 0: in pymunk's steps they then exert no force, and their stored impulses become
+    0. Returns the argument of `restore_max_forces`."""
+    write, read = lib.cpConstraintSetMaxForce, lib.cpConstraintGetMaxForce
+    before = [(c := one._constraint, read(c)) for one in constraints]
+    for c, _ in before:
+        write(c, 0.0)
+    return before
 
 
-def strengthen(held: Iterable[tuple[Any, float]]) -> None:
-    """Restore the force bounds before `weaken`."""
-    for c, most in held:
-        lib.cpConstraintSetMaxForce(c, most)
+def restore_max_forces(before: Iterable[tuple[Any, float]]) -> None:
+    """Undo `clear_max_forces`."""
+    for c, max_force in before:
+        lib.cpConstraintSetMaxForce(c, max_force)
 
 
 @contextmanager
@@ -127,13 +127,13 @@ def silent(constraints: Iterable[Any]) -> Iterator[None]:
 
 @contextmanager
 def with_laws(springs: Sequence[Any], laws: Sequence[Callable[[Any, float], float]]) -> Iterator[None]:
-    """Within this block these springs use the given laws in the place of their force or torque functions."""
+    """Within this block these springs use the given laws instead of their force or torque functions."""
     names = [FORCE if isinstance(one, pymunk.DampedSpring) else TORQUE for one in springs]
-    own = [one.__dict__[name] for one, name in zip(springs, names, strict=True)]
+    functions = [one.__dict__[name] for one, name in zip(springs, names, strict=True)]
     try:
         for one, name, law in zip(springs, names, laws, strict=True):
             one.__dict__[name] = law
         yield
     finally:
-        for one, name, function in zip(springs, names, own, strict=True):
+        for one, name, function in zip(springs, names, functions, strict=True):
             one.__dict__[name] = function

@@ -12,19 +12,19 @@ from pymunk._chipmunk_cffi import lib
 from . import spaces as private
 
 
-def rest(space: pymunk.Space, dt: float, pulls: bool) -> None:
-    """`step_without_end` with one iteration, without correction of overlaps and, unless `pulls`, without gravity. The
-    public properties take five times as long."""
-    c, none = space._space, (0.0, 0.0)
+def rest(space: pymunk.Space, dt: float, keep_gravity: bool) -> None:
+    """`step_without_end` with one iteration, without correction of overlaps and, unless `keep_gravity`, without
+    gravity. The public properties take five times as long."""
+    c, zero = space._space, (0.0, 0.0)
     gravity, iterations, bias = lib.cpSpaceGetGravity(c), lib.cpSpaceGetIterations(c), lib.cpSpaceGetCollisionBias(c)
     try:
-        if not pulls:
-            lib.cpSpaceSetGravity(c, none)
+        if not keep_gravity:
+            lib.cpSpaceSetGravity(c, zero)
         lib.cpSpaceSetIterations(c, 1)
-        lib.cpSpaceSetCollisionBias(c, 1.0)
+        lib.cpSpaceSetCollisionBias(c, 1.0)  # the part of an overlap that remains after one second: all
         private.step_without_end(space, dt)
     finally:
-        if not pulls:
+        if not keep_gravity:
             lib.cpSpaceSetGravity(c, gravity)
         lib.cpSpaceSetIterations(c, iterations)
         lib.cpSpaceSetCollisionBias(c, bias)

@@ -16,6 +16,10 @@ OF_LIBRARY = (
 )  # fmt: skip
 
 
+# Number of reindexings in a row at most: each leaves unused handles in a spatial hash, which a step of pymunk clears.
+REINDEXINGS = 32
+
+
 def numbers(shape: Any) -> tuple[float, float, float, float, float]:
     """Radius, elasticity, friction and surface velocity of a shape."""
     c = shape._shape
@@ -45,7 +49,7 @@ def outline(shape: pymunk.Shape) -> list[tuple[float, ...]] | None:
 
 
 def reindex(space: pymunk.Space, bodies: Iterable[Any]) -> None:
-    """Move the shapes of bodies, given as `pointers`, to the poses of the bodies."""
+    """Move the shapes of bodies, given as `pointers`, to the poses of the bodies. See `REINDEXINGS`."""
     c, move = space._space, lib.cpSpaceReindexShapesForBody
     for body in bodies:
         move(c, body)
@@ -60,7 +64,7 @@ def reindex_anew(space: pymunk.Space, bodies: Iterable[Any]) -> None:
 
 
 def forget_corrections(bodies: Iterable[Any]) -> None:
-    """Clear pymunk's corrections of overlaps of bodies, given as `pointers`. pymunk keeps them as velocities and
-    applies them at the next move of a body, once; a move over dt = 0 clears them."""
+    """Clear pymunk's corrections of overlaps of bodies, given as `pointers`. pymunk stores each as a velocity, applies
+    it when it moves the body next, and then sets it to 0; a move over dt = 0 therefore only clears it."""
     for body in bodies:
         lib.cpBodyUpdatePosition(body, 0.0)

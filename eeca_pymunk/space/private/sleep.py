@@ -21,36 +21,36 @@ def sleeping(bodies: Iterable[pymunk.Body]) -> list[bool]:
 
 
 def stop_woken(bodies: Iterable[pymunk.Body]) -> Callable[[], None]:
-    """A function that takes the velocity of those of these bodies that sleep no more."""
-    pointers, sleeps, still = [body._body for body in bodies], lib.cpBodyIsSleeping, (0.0, 0.0)
+    """A function that sets velocity and spin to 0 of those of these bodies that no longer sleep."""
+    pointers, sleeps, zero = [body._body for body in bodies], lib.cpBodyIsSleeping, (0.0, 0.0)
 
     def stop() -> None:
         for pointer in pointers:
             if not sleeps(pointer):
-                lib.cpBodySetVelocity(pointer, still)
+                lib.cpBodySetVelocity(pointer, zero)
                 lib.cpBodySetAngularVelocity(pointer, 0.0)
 
     return stop
 
 
 def unmoved(bodies: Iterable[pymunk.Body]) -> Callable[[], bool]:
-    """A function that returns whether all of these bodies still have their present poses, and velocity 0."""
+    """A function that returns whether all of these bodies still have their present poses, and velocity and spin 0."""
     pointers = [body._body for body in bodies]
-    place, angle, velocity, spin = (
+    position, angle, velocity, spin = (
         lib.cpBodyGetPosition, lib.cpBodyGetAngle, lib.cpBodyGetVelocity, lib.cpBodyGetAngularVelocity,
     )  # fmt: skip
 
     def pose(pointer: Any) -> tuple[float, float, float]:
-        p = place(pointer)
+        p = position(pointer)
         return p.x, p.y, angle(pointer)
 
     known = [(pointer, *pose(pointer)) for pointer in pointers]
 
-    def all_there() -> bool:
+    def none_moved() -> bool:
         for pointer, x, y, phi in known:
             v = velocity(pointer)
             if pose(pointer) != (x, y, phi) or v.x != 0.0 or v.y != 0.0 or spin(pointer) != 0.0:
                 return False
         return True
 
-    return all_there
+    return none_moved

@@ -94,10 +94,10 @@ def arbiters(space: pymunk.Space) -> list[pymunk.Arbiter]:
     return [pymunk.Arbiter(one, space) for one in space._get_arbiters()]
 
 
-def odd_arbiters(space: pymunk.Space) -> list[pymunk.Arbiter]:
-    """Those of `arbiters` whose values may differ from the products of their shapes."""
+def differing_arbiters(space: pymunk.Space) -> list[pymunk.Arbiter]:
+    """Those of `arbiters` whose values may differ from those that follow from their shapes."""
     own = lib.cpShapeGetSensor, lib.cpShapeGetElasticity, lib.cpShapeGetFriction
-    return [pymunk.Arbiter(one, space) for one in space._get_arbiters() if private_versions.is_odd(one, *own)]
+    return [pymunk.Arbiter(one, space) for one in space._get_arbiters() if private_versions.may_differ(one, *own)]
 
 
 def decision(arbiter: pymunk.Arbiter) -> tuple[Any, ...]:
@@ -116,7 +116,7 @@ def raw_arbiters(space: pymunk.Space) -> list[Any]:
 
 
 def touching(space: pymunk.Space) -> list[tuple[pymunk.Body, pymunk.Body]]:
-    """Pairs of bodies that touched in pymunk's last steps."""
+    """Pairs of bodies that touched in pymunk's last steps, see `arbiters`."""
     return [bodies(arbiter) for arbiter in arbiters(space)]
 
 
@@ -143,8 +143,8 @@ def locked(space: pymunk.Space) -> Iterator[None]:
 def step_without_end(space: pymunk.Space, dt: float) -> None:
     """pymunk's step without its end: additions, removals and callbacks wait for `finish_step`.
 
-    No body falls asleep in it. Sleeping bodies that are touched wake; with an infinite threshold they would not, and
-    pymunk would have the contact twice.
+    No body falls asleep in it, because the threshold is the largest finite number meanwhile. An infinite one would
+    switch sleeping off: sleeping bodies that are touched would not wake, and pymunk would have the contact twice.
     """
     c, threshold = space._space, lib.cpSpaceGetSleepTimeThreshold(space._space)
     space._locked = True
@@ -185,7 +185,8 @@ def watch(space: pymunk.Space, edits: list[int], known: list[int]) -> Callable[[
     """A function that returns whether the settings and contents of the space are still as they are now.
 
     Args:
-        edits: `edits.counts` of the space.  known: what the first one of them was, which may be set later.
+        edits: `edits.counts` of the space.  known: a list of one number, the value of edits[0] that counts as
+            unchanged; the caller sets it after a patch.
 
     Every addition of a shape changes pymunk's count of all shapes ever added, every removal the number of shapes. A
     body that was exchanged for another one changes the ids that the batch call reads. Constraints are compared one by

@@ -9,7 +9,7 @@
 | pymunk's default as `velocity_func` | the body's function stays, and is called no more | since 7.3 none is left |
 | shapes removed twice from callbacks | an error | later than 7.0.0 removed once |
 
-Names are looked up once, where they are used, rather than a number of a version compared.
+The code looks for names that a version has or lacks; it does not compare version numbers.
 """
 
 from __future__ import annotations
@@ -21,9 +21,10 @@ from typing import Any
 import pymunk
 
 REQUIRED = "pymunk>=6.9,<8"
-ANSWERS = not hasattr(pymunk.Arbiter, "process_collision")  # whether functions of handlers return what they decide
+# Whether functions of handlers decide by their return values.
+BY_RETURN = not hasattr(pymunk.Arbiter, "process_collision")
 
-# What bodies have that have no function of their own.
+# Values of these properties of bodies for which the program has set no function.
 DEFAULTS = {"velocity_func": pymunk.Body.update_velocity, "position_func": pymunk.Body.update_position}
 
 # `enum cpArbiterState` of Chipmunk 7.0.3, which pymunk 6 has.
@@ -37,35 +38,37 @@ def processed(arbiter: pymunk.Arbiter) -> bool:
     pymunk 6 keeps no record of it. A collision that `begin` rejected has a state of its own until the shapes separate;
     one that `pre_solve` rejected has lost its contacts, though the shapes touch.
     """
-    if not ANSWERS:
+    if not BY_RETURN:
         return bool(arbiter.process_collision) and not any(shape.sensor for shape in arbiter.shapes)
-    held = arbiter._arbiter
-    return bool(held.state != _IGNORED and (held.count > 0 or held.state == _CACHED))
+    raw = arbiter._arbiter
+    return bool(raw.state != _IGNORED and (raw.count > 0 or raw.state == _CACHED))
 
 
-def decide(held: Any, takes_place: bool) -> None:
-    """Have the collision of an arbiter of Chipmunk's take place, or not unless pymunk calls `begin` when the shapes
-    touch. pymunk 6 calls `pre_solve` again in each step, and its pickles contain what `begin` has rejected."""
-    if not ANSWERS:
-        held.processCollision = int(takes_place)
+def decide(raw: Any, takes_place: bool) -> None:
+    """Set whether the collision of a Chipmunk arbiter takes place. pymunk 7 overwrites this only if it calls `begin`,
+    when shapes begin to touch. Under pymunk 6 there is nothing to set: it calls `pre_solve` again in each step, and its
+    pickles contain the collisions that `begin` has rejected."""
+    if not BY_RETURN:
+        raw.processCollision = int(takes_place)
 
 
-def decision(held: Any, sensor: Callable[[Any], bool]) -> tuple[Any, ...]:
-    """What functions may decide of a collision, whose arbiter Chipmunk has: whether it takes place, whether shapes are
+def decision(raw: Any, sensor: Callable[[Any], bool]) -> tuple[Any, ...]:
+    """The values of a Chipmunk arbiter that functions may change: whether the collision takes place, whether shapes are
     sensors, restitution, friction, surface velocity."""
-    surface, takes_place = held.surface_vr, True if ANSWERS else held.processCollision
-    return takes_place, sensor(held.a), sensor(held.b), held.e, held.u, surface.x, surface.y
+    surface, takes_place = raw.surface_vr, True if BY_RETURN else raw.processCollision
+    return takes_place, sensor(raw.a), sensor(raw.b), raw.e, raw.u, surface.x, surface.y
 
 
-def is_odd(
-    held: Any, sensor: Callable[[Any], bool], elasticity: Callable[[Any], float], friction: Callable[[Any], float]
+def may_differ(
+    raw: Any, sensor: Callable[[Any], bool], elasticity: Callable[[Any], float], friction: Callable[[Any], float]
 ) -> bool:  # fmt: skip
-    """Whether values of an arbiter of Chipmunk's may differ from those of its shapes, which the functions return."""
-    a, b, surface = held.a, held.b, held.surface_vr
-    if ANSWERS or not held.processCollision or sensor(a) or sensor(b):
+    """Whether values of a Chipmunk arbiter may differ from those that follow from its shapes. The other arguments
+    return these values of a Chipmunk shape. Always true under pymunk 6, whose arbiters lack `processCollision`."""
+    a, b, surface = raw.a, raw.b, raw.surface_vr
+    if BY_RETURN or not raw.processCollision or sensor(a) or sensor(b):
         return True
-    plain = held.e == elasticity(a) * elasticity(b) and held.u == friction(a) * friction(b)
-    return not plain or surface.x != 0.0 or surface.y != 0.0
+    products = raw.e == elasticity(a) * elasticity(b) and raw.u == friction(a) * friction(b)
+    return not products or surface.x != 0.0 or surface.y != 0.0
 
 
 def bodies(arbiter: pymunk.Arbiter) -> tuple[pymunk.Body, pymunk.Body]:
@@ -76,16 +79,16 @@ def bodies(arbiter: pymunk.Arbiter) -> tuple[pymunk.Body, pymunk.Body]:
     return one, two
 
 
-def answer(found: Any, function: Callable[..., Any], phase: str) -> bool | None:
-    """What a handler's function that returned `found` means to pymunk.
+def to_return(value: Any, function: Callable[..., Any], phase: str) -> bool | None:
+    """What a wrapper of a handler's function returns to pymunk, if the function has returned `value`.
 
-    pymunk 7 takes no answer. pymunk 6 takes a bool of `begin` and `pre_solve`; anything else is a warning, and the
-    collision takes place.
+    pymunk 7 ignores return values. pymunk 6 expects a bool from `begin` and `pre_solve`; for other values it warns, and
+    the collision takes place.
     """
-    if not ANSWERS or phase not in ("_begin", "_pre_solve"):
+    if not BY_RETURN or phase not in ("_begin", "_pre_solve"):
         return None
-    if isinstance(found, bool):
-        return found
+    if isinstance(value, bool):
+        return value
     code = getattr(function, "__code__", None)
     name = getattr(function, "__name__", repr(function))
     warnings.warn_explicit(
@@ -101,7 +104,7 @@ def answer(found: Any, function: Callable[..., Any], phase: str) -> bool | None:
 
 def add_handler(space: pymunk.Space) -> Any:
     """A collision handler of a space, for pairs of all types."""
-    if ANSWERS:
+    if BY_RETURN:
         return space.add_default_collision_handler()  # type: ignore[attr-defined]
     space.on_collision(begin=lambda arbiter, space, data: None)
     return next(iter(space._handlers.values()))
@@ -114,12 +117,13 @@ def handled(space: pymunk.Space) -> list[tuple[int | None, int | None]]:
 
 
 def forget_function(body: pymunk.Body, name: str, function: Callable[..., None]) -> None:
-    """What pymunk before 7.3 leaves undone when its default is set again: the body's own function is none any more."""
+    """If pymunk's default was set again, remove the function that the body had, which pymunk before 7.3 does not do.
+    `name`: of the property."""
     if function is DEFAULTS[name]:
         setattr(body, f"_{name}", None)
 
 
 def remover(space: pymunk.Space) -> Callable[..., None]:
-    """The function that removes one thing, and leaves to the caller what `separate` removes meanwhile."""
+    """The function that removes one object from a space. What `separate` removes meanwhile is left to the caller."""
     remove: Callable[..., None] = getattr(space, "_remove", space.remove)
     return remove
