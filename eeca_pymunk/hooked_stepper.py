@@ -157,7 +157,7 @@ class HookedStepper(PackedSpace):
         now.check_start()
         rows = [world.bodies.row[body] for body in now.bodies.items]
         now.EXTRA[:], now.HELD[:] = world.EXTRA[rows], world.HELD[:, rows]
-        now.rehearsal.go_on(rehearsal)
+        now.rehearsal.continue_from(rehearsal)
         now.hooks.late = world.hooks.late
         return now
 

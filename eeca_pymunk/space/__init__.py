@@ -11,7 +11,7 @@ Open first `world.py`, the space as packed arrays, and `checks.py`, the unsuppor
 | reading joints | `joints.py`, `constraints.py`, `listing.py`, `partners.py`, `spring_functions.py` |
 | states in and out | `crossing.py` |
 | edits by the program | `edits.py` (shapes, bodies), `joint_edits.py`, `patching.py` (rows after edits in place) |
-| functions of the program | `hooks.py`; of handlers `rehearsal.py`, `hearing.py`, `watched.py`, `decisions.py` |
+| functions of the program | `hooks.py`; of handlers `rehearsal.py`, `handled_pairs.py`, `watched.py`, `decisions.py` |
 | pymunk's own state after a step | `sync.py` (shapes), `arbiters.py` (contacts), `constraint_impulses.py` |
 | sleeping bodies | `sleeping.py`, `sleep_groups.py` |
 | a line of text | `describe.py` |

@@ -1,8 +1,8 @@
 """Decisions of collision handlers about pairs of shapes: for one step (`Rules`), and beyond it (`Decisions`).
 
-pymunk keeps the arbiter of shapes that have parted for `collision_persistence` steps, and with it what handlers have
-decided; until then it holds for the pair. After a return to an earlier state (`set_state`), arbiters of later steps do
-not count, and the decisions that held then are kept here.
+pymunk keeps the arbiter of two shapes for `collision_persistence` steps after they have separated; what handlers have
+decided applies to the pair until then. After a return to an earlier state (`set_state`) arbiters of later steps do not
+count, and `Decisions` has those that applied at that state.
 """
 
 from __future__ import annotations
@@ -25,19 +25,20 @@ from .private.versions import processed
 if TYPE_CHECKING:
     from .world import World
 
-DECISION_COLUMNS = 7  # both shapes, as in `space.shapes`; -1 for no collision, or elasticity, ...; age in steps
+DECISION_COLUMNS = 7  # indices of both shapes in `space.shapes`; the law (4), see `Law`; age in steps
 
 _NONE = -1.0, 0.0, 0.0, 0.0  # the law of shapes that do not collide
 _SAME = 1e-9  # relative difference of a surface velocity and pymunk's tangential part of it that is round-off
 Pair = tuple[int, int]
-Law = tuple[float, float, float, float]  # elasticity, friction, surface velocity (x, y) of b relative to a
+# Elasticity (-1: the shapes do not collide), friction, surface velocity (x, y) of b relative to a.
+Law = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True)
 class Rules:
-    """Decisions of collision handlers about pairs of shapes, for one step; pairs as (smaller, larger) index.
+    """Decisions of collision handlers about pairs of shapes (a, b), rows of SHAPE with a < b, for one step.
 
-    `ignored`: pairs that do not collide.  `changed`: the law of pairs for which it is not that of their shapes.
+    `ignored`: pairs that do not collide.  `changed`: the laws of pairs that differ from those of their shapes.
     """
 
     ignored: frozenset[Pair] = frozenset()
@@ -50,7 +51,7 @@ class Rules:
 
     @classmethod
     def of_arbiters(cls, arbiters: Iterable[pymunk.Arbiter], world: World) -> Rules:
-        """Those that arbiters have."""
+        """The decisions that arbiters of pymunk contain."""
         ignored, changed = set(), {}
         for arbiter in arbiters:
             a, b = (world.places.get(shape, -1) for shape in arbiter.shapes)
@@ -68,8 +69,7 @@ class Rules:
         return cls(frozenset(ignored), changed)
 
     def of_pairs(self, SHAPE: Rows[Shape], parted: Iterable[Pair] = ()) -> dict[Pair, Law]:
-        """The law by pair of rows of SHAPE, sorted: elasticity (-1: no collision), friction, surface velocity of b
-        relative to a. `parted` pairs do not collide, for any handlers."""
+        """The laws of all these pairs, sorted. `parted` pairs do not collide, whatever handlers decide."""
         never = self.ignored.union(parted)
         return {
             pair: (-1.0, 0.0, *_law(SHAPE, *pair)[2:]) if pair in never else self.changed[pair]
@@ -85,8 +85,9 @@ def _law(SHAPE: Rows[Shape], a: int, b: int) -> Law:
 
 
 def _surface(arbiter: pymunk.Arbiter, own: tuple[float, float], ordered: bool) -> tuple[float, float]:
-    """The surface velocity of an arbiter, `own` if no function has set another one: pymunk stores the tangential part.
-    `ordered`: whether its first shape has the smaller index."""
+    """The surface velocity of an arbiter. pymunk stores only the tangential part of that of the shapes, `own`: if it is
+    this up to round-off, no function has set another one, and the result is `own`. `ordered`: whether the arbiter's
+    first shape has the smaller index."""
     found = arbiter.surface_velocity
     x, y = found if ordered else -found
     if (x, y) == own:
@@ -101,8 +102,8 @@ class Decisions:
     """What handlers of a space have decided about pairs of shapes, beside what pymunk's arbiters have.
 
     Attributes:
-        since: number of pymunk's step up to which arbiters do not count.
-        laws: law of b relative to a, by shapes (a, b), and the number of the step in which they last touched.
+        since: number of pymunk's step; arbiters whose shapes last touched up to then do not count.
+        laws: of shapes (a, b) the law, and the number of pymunk's step in which they last touched.
     """
 
     def __init__(self) -> None:
@@ -114,11 +115,12 @@ class Decisions:
         self.since, self.laws = private.timestamp(space)(), {}
 
     def rules(self, world: World) -> Rules:
-        """What holds of pairs of shapes, after pymunk's step has called the handlers."""
+        """The decisions that apply in a step, after pymunk's step has called the handlers: those of its arbiters, then
+        `laws` of pairs without a newer arbiter."""
         space, places = world.space, world.places
         now, oldest = private.timestamp(space)(), self.since
-        odd = [arbiter for arbiter in private.differing_arbiters(space) if private_arbiters.stamp(arbiter) > oldest]
-        rules = Rules.of_arbiters(odd, world)
+        newest = [arbiter for arbiter in private.differing_arbiters(space) if private_arbiters.stamp(arbiter) > oldest]
+        rules = Rules.of_arbiters(newest, world)
         if not self.laws:
             return rules
         newer = {frozenset(a.shapes) for a in private.arbiters(space) if private_arbiters.stamp(a) > oldest}
@@ -137,7 +139,7 @@ class Decisions:
         return Rules(rules.ignored | never, {**rules.changed, **changed})
 
     def state(self, world: World) -> FloatArray:
-        """(n, DECISION_COLUMNS) all that holds."""
+        """(n, DECISION_COLUMNS) all decisions that apply, sorted."""
         space = world.space
         now, shapes = private.timestamp(space)(), list(space.shapes)
         known: dict[tuple[pymunk.Shape, pymunk.Shape], tuple[Law, int]] = dict(self.laws)
@@ -154,8 +156,8 @@ class Decisions:
         return np.array(sorted(rows), float).reshape(-1, DECISION_COLUMNS)
 
     def recall(self, space: pymunk.Space, rows: FloatArray) -> None:
-        """Return to a result of `state`. Rejections are written to the arbiters that there are: for shapes that touch,
-        and for those of a pickle, pymunk does not call `begin` again."""
+        """Return to a result of `state`. Rejections are also written to existing arbiters, because pymunk does not call
+        `begin` again for shapes that touch, nor for the arbiters of a pickle."""
         self.forget(space)
         shapes, never = list(space.shapes), set()
         for a, b, e, mu, x, y, age in rows.tolist():

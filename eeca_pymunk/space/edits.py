@@ -33,26 +33,26 @@ _METHODS: tuple[tuple[type, tuple[str, ...]], ...] = (
     (pymunk.Segment, ("unsafe_set_radius", "unsafe_set_endpoints")),
     (pymunk.Poly, ("unsafe_set_radius", "unsafe_set_vertices")),
 )
-_OF_SURFACE = ("filter", "elasticity", "friction", "surface_velocity")
+_OF_SURFACE = ("filter", "elasticity", "friction", "surface_velocity")  # these change neither masses nor outlines
 _SLEEP = ("sleep", "sleep_with_group")
 _leaders: WeakKeyDictionary[pymunk.Body, weakref.ref[pymunk.Body]] = WeakKeyDictionary()
 _KEPT = 4096  # number of edits that are kept, the last ones
 _wrapped = False
-_clock = _typings = 0
-# The last edits, in any space or outside: what was edited, and whether that may have changed its body's mass or moment.
+_clock = _type_changes = 0
+# The last edits, in any space or outside: the shape or body, and whether more than `_OF_SURFACE` may have changed.
 _edited: deque[tuple[weakref.ref[Any], bool]] = deque(maxlen=_KEPT)
 
 
 class Counts(list[int]):
-    """Number of edits of shapes and bodies of a space and of bodies put to sleep; number of the latter alone; number of
-    changes of its settings."""
+    """Three counts of a space: [0] edits of its shapes and bodies, including bodies put to sleep; [1] bodies put to
+    sleep alone; [2] changes of its settings. A list, which `private.spaces.watch` compares fastest."""
 
     def __init__(self) -> None:
         super().__init__((0, 0, 0))
 
     @property
     def in_place(self) -> int:
-        """Number of edits of shapes and bodies."""
+        """Number of edits of shapes and bodies, without bodies put to sleep."""
         return self[0] - self[1]
 
 
@@ -60,7 +60,7 @@ _counts: WeakKeyDictionary[pymunk.Space, Counts] = WeakKeyDictionary()
 
 
 def counts(space: pymunk.Space) -> Counts:
-    """The counts of a space, from its first call on."""
+    """The counts of a space. The first call for a space begins to count; the very first one wraps the setters."""
     global _wrapped
     if not _wrapped:
         _wrapped = True
@@ -78,26 +78,33 @@ def clock() -> int:
     return _clock
 
 
-def typings() -> int:
-    """Number of changes of collision types so far, in any space or outside. They are no edits: rows lack them."""
-    return _typings
+def type_changes() -> int:
+    """Number of changes of collision types so far, in any space or outside. They do not count as edits, because rows do
+    not contain collision types."""
+    return _type_changes
 
 
 def edited_since(time: int) -> tuple[set[Any], set[Any]] | None:
-    """Shapes and bodies that were edited since `clock` was `time`, and the bodies whose mass or moment that may have
-    changed; and those of which more than `_OF_SURFACE` may have changed. None if these are more than are kept."""
+    """What was edited since `clock` was `time`, as two sets of shapes and bodies.
+
+    Returns:
+        (all, reshaped). `reshaped`: those of which more than `_OF_SURFACE` may have changed, and the bodies of such
+        shapes, whose mass and moment may follow. `all`: `reshaped`, and the shapes with other edits. Objects that no
+        longer exist are None. None if there were more edits than `_KEPT`.
+    """
     if _clock - time > len(_edited):
         return None
-    edited = [(thing(), weighs) for thing, weighs in islice(reversed(_edited), _clock - time)]
-    more = {thing for thing, weighs in edited if weighs}
-    more.update([thing.body for thing in more if isinstance(thing, pymunk.Shape)])
-    return more.union([thing for thing, _ in edited]), more
+    edited = [(thing(), reshapes) for thing, reshapes in islice(reversed(_edited), _clock - time)]
+    reshaped = {thing for thing, reshapes in edited if reshapes}
+    reshaped.update([thing.body for thing in reshaped if isinstance(thing, pymunk.Shape)])
+    return reshaped.union([thing for thing, _ in edited]), reshaped
 
 
-def _note(thing: Any, name: str) -> None:
-    global _clock, _typings
+def _record(thing: Any, name: str) -> None:
+    """Count an edit of a shape, body or space by the property or method `name`."""
+    global _clock, _type_changes
     if name == "collision_type":
-        _typings += 1
+        _type_changes += 1
         return
     if isinstance(thing, pymunk.Space):
         if thing in _counts:
@@ -114,46 +121,47 @@ def _note(thing: Any, name: str) -> None:
 
 
 def leader(body: pymunk.Body) -> pymunk.Body:
-    """A sleeping body that wakes whenever this sleeping body does: itself, or one of its group."""
-    lead = _leaders.get(body)
-    found = None if lead is None else lead()
+    """The body by whose call of `sleep` the group of this sleeping body was made; `body` itself if that one is unknown,
+    awake or in another space."""
+    reference = _leaders.get(body)
+    found = None if reference is None else reference()
     return found if found is not None and found.space is body.space and found.is_sleeping else body
 
 
 def _sleep(native: Callable[..., None]) -> Callable[..., None]:
     @wraps(native)
-    def sleep_and_note(self: pymunk.Body, *group: pymunk.Body) -> None:
+    def sleep_and_record(self: pymunk.Body, *group: pymunk.Body) -> None:
         lead = leader(group[0]) if group else self
         native(self, *group)
         _leaders[self] = weakref.ref(lead)
-        _note(self, native.__name__)
+        _record(self, native.__name__)
 
-    return sleep_and_note
+    return sleep_and_record
 
 
 def _property(name: str, native: Any) -> property:
     read, write = native.fget, native.fset
 
-    def set_and_note(self: Any, value: Any) -> None:
+    def set_and_record(self: Any, value: Any) -> None:
         before = None if read is None else read(self)
         write(self, value)
         if name in private_versions.DEFAULTS:
             private_versions.forget_function(self, name, value)
         if read is None or read(self) != before:
-            _note(self, name)
+            _record(self, name)
 
-    return property(read, set_and_note, native.fdel, native.__doc__)
+    return property(read, set_and_record, native.fdel, native.__doc__)
 
 
 def _method(native: Callable[..., Any]) -> Callable[..., Any]:
     @wraps(native)
-    def call_and_note(self: Any, *args: Any, **kwargs: Any) -> Any:
+    def call_and_record(self: Any, *args: Any, **kwargs: Any) -> Any:
         try:
             return native(self, *args, **kwargs)
         finally:
-            _note(self, native.__name__)
+            _record(self, native.__name__)
 
-    return call_and_note
+    return call_and_record
 
 
 for _name in _SLEEP:

@@ -1,8 +1,9 @@
-"""A rehearsal: pymunk's own step, from the same start to the end of free flight, for collision handlers.
+"""A rehearsal: pymunk's own step, from the same start to the end of free flight, which calls the collision handlers.
 
-pymunk's own detection and solver call them, so that begin, pre_solve, post_solve and separate come in pymunk's order
-and with pymunk's numbers. Their decisions (collisions to ignore, restitution, friction, surface velocities, changed
-velocities) apply to the EECA step, which replaces the rehearsal.
+So begin, pre_solve, post_solve and separate are called in pymunk's order and with pymunk's numbers. What they decide
+(collisions to ignore, restitution, friction, surface velocities) and change (velocities) applies to the EECA step,
+which overwrites the motion of the rehearsal. A rehearsal that would call no handler is *left out*; such a step is
+*silent*.
 """
 
 from __future__ import annotations
@@ -17,8 +18,8 @@ from ..layout import EARLY, NOW, REHEARSED, SEEN
 from ..rehearsing import HEARD_COLUMNS, approach, changed
 from ..transfer import TURNS
 from .decisions import Decisions, Rules
-from .edits import typings
-from .hearing import Hearing
+from .edits import type_changes
+from .handled_pairs import HandledPairs
 from .private import shapes as private_shapes
 from .private import spaces as private
 from .private import versions as private_versions
@@ -28,10 +29,9 @@ if TYPE_CHECKING:
     from .sync import Sync
     from .world import World
 
-_LATER = 4  # steps for which pymunk may remember pairs that were near
-_RENEW = 32  # steps in a row that are left out at most: as reindexing (`sync.py`), that leaves unused handles
+_MEMORY = 4  # steps for which pymunk may keep arbiters of pairs that have touched; silence is not tested before
 _POST_SOLVE = private.PHASES[2]
-_NONE: tuple[FloatArray, IntArray] = np.zeros((0, HEARD_COLUMNS)), np.zeros((0, 2), np.int64)  # nothing is heard
+_NO_PAIRS: tuple[FloatArray, IntArray] = np.zeros((0, HEARD_COLUMNS)), np.zeros((0, 2), np.int64)
 
 
 class Rehearsal:
@@ -46,55 +46,58 @@ class Rehearsal:
     def __init__(self, world: World) -> None:
         self.world, self.space = world, world.space
         self._approach = self._bound(None)
-        (self._differ,) = world.bound(changed)
-        self._lengths = 0.0, 0.0, 0.0, 1.0  # dt, gravity, factor of half a step's damping
-        # Whether there are changes by begin and pre_solve, and changes by post_solve and separate; the last stage.
+        (self._find_changes,) = world.bound(changed)
+        self._settings = 0.0, 0.0, 0.0, 1.0  # dt, gravity (2), factor of half a step's damping
+        # Whether begin or pre_solve have changed bodies, and whether post_solve or separate have; stage of the last
+        # call (see `Watched`), -1 before the first.
         self._changed, self._stage = [False, False], -1
-        self._wrapped: list[tuple[Any, str, Any, Any]] = []
-        self._functions: list[tuple[Any, ...]] = []
+        self._wrapped: list[tuple[Any, str, Any, Any]] = []  # handler, phase, its function, the wrapper
+        self._functions: list[tuple[Any, ...]] = []  # see `private.functions`
         self.failure: BaseException | None = None
-        self.decided, self.left_out, self._ignores, self._without = False, False, not world.undecided, 0
+        self.decided, self.left_out, self._left_out_steps = False, False, 0  # number of them in a row
         self._sync: Sync | None = None  # of the last step
-        # Whether the last step called nothing for certain; number of steps for which that is not asked again.
-        self._unheard, self._later = False, 0
-        self._hearing: Hearing | None = None
-        self._recent: float = 0.0  # number of steps for which decisions still apply
+        # Whether the last step was certainly silent; number of steps until that is tested again.
+        self._silent, self._unchecked = False, 0
+        self._pairs: HandledPairs | None = None
+        # Number of steps for which decisions still apply; whether collisions are ignored, or may be.
+        self._decision_steps: float = 0.0
+        self._ignoring = not world.undecided
 
     def end(self) -> None:
-        """Forget the wrappers, which refer to this."""
+        """Forget the wrappers, which refer to this object."""
         self._wrapped, self._functions = [], []
 
     def forget(self, reshaped: bool) -> None:
-        """Forget earlier steps, and, if shapes have other sizes or places, what handlers may hear."""
+        """Forget earlier steps; if sizes, filters or places of shapes have changed, also the pairs with handlers."""
         if reshaped:
-            self._hearing = None
-        self._unheard, self._later = False, 0
-        self._changed, self._recent, self._ignores = [False, False], 0, True
+            self._pairs = None
+        self._silent, self._unchecked = False, 0
+        self._changed, self._decision_steps, self._ignoring = [False, False], 0, True
         self.world.forget_changes()
 
     def is_silent(self) -> bool:
-        """Whether nothing holds that functions have decided, and some steps in a row, all EECA's, called none."""
-        return self._without >= _LATER and self._unheard and self._sync is not None and self._sync.is_ours()
+        """Whether no decision applies, and the last `_MEMORY` steps, all of them EECA's, were silent and left out."""
+        return self._left_out_steps >= _MEMORY and self._silent and self._sync is not None and self._sync.is_ours()
 
     def is_silent_again(self, dt: float, half_damping: float, sync: Sync) -> bool:
-        """Whether a step in which nothing but handlers could be called calls none, as the last one: then this is the
-        whole rehearsal. The states at the start of the step are read, and not changed."""
-        if not self._unheard or sync is not self._sync:
+        """Whether this step is silent as the last one was; if so, its rehearsal is done or left out here. For worlds in
+        which only handlers can be called (`only_handlers`). Reads the states at the start of the step."""
+        if not self._silent or sync is not self._sync:
             return False
         self.world.gather()
-        self._lengths = dt, *self.world.gravity, half_damping
-        if self._approach(*self._lengths) != 0 or not (sync.goes_on() and self._is_unheard(near=False)):
+        self._settings = dt, *self.world.gravity, half_damping
+        if self._approach(*self._settings) != 0 or not (sync.continues() and self._calls_none(near=False)):
             return False
-        self._call_nothing(dt, sync)
+        self._step_without_calls(dt, sync)
         return True
 
-    def listen(self) -> None:
-        """Forget what handlers may hear, if there are new ones."""
-        if self._hearing is not None and self._hearing.handled != private_versions.handled(self.space):
-            self._hearing, self._unheard, self._later = None, False, 0
+    def forget_old_handlers(self) -> None:
+        """Forget the pairs with handlers, if there are handlers for other types now."""
+        if self._pairs is not None and self._pairs.handled != private_versions.handled(self.space):
+            self._pairs, self._silent, self._unchecked = None, False, 0
 
-    def go_on(self, earlier: Rehearsal) -> None:
-        """Take over what functions have done in a rehearsal of another world of the space."""
+    def continue_from(self, earlier: Rehearsal) -> None:
+        """Use what functions have done in a rehearsal of an earlier world of the same step."""
         self._changed, self.decided = earlier._changed, earlier.decided
 
     def before_call(self, stage: int) -> None:
@@ -105,10 +108,10 @@ class Rehearsal:
             self._stage = stage
 
     def after_call(self, stage: int) -> None:
-        """After a function was called: record its changes."""
+        """After a function was called: record its changes in HELD[EARLY] or HELD[LATE]."""
         late = stage > 0
         self.world.gather()
-        if self._differ(late):
+        if self._find_changes(late):
             self._changed[late] = True
 
     def run(self, dt: float, half_damping: float, sync: Sync | None = None) -> int:
@@ -116,30 +119,30 @@ class Rehearsal:
         exception of a function is raised when pymunk has finished.
 
         Args:
-            sync: if given, a step that would call no handler may be left out, see `_call_nothing`. That needs that
-                pymunk has taken no step of its own since the last EECA step.
+            sync: if given, the rehearsal may be left out, see `_step_without_calls`, unless pymunk has taken a step of
+                its own since the last EECA step.
 
         Returns:
             0 or a negative code of `transfer.py`, with nothing done.
         """
         world = self.world
-        self._lengths = dt, *world.gravity, half_damping
-        status = self._approach(*self._lengths)
+        self._settings = dt, *world.gravity, half_damping
+        status = self._approach(*self._settings)
         if status < 0:
             return status
         self.failure, self.decided, self._stage, self._sync = None, False, -1, sync
         if True in self._changed:
             world.forget_changes()
             self._changed = [False, False]
-        if self._later > 0:
-            self._later -= 1
+        if self._unchecked > 0:
+            self._unchecked -= 1
         else:
-            self._unheard = sync is not None and sync.goes_on() and self._is_unheard(status > 0)
-            self._later = 0 if self._unheard else _LATER
-        if self._unheard and sync is not None:
-            self._call_nothing(dt, sync)
+            self._silent = sync is not None and sync.continues() and self._calls_none(status > 0)
+            self._unchecked = 0 if self._silent else _MEMORY
+        if self._silent and sync is not None:
+            self._step_without_calls(dt, sync)
             return 0
-        self.left_out, self._without = False, 0
+        self.left_out, self._left_out_steps = False, 0
         world.scatter(TURNS)
         self._wrap()
         try:
@@ -157,14 +160,14 @@ class Rehearsal:
             world.STATES[NOW] += world.HELD[EARLY]
         return 0
 
-    def _call_nothing(self, dt: float, sync: Sync) -> None:
-        """Take pymunk's step, which calls no function, or leave it out: up to _RENEW times in a row, unless arbiters
-        were read since the last step; they will probably be read again."""
-        self.left_out = not sync.were_read() and self._without < _RENEW
+    def _step_without_calls(self, dt: float, sync: Sync) -> None:
+        """A silent step: leave pymunk's step out, REINDEXINGS times in a row at most, as `sync.py` then reindexes. Take
+        it if arbiters were read since the last step, since they will probably be read again."""
+        self.left_out = not sync.were_read() and self._left_out_steps < private_shapes.REINDEXINGS
         if self.left_out:
-            self._without += 1
+            self._left_out_steps += 1
             return
-        self._without = 0
+        self._left_out_steps = 0
         self.world.scatter(TURNS)
         self._step(dt)
 
@@ -177,46 +180,46 @@ class Rehearsal:
             with hooks.silent, silent_joints(self, hooks.joints):
                 private.step_without_end(self.space, dt)
 
-    def _bound(self, hearing: Hearing | None) -> Callable[[float, float, float, float], int]:
-        """See `rehearsing.approach`."""
-        world, heard = self.world, None if hearing is None else hearing.arrays
-        return approach.bind(world.reading, *(heard or _NONE))
+    def _bound(self, pairs: HandledPairs | None) -> Callable[[float, float, float, float], int]:
+        """`rehearsing.approach`, for these pairs."""
+        arrays = None if pairs is None else pairs.arrays
+        return approach.bind(self.world.reading, *(arrays or _NO_PAIRS))
 
-    def _is_unheard(self, near: bool) -> bool:
-        """Whether pymunk's step would call nothing; `near`: whether a pair may meet in it, or soon after."""
+    def _calls_none(self, near: bool) -> bool:
+        """Whether pymunk's step would call nothing. `near`: whether a pair may meet in it or soon after (`_approach`)."""
         joints = self.world.joints
-        if self._recent > 0 or self._ignores or (joints is not None and joints.calling):
+        if self._decision_steps > 0 or self._ignoring or (joints is not None and joints.calling):
             return False
-        if self._hearing is None or self._hearing.typings != typings():
-            self._hearing, self._unheard = Hearing(self.world), False
-            self._approach = self._bound(self._hearing)
-            near = self._approach(*self._lengths) > 0
-        if near or self._hearing.arrays is None:
+        if self._pairs is None or self._pairs.type_changes != type_changes():
+            self._pairs, self._silent = HandledPairs(self.world), False
+            self._approach = self._bound(self._pairs)
+            near = self._approach(*self._settings) > 0
+        if near or self._pairs.arrays is None:
             return False
-        return self._unheard or not self._hearing.remembered()
+        return self._silent or not self._pairs.remembered()
 
-    def make_up(self) -> None:
+    def take_left_out_step(self) -> None:
         """Take the step of pymunk that was left out, for its arbiters, unless the space has other bodies now."""
         world, present = self.world, self.world.bodies.gather()
         if present is None:
             return
         world.STATES[NOW] = world.HELD[REHEARSED]
-        self._approach(*self._lengths)
+        self._approach(*self._settings)
         world.scatter(TURNS)
         try:
-            self._step(self._lengths[0])
+            self._step(self._settings[0])
         finally:
             world.bodies.scatter(present, unchanged=True)
             private_shapes.reindex_anew(self.space, world.movers)
 
     @property
     def after(self) -> bool:
-        """Whether post_solve and separate have changed anything."""
+        """Whether post_solve or separate have changed bodies."""
         return self._changed[1]
 
     def _wrap(self) -> None:
-        """Make wrappers of all functions of handlers; those of the last step are used again if the functions are
-        equal."""
+        """Make wrappers of all functions of handlers, unless these are the same as in the last step. If constraints
+        have a `post_solve`, that of handlers is called after them (`Hooks.after`)."""
         hooks, now = self.world.hooks, private.functions(self.space)
         late = hooks.joints is not None and len(hooks.joints.after) > 0
         if now != self._functions or late:
@@ -234,16 +237,14 @@ class Rehearsal:
             ]
 
     def rules(self, earlier: Decisions) -> Rules:
-        """The decisions about pairs of shapes by functions of this step, and by earlier ones.
-
-        Values of arbiters differ from those of shapes only if a function has changed them. pymunk keeps such decisions
-        as long as it keeps arbiters, and ignored collisions as long as the shapes touch.
-        """
+        """The decisions about pairs of shapes in this step: of its own functions, and of `earlier` ones that still
+        apply. pymunk keeps them as long as it keeps the arbiter, and ignored collisions as long as the shapes touch.
+        Arbiters are only read if a function may have changed one of them."""
         if self.decided:
-            self._recent = self.space.collision_persistence + 1
-        if self._recent <= 0 and not self._ignores and not earlier.laws:
+            self._decision_steps = self.space.collision_persistence + 1
+        if self._decision_steps <= 0 and not self._ignoring and not earlier.laws:
             return Rules() if self.world.rules.some else self.world.rules
-        self._recent -= 1
+        self._decision_steps -= 1
         rules = earlier.rules(self.world)
-        self._ignores = bool(rules.ignored)
+        self._ignoring = bool(rules.ignored)
         return rules

@@ -155,7 +155,7 @@ class Sync:
         if not self._stale or self.space in BUSY or not self.is_ours():
             return
         if world.collisions:
-            world.rehearsal.make_up()
+            world.rehearsal.take_left_out_step()
             self.stamp, self._stale = self._timestamp(), False
         else:
             with private_rest.stopped(self.space):
@@ -183,7 +183,7 @@ class Sync:
         """Whether pymunk has taken no step of its own since the last EECA step."""
         return self._timestamp() == self.stamp
 
-    def goes_on(self) -> bool:
+    def continues(self) -> bool:
         """The same where a space was read anew since: for handlers, if they were silent before."""
         return self._timestamp() in (self.stamp, self._before)
 

@@ -52,7 +52,7 @@ class World(Crossing):
         rules: decisions of collision handlers about pairs of rows of SHAPE in this step.
         frictionless: whether friction, also that of handlers, is left out.  lacks_friction: and there is some.
         joints: the constraints of the space, None if it has none.
-        undecided: whether it was read after steps that called no handlers, and nothing was edited in place meanwhile.
+        undecided: whether no decision of a handler can apply: the steps before were silent, and nothing was edited.
         sleeps: whether bodies could sleep when it was read.  read_at: `edits.clock` when shapes and bodies were read.
         patches: number of patches so far.  packed: the arrays of the rows, and the kernel that writes them.
         objects_read: number of bodies, shapes and constraints read from pymunk for this world; others were known.
@@ -109,7 +109,7 @@ class World(Crossing):
         self._known = self._edits.in_place
         self.collisions = bool(private.handlers(self.space))
         if "rehearsal" in self.__dict__:
-            self.rehearsal.listen()
+            self.rehearsal.forget_old_handlers()
         self._forget_rules()
         self.hooks = Hooks(self.space, self.bodies, self.joints, *self._functions)
         self.hooked = self.collisions or self.hooks.some or self.damping == 0.0
@@ -118,7 +118,7 @@ class World(Crossing):
         self.current = private.watch(self.space, self._edits, self._seen)
 
     def is_silent(self) -> bool:
-        """Whether collision handlers have not been called of late, and nothing holds that they have decided."""
+        """Whether collision handlers were not called in the last steps, and no decision of theirs applies."""
         return "rehearsal" in self.__dict__ and not self.rules.some and self.rehearsal.is_silent()
 
     def _forget_rules(self) -> None:

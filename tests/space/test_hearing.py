@@ -110,7 +110,7 @@ def test_calls_paths_and_arbiters_are_those_of_all_steps(
         found, left_out = played(seed, PAIRS[name], each)
         without.append(found)
         with monkeypatch.context() as patched:
-            patched.setattr(Rehearsal, "_is_unheard", lambda self, dt: False)
+            patched.setattr(Rehearsal, "_calls_none", lambda self, dt: False)
             found, none = played(seed, PAIRS[name], each)
             with_all.append(found)
         assert none == 0
@@ -245,7 +245,7 @@ def test_what_may_be_heard_is_found_again_after_edits_of_sizes() -> None:
             stepper.step(DT)
         world = stepper._world
         assert world is not None
-        found.append((world, world.rehearsal._hearing))
+        found.append((world, world.rehearsal._pairs))
         first.friction = friction
     assert found[1] == found[2]  # the first edit lets the space be read again
     assert found[2][1] is not None

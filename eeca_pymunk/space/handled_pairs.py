@@ -1,7 +1,7 @@
-"""Hearing: pairs of shapes that have collision handlers, and whether one of them may meet in a step.
+"""HandledPairs: pairs of shapes that have collision handlers, as rows for the kernel `rehearsing.nears`.
 
-pymunk calls handlers of pairs that overlap at the end of free flight, or that it remembers from earlier steps. If there
-are neither, a rehearsal would call none.
+pymunk calls handlers of pairs that overlap at the end of free flight, or whose arbiters it keeps from earlier steps. If
+there are neither, a rehearsal would call no handler.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import pymunk
 from ..arrays import FloatArray, IntArray
 from ..layout import BODY_ROW
 from ..rehearsing import HEARD_COLUMNS
-from .edits import typings
+from .edits import type_changes
 from .private import arbiters as private_arbiters
 from .private import shapes as private_shapes
 from .private import spaces as private
@@ -25,34 +25,35 @@ from .private import versions as private_versions
 if TYPE_CHECKING:
     from .world import World
 
-_MOST = 1024  # pairs that are looked at in a step; more are not worth it
-_WIDER = 1.01  # factor of sizes, for round-off
+_MOST = 1024  # pairs; with more of them a test of all in each step saves no time
+_WIDER = 1.01  # factor on sizes of shapes, so that round-off hides no pair
 
 
-class Hearing:
+class HandledPairs:
     """The pairs of a world that have handlers, sensors included.
 
     Attributes:
-        typings: `edits.typings` when they were found.  handled: the pairs of types that had handlers.
-        arrays: HEARD and PAIRS of `rehearsing.nears`; None if they are many, or a body is not in the space.
+        type_changes: `edits.type_changes` when the pairs were found.  handled: pairs of types with handlers then.
+        arrays: HEARD (m, 7) and PAIRS (p, 2) of `rehearsing.nears`; None if there are more than `_MOST` pairs, or a
+            body is not in the space.
     """
 
     def __init__(self, world: World) -> None:
-        self._space, self.typings = world.space, typings()
+        self._space, self.type_changes = world.space, type_changes()
         self.handled = private_versions.handled(world.space)
         pairs = self._pairs(list(world.records))
         place = {shape: k for k, shape in enumerate(dict.fromkeys(shape for pair in pairs or () for shape in pair))}
-        heard = [_heard(world, shape) for shape in place]
+        rows = [_heard_row(world, shape) for shape in place]
         self.arrays: tuple[FloatArray, IntArray] | None = None
-        if pairs is not None and None not in heard:
-            HEARD: FloatArray = np.array(heard, float).reshape(-1, HEARD_COLUMNS)
+        if pairs is not None and None not in rows:
+            HEARD: FloatArray = np.array(rows, float).reshape(-1, HEARD_COLUMNS)
             # Static shapes do not meet each other, nor do those of one body.
-            body = [-1.0 if row is None else row[0] for row in heard]
+            body = [-1.0 if row is None else row[0] for row in rows]
             found = [(place[a], place[b]) for a, b in pairs if body[place[a]] != body[place[b]]]
             self.arrays = HEARD, np.array(found, np.int64).reshape(-1, 2)
 
     def _pairs(self, shapes: list[pymunk.Shape]) -> list[tuple[pymunk.Shape, pymunk.Shape]] | None:
-        """All pairs of types that have handlers; None if they are too many."""
+        """All pairs of shapes whose types have handlers; None if there are more than `_MOST`."""
         of: dict[int, list[pymunk.Shape]] = {}
         for shape in shapes:
             of.setdefault(shape.collision_type, []).append(shape)
@@ -65,14 +66,15 @@ class Hearing:
         return found
 
     def remembered(self) -> bool:
-        """Whether pymunk remembers that a pair has touched."""
+        """Whether pymunk keeps an arbiter of a pair from earlier steps."""
         found = {private_arbiters.kinds(arbiter) for arbiter in private.raw_arbiters(self._space)}
-        turned = {(b, a) for a, b in found}
-        return any(one in (None, a) and two in (None, b) for a, b in found | turned for one, two in self.handled)
+        swapped = {(b, a) for a, b in found}
+        return any(one in (None, a) and two in (None, b) for a, b in found | swapped for one, two in self.handled)
 
 
-def _heard(world: World, shape: Any) -> tuple[float, ...] | None:
-    """The row of HEARD of a shape, see `rehearsing.nears`; None if its body is not in the space."""
+def _heard_row(world: World, shape: Any) -> tuple[float, ...] | None:
+    """The row of HEARD of a shape, see `rehearsing.nears`; None if its body is not in the space, or its kind is
+    unknown."""
     record = world.records[shape]
     if record is None or record.outside:
         body, points, rounding = shape.body, private_shapes.outline(shape), shape.radius
