@@ -33,7 +33,7 @@ from .program_scenes import PROGRAMS
 PARTS: dict[str, tuple[tuple[type, str], ...]] = {
     "kernel": ((EventLoop, "step"),),
     "re-reads": ((PackedSpace, "_update_world"),),
-    "sync": ((Sync, "land"), (Sync, "reindex"), (Sync, "follow"), (Sync, "call_back")),
+    "sync": ((Sync, "write_end"), (Sync, "reindex"), (Sync, "update"), (Sync, "call_back")),
     "handlers": (
         (Rehearsal, "run"), (Rehearsal, "rules"), (Sync, "finish_rehearsal"), (Hooks, "velocity_changes"),
         (Hooks, "before"), (Hooks, "after"), (Hooks, "positions"),

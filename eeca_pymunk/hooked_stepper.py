@@ -168,7 +168,7 @@ class HookedStepper(PackedSpace):
             world.joints.write()
             world.hooks.after(dt)
             if self.sync and not world.collisions:
-                self._sync.follow(dt, status)
+                self._sync.update(dt, status)
         elif world.collisions:
             world.scatter(status)
         else:
@@ -177,11 +177,11 @@ class HookedStepper(PackedSpace):
     def write_end(self, world: World, dt: float, status: int) -> None:
         """Write the end of a step to the space."""
         if self.sync:
-            self._sync.land(dt, status)
+            self._sync.write_end(dt, status)
         else:
             world.scatter(status)
             if self._sync.stamp < 0:
-                self._sync.note()
+                self._sync.accept()
 
     def _outcome(self, world: World, dt: float) -> Outcome:
         """The outcome of the step. NotFiniteError, before the space is changed, if the energy overflows though

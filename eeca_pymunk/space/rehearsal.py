@@ -186,7 +186,7 @@ class Rehearsal:
         return approach.bind(self.world.reading, *(arrays or _NO_PAIRS))
 
     def _calls_none(self, near: bool) -> bool:
-        """Whether pymunk's step would call nothing. `near`: whether a pair may meet in it or soon after (`_approach`)."""
+        """Whether pymunk's step would call nothing. `near`: whether a pair may meet in it, or soon after."""
         joints = self.world.joints
         if self._decision_steps > 0 or self._ignoring or (joints is not None and joints.calling):
             return False

@@ -3,11 +3,11 @@
 There are two ways. A *rest step*, pymunk's own step with all velocities 0, moves nothing; it renews broad phase and
 arbiters, forgets old contacts, and stores dt. *Reindexing* moves the shapes of one body after the other and changes
 nothing else; it costs less for a few bodies, above all if they touch or are jointed. In a spatial hash it leaves unused
-handles, which a rest step clears, so there is one every `_RENEW` steps. Post-step callbacks follow either way, when
-bodies have their velocities.
+handles, which a rest step clears: there is a rest step after `REINDEXINGS` steps. Post-step callbacks are called
+afterwards, when bodies have their velocities.
 
 If arbiters are read after a step that has reindexed, a rest step is taken first (`Sync.renew`); after one whose
-rehearsal was left out, the rehearsal.
+rehearsal was left out, that rehearsal.
 """
 
 from __future__ import annotations
@@ -35,12 +35,12 @@ if TYPE_CHECKING:
     from .world import World
 
 # Numbers of moving shapes up to which reindexing is used: without contacts, and with; with joints for any number.
-# Measured, it costs less than a rest step without contacts up to 30 shapes in a tree and 6 in a hash; with contacts up
-# to 70 and 8. With joints it costs a fifth for any number in a tree; in a hash it costs less up to 16, for many twice.
-FEW, SOME = 12, 32
-_RENEW = 32  # steps after which reindexing gives way to a rest step
+# Measured: reindexing costs less than a rest step up to 30 shapes in a tree and 6 in a spatial hash without contacts,
+# up to 70 and 8 with contacts. With joints it costs a fifth in a tree; in a hash less up to 16 shapes, twice for many.
+MOST_FREE, MOST_TOUCHING = 12, 32
 
-Awake: TypeAlias = Callable[[Sequence[pymunk.Constraint]], list[pymunk.Constraint]]  # those whose bodies are all awake
+# Returns those of given constraints whose bodies are all awake.
+Awake: TypeAlias = Callable[[Sequence[pymunk.Constraint]], list[pymunk.Constraint]]
 
 
 def rest_step(
@@ -48,30 +48,30 @@ def rest_step(
 ) -> None:
     """Update pymunk's shapes by its own step, with all velocities 0, which moves nothing.
 
-    It uses the real dt, so that `space.current_time_step` is right and a native step may follow: with velocities 0, and
-    contacts without impulses of a step of pymunk's own, pymunk stores no impulse that it would scale by the ratio of
-    the two steps. All bodies must have velocity 0; jointed ones may end with velocities of round-off.
+    It uses the real dt, so that `space.current_time_step` is right and a native step may be the next one: pymunk scales
+    stored impulses by the ratio of its last two dt, but here velocities and all stored impulses are 0. All bodies must
+    have velocity 0; jointed ones may end with velocities of round-off.
 
     Args:
-        joints: the constraints of the space, which call no functions meanwhile, and exert no forces.
-        stored: whether pymunk may have impulses of joints from earlier steps, which would push too.
-        awake: where bodies sleep: gives those of constraints whose bodies are all awake. A change of gravity would wake
-            bodies: gravity stays, and changes velocities, which are overwritten.
+        joints: the constraints of the space; their functions are not called, and they exert no forces.
+        stored: whether pymunk may have impulses of joints from earlier steps, which it would apply too.
+        awake: given where bodies sleep. Writing gravity or a joint would wake bodies: joints of sleeping bodies are not
+            changed, and gravity acts; the caller overwrites the velocities.
     """
     asleep = awake is not None
     if joints is None:
         private_rest.rest(space, dt, asleep)
         return
-    push, calling = joints.items if stored else joints.pushing(), joints.calling
-    if awake is not None:  # a change of a joint would wake its bodies
-        push, calling = awake(push), awake(calling) if calling else calling
+    pushing, calling = joints.items if stored else joints.pushing(), joints.calling
+    if awake is not None:
+        pushing, calling = awake(pushing), awake(calling) if calling else calling
     outside = joints.partners.motions()
-    if not (calling or joints.own):
-        held = clear_max_forces(push)
+    if not (calling or joints.own):  # most spaces; an `ExitStack` would cost more
+        max_forces = clear_max_forces(pushing)
         try:
             private_rest.rest(space, dt, asleep)
         finally:
-            restore_max_forces(held)
+            restore_max_forces(max_forces)
             restore_motions(outside)
         return
     own, laws = joints.own, joints.laws()
@@ -84,7 +84,7 @@ def rest_step(
             within.enter_context(silent(calling))
         if own:
             within.enter_context(with_laws(own, laws))
-        within.callback(restore_max_forces, clear_max_forces(push))
+        within.callback(restore_max_forces, clear_max_forces(pushing))
         private_rest.rest(space, dt, asleep)
 
 
@@ -92,18 +92,17 @@ class Sync:
     """Updates pymunk's shapes after each step, in one of the two ways.
 
     Attributes:
-        renews: whether readers of arbiters call `renew`.
+        renews: whether reading arbiters calls `renew` first.
         waits: function that returns whether post-step callbacks, additions or removals wait for the end of a step.
-        stamp: pymunk's count of steps after the last EECA step, -1 before the first.
+        stamp: number of steps that pymunk had taken after the last EECA step, -1 before the first.
     """
 
     def __init__(self, world: World, past: Sync | None = None) -> None:
-        """`past`: that of the world of this space before; pymunk itself indexes shapes that were added since."""
+        """`past`: the `Sync` of the last world of this space; pymunk itself indexes shapes that were added since."""
         self.space, bodies = world.space, world.bodies
         self._asleep = bodies.reached is not None
-        self._pulls = world.sleeps
         sleepers = [bodies.items[i] for i in bodies.asleep.nonzero()[0]] if self._asleep else []
-        self._stop = private_sleep.stop_woken(sleepers)
+        self._stop_woken = private_sleep.stop_woken(sleepers)
         self._world = world
         self._timestamp: Callable[[], int] = private.timestamp(self.space)
         self.waits = partial(private.waits, self.space)
@@ -112,26 +111,27 @@ class Sync:
         if past is not None and not (self._asleep or past._asleep):
             self._rested, self._dt, self._reindexings = past._rested, past._dt, past._reindexings
             self._touched, self._stale, self._were_read = past._touched, past._stale, past._were_read
-        self._new = True  # bodies and joints may be new, with corrections and impulses of other steps of pymunk
+        self._first = True  # no rest step yet: new bodies and joints may have corrections and impulses of pymunk
         self.renews = False
         self.stamp = -1
-        self._before = past.stamp if past is not None and world.undecided else -1
+        self._past_stamp = past.stamp if past is not None and world.undecided else -1
 
     def reindexes(self, dt: float, status: int) -> bool:
         """Whether reindexing is enough for this step. Conditions:
 
-        * pymunk has taken no step since the last rest step, which had this dt and was no more than `_RENEW` steps ago;
+        * pymunk has taken no step since the last rest step, which had this dt and was at most `REINDEXINGS` steps ago;
         * arbiters were not read after the last step, other than for a picture;
-        * nothing touched in this step and the last one, or readers of arbiters call `renew`;
-        * the number of shapes is at most SOME; with neither contacts nor joints at most FEW; there may be any number
-          with joints, if readers of arbiters call `renew`.
+        * nothing touched in this step and the last one, or `renews`;
+        * the number of moving shapes is at most MOST_TOUCHING; with neither contacts nor joints at most MOST_FREE; with
+          joints and `renews` there is no limit.
         """
         if self.were_read() or self._reindexings == 0 or dt != self._dt:
             return False
         touches, jointed = status & EVENTS or self._touched, self._world.joints is not None
         if touches and not self.renews:
             return False
-        if not (jointed and self.renews) and self._world.carried > (SOME if touches or jointed else FEW):
+        few = self._world.moving_shapes <= (MOST_TOUCHING if touches or jointed else MOST_FREE)
+        if not (few or (jointed and self.renews)):
             return False
         return self._timestamp() == self._rested
 
@@ -147,9 +147,9 @@ class Sync:
         private_shapes.reindex(self.space, self._world.movers)
 
     def renew(self, drawn: bool = False) -> None:
-        """Make arbiters by a rest step, or by the rehearsal that was left out, if the last step was an EECA step that
-        made none. `drawn`: only for a picture, which costs more than either; where bodies may sleep the next step
-        makes them."""
+        """Make the arbiters by a rest step, or by the rehearsal that was left out, if the last step was an EECA step
+        that made none. `drawn`: they are read only for a picture. That costs more than making them, so the next step
+        need not make them in advance, unless bodies may sleep."""
         world = self._world
         self._were_read |= not (drawn and self.renews)
         if not self._stale or self.space in BUSY or not self.is_ours():
@@ -165,12 +165,12 @@ class Sync:
         """Do waiting additions and removals, and call post-step callbacks."""
         private.finish_step(self.space)
 
-    def note(self) -> None:
-        """Record that the steps pymunk has taken until now were part of EECA steps."""
+    def accept(self) -> None:
+        """Count the steps that pymunk has taken until now as parts of EECA steps."""
         self.stamp = self._timestamp()
 
     def finish_rehearsal(self, dt: float, left_out: bool) -> None:
-        """After a rehearsal, or if it was left out, the end of pymunk's step: move shapes to their bodies, then
+        """The end of a step with handlers, whose rehearsal was taken or `left_out`: move shapes to their bodies, then
         `call_back`."""
         self.stamp, self._dt, self._stale = self._timestamp(), dt, left_out
         if left_out:
@@ -184,41 +184,42 @@ class Sync:
         return self._timestamp() == self.stamp
 
     def continues(self) -> bool:
-        """The same where a space was read anew since: for handlers, if they were silent before."""
-        return self._timestamp() in (self.stamp, self._before)
+        """As `is_ours`; also true if the space was read anew since the last EECA step and no decision applies."""
+        return self._timestamp() in (self.stamp, self._past_stamp)
 
     def rest(self, dt: float) -> None:
-        """Take a rest step, without functions of bodies; all bodies must have velocity 0, and may get velocities of
-        round-off if there are joints."""
-        world, stored = self._world, self._new or self._timestamp() != self._rested
-        self._new = False
+        """Take a rest step that calls no functions of bodies. All bodies must have velocity 0; jointed ones may end
+        with velocities of round-off."""
+        world, stored = self._world, self._first or self._timestamp() != self._rested
+        self._first = False
         if stored:
             private_shapes.forget_corrections(world.movers)
             for arbiter in private.raw_arbiters(self.space):
                 private_arbiters.set_impulse(arbiter, None)
         slept = self._asleep and world.bodies.in_order()
-        how = self.space, dt, world.joints, stored, self._awake() if self._asleep else None
+        arguments = self.space, dt, world.joints, stored, self._awake() if self._asleep else None
         if world.hooks.some:
             with world.hooks.silent:
-                rest_step(*how)
+                rest_step(*arguments)
         else:
-            rest_step(*how)
+            rest_step(*arguments)
         if slept and not world.bodies.in_order():
-            self._stop()  # what pymunk wakes gets a velocity by gravity
-        self._rested, self._dt, self._reindexings = self._timestamp(), dt, _RENEW
+            self._stop_woken()  # gravity has accelerated the bodies that pymunk has woken
+        self._rested, self._dt, self._reindexings = self._timestamp(), dt, private_shapes.REINDEXINGS
         self.stamp = self._rested
         self._stale = False
-        if not self.renews and self._world.carried <= FEW:
+        if not self.renews and self._world.moving_shapes <= MOST_FREE:
             self._touched = bool(private.raw_arbiters(self.space))
 
     def _awake(self) -> Awake:
-        """See `rest_step`: bodies that sleep at the start of a step do so at its end, unless functions wake them."""
+        """See `rest_step`. Which joints have sleeping bodies is known from the start of the step, unless functions of
+        the program may have woken bodies."""
         joints = self._world.joints
         if joints is None or self._world.hooks.some or joints.calling or joints.own:
             return private_joints.awake
         return joints.awake
 
-    def land(self, dt: float, status: int) -> None:
+    def write_end(self, dt: float, status: int) -> None:
         """Write the end of the step to the space, and update pymunk's shapes: by reindexing, or by a rest step between
         poses and velocities."""
         world = self._world
@@ -226,24 +227,24 @@ class Sync:
             world.scatter(status)
             self.reindex()
             return
-        if not status & TURNS and (world.joints is not None or self._pulls):
-            # Joints change spins by round-off; gravity, where bodies sleep, by more: ENDS has to have them.
+        if not status & TURNS and (world.joints is not None or world.sleeps):
+            # In the rest step joints change spins by round-off, gravity (if bodies may sleep) by more: ENDS needs them.
             status = world.write_ends(status | TURNS)
         world.scatter_still(status)
         self.rest(dt)
         world.scatter_speed(status)
 
-    def follow(self, dt: float, status: int) -> None:
-        """Update pymunk's shapes to the end of a step that is written already, and may have been changed by
-        functions."""
+    def update(self, dt: float, status: int) -> None:
+        """Update pymunk's shapes to the present state of the bodies: the end of a step that is already written, with
+        changes by functions."""
         if self.reindexes(dt, status):
             self.reindex()
             return
         bodies = self._world.bodies
         end = bodies.gather()
         assert end is not None  # additions and removals by functions still wait
-        still = end.copy()
-        still[:, VELOCITY], still[:, ANGULAR_VELOCITY] = 0.0, 0.0
-        bodies.scatter(still, unchanged=True)
+        stopped = end.copy()
+        stopped[:, VELOCITY], stopped[:, ANGULAR_VELOCITY] = 0.0, 0.0
+        bodies.scatter(stopped, unchanged=True)
         self.rest(dt)
         bodies.scatter(end, unchanged=True)

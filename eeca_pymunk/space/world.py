@@ -89,7 +89,7 @@ class World(Crossing):
         if self.frictionless:
             self.SHAPE["friction"] = 0.0
             self.BODY["friction"] = 0.0
-        self.disks, self.dynamic, self._carried, _, eccentric, *self._functions = packed.totals
+        self.disks, self.dynamic, self._moving_shapes, _, eccentric, *self._functions = packed.totals
         self.eccentric = eccentric > 0
         self.patches = 0
         self.parted: set[tuple[int, int]] = set()
@@ -156,10 +156,10 @@ class World(Crossing):
         return centred
 
     @cached_property
-    def carried(self) -> int:
+    def moving_shapes(self) -> int:
         """Number of shapes of bodies that are not static."""
         if len(self.shapes) == len(self.records):
-            return self._carried
+            return self._moving_shapes
         return sum(shape_counts(self.bodies, self.records).values())  # with sensors
 
     @cached_property
@@ -167,7 +167,7 @@ class World(Crossing):
         """Pointers to the Chipmunk bodies that are not static and have shapes."""
         if len(self.shapes) == len(self.records):
             items = self.bodies.items
-            return private.pointers([items[i] for i in sorted(set(self.owner[: self._carried].tolist()))])
+            return private.pointers([items[i] for i in sorted(set(self.owner[: self._moving_shapes].tolist()))])
         return private.pointers(body for body, count in shape_counts(self.bodies, self.records).items() if count)
 
     @cached_property

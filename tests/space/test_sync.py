@@ -38,7 +38,7 @@ def counted(stepper: ep.Stepper, monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 
 @pytest.mark.parametrize("hashed", [False, True])
-@pytest.mark.parametrize("count", [1, sync.FEW, sync.FEW + 1, 40])
+@pytest.mark.parametrize("count", [1, sync.MOST_FREE, sync.MOST_FREE + 1, 40])
 def test_queries_find_the_bodies_where_they_are(count: int, hashed: bool) -> None:
     space = crowd(count, hashed)
     stepper = FreeFlight(space)
@@ -61,7 +61,7 @@ def test_few_shapes_are_reindexed_and_the_broad_phase_renewed_now_and_then(monke
     for _ in range(70):
         stepper.step(DT)
     assert ways == (["rest"] + 32 * ["reindex"]) * 2 + ["rest"] + 3 * ["reindex"]
-    stepper = FreeFlight(crowd(sync.FEW + 1))
+    stepper = FreeFlight(crowd(sync.MOST_FREE + 1))
     ways.clear()
     stepper.step(DT)
     stepper.step(DT)
@@ -69,7 +69,7 @@ def test_few_shapes_are_reindexed_and_the_broad_phase_renewed_now_and_then(monke
 
 
 def test_spaces_with_joints_are_reindexed_whatever_their_size(monkeypatch: pytest.MonkeyPatch) -> None:
-    space = crowd(2 * sync.SOME)
+    space = crowd(2 * sync.MOST_TOUCHING)
     bodies = list(space.bodies)
     space.add(*[pymunk.PinJoint(a, b) for a, b in itertools.pairwise(bodies)])
     stepper = ep.EECA(space)
