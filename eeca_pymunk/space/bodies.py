@@ -1,4 +1,5 @@
-"""Bodies: arrays of a space's bodies, gathered from pymunk and scattered back in one batch call each."""
+"""Bodies: arrays of a space's bodies. `gather` reads their states from pymunk, `scatter` writes them, in one batch call
+each."""
 
 from __future__ import annotations
 
@@ -51,15 +52,15 @@ class Bodies:
 
     Args:
         space: a pymunk space.  sleeps: whether bodies may sleep; sleeping ones then count as static.
-        before: the bodies before some were added or removed; their values are reused except for the `stale`.
-        ids: (N,) pymunk's numbers of the bodies, kept, not copied; None: they are read.
+        before: an earlier reading of the same space; its values are used again, except those of bodies in `stale`.
+        ids: (N,) pymunk's ids (`body.id`) in its present order; the array is kept, not copied. None: they are read.
 
     Attributes:
-        items: the pymunk bodies, by row.  row: of each.  ids: (N,) pymunk's numbers of them.
+        items: the pymunk bodies, by row.  row: the row of each body.  ids: (N,) see above.
         fresh: number of bodies whose values were read anew.
-        arranged: whether pymunk's order is that in which bodies were added.
-        VALUES: (N,) with the columns `mass` and `moment`, M L², infinite for static and kinematic bodies;
-            `inverse_mass` and `inverse_moment`, 0 for these.
+        arranged: whether pymunk's order is that in which bodies were added, with the static body last.
+        VALUES: (N,) `BodyValues`, with the columns `mass` and `moment` (mass length²), infinite for static and
+            kinematic bodies; `inverse_mass` and `inverse_moment`, 0 for these.
     """
 
     def __init__(
@@ -67,7 +68,7 @@ class Bodies:
         ids: IntArray | None = None,
     ) -> None:  # fmt: skip
         self.space = space
-        ground = space.static_body  # exists in the space from its first access on
+        ground = space.static_body  # created at its first access
         everyone = (*space.bodies, ground)
         self.ids: IntArray = self._read()[0] if ids is None else ids
         listed: list[int] = self.ids.tolist()
@@ -101,7 +102,8 @@ class Bodies:
             # Functions of sleeping bodies are not called, as under pymunk.
             self.VALUES["steered"][self.asleep] = self.VALUES["moved"][self.asleep] = 0
         if not self.arranged:
-            # pymunk's order has changed, as some have slept or were removed: that of a copy of the space differs.
+            # pymunk's order changes when bodies sleep or are removed, and a copy of the space has another one: `place`
+            # is the order of addition, which copies share.
             place = {body: i for i, body in enumerate(everyone)}
             self.VALUES["place"] = [place[body] for body in self.items]
 
@@ -155,13 +157,13 @@ class Bodies:
         return self._read()[1]
 
     def changed(self, row: int) -> tuple[bytes | None, bool]:
-        """The values of a body if they have changed, and whether others than mass and moment have; ValueError if they
-        are invalid."""
+        """The values of a body if they have changed, else None; and whether others than mass and moment have changed.
+        ValueError if they are invalid."""
         new, old = body_values.read(self.items[row]), self._values[row]
         return None if new == old else new, body_values.others(new) != body_values.others(old)
 
     def set_masses(self, found: Mapping[int, bytes]) -> None:
-        """Set masses and moments to those of values of `changed`, by row."""
+        """Set masses and moments of bodies, by row, to those in the values that `changed` has returned."""
         for i, values in found.items():
             self._values[i], self._known[self.items[i].id] = values, (self.items[i], values)
             masses = body_values.masses(values)
@@ -172,13 +174,14 @@ class Bodies:
 
     @cached_property
     def in_order(self) -> Callable[[], bool]:
-        """Function that returns whether the space still has these bodies, and the same ones of them sleep."""
+        """Function that returns whether pymunk's order of bodies is the same: no body was added or removed, fell asleep
+        or woke."""
         return private_batch.ordered(self.space, self.ids)
 
     @property
     def reached(self) -> tuple[pymunk.Body, ...] | None:
-        """The bodies that can be written without waking any, None for all. Sleeping bodies are last in pymunk's
-        order."""
+        """The bodies that do not sleep, which are the first ones in pymunk's order; None if no body sleeps. Writing the
+        others would wake them."""
         asleep = self.asleep.tolist() if "asleep" in self.__dict__ else []
         return self.items[: asleep.index(True)] if True in asleep else None
 
@@ -222,21 +225,22 @@ class Bodies:
         `unchanged`: all are, because no callback has run since the state was gathered.
         """
         if self.asleep.any() or (not unchanged and not np.array_equal(self._read()[0], self.ids)):
-            # The batch call writes in pymunk's order: rows would go to the wrong bodies; and it wakes all.
-            for body, still, row in zip(self.items, self.static.tolist(), state.tolist(), strict=True):
-                if body.space is self.space and not still:
+            # The batch call writes in pymunk's order, so that rows would go to wrong bodies; and it wakes all bodies.
+            for body, static, row in zip(self.items, self.static.tolist(), state.tolist(), strict=True):
+                if body.space is self.space and not static:
                     body.position, body.angle = (row[0], row[1]), row[2]
                     body.velocity, body.angular_velocity = (row[3], row[4]), row[5]
                     body.force, body.torque = (row[6], row[7]), row[8]
             return
         out = batch.Buffer()
         out.set_float_buf(np.ascontiguousarray(state).reshape(-1))
-        # pymunk places a body with another centre of mass by its present angle: a second time, by the new angle.
+        # pymunk places a body whose centre of mass is not its origin by its present angle: the second call uses the new
+        # angle.
         for _ in range(2 if self.center_of_gravity.any() else 1):
             batch.set_space_bodies(self.space, _STATE, out)
 
 
 def measure(space: pymunk.Space) -> Invariants:
-    """Energy and momenta of the space now."""
+    """Energy, linear and angular momentum of the space now, see `Invariants`."""
     bodies = Bodies(space)
     return bodies.invariants(bodies.start, space.gravity)

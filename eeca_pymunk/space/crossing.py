@@ -1,4 +1,4 @@
-"""Crossing: reading and writing the states of a space's bodies, in one batch call each way and step."""
+"""Crossing: reads and writes the states of a space's bodies, in one batch call each per step."""
 
 from __future__ import annotations
 
@@ -45,20 +45,21 @@ _F = batch.BodyFields
 _SPEEDS = {0: _F.VELOCITY, TURNS: _F.VELOCITY | _F.ANGULAR_VELOCITY}
 _WHOLE = {0: _F.POSITION | _F.VELOCITY, TURNS: _F.POSITION | _F.ANGLE | _F.VELOCITY | _F.ANGULAR_VELOCITY}
 _FORCES = {0: _F.FORCE | _F.TORQUE}
-# Where each table of ENDS begins, and its fields, by that place, plus TURNS if it has angles and spins.
+# The four tables of ENDS: where each begins (in N), and its fields. The key is that place, plus TURNS if the table has
+# angles and spins.
 _TABLES = {
     start + turns: (start, fields)
     for start, both in ((END, _WHOLE), (STILL, _WHOLE), (SPEED, _SPEEDS), (PULL, _FORCES))
     for turns, fields in both.items()
 }
-# Where WALK, EXTRA and HELD begin, in N.
+# Where WALK, EXTRA and HELD begin in the memory, whose first array is STATES: in words of 8 bytes, over N.
 _WALK, _EXTRA, _HELD = 2 * STATE_COLUMNS, 2 * STATE_COLUMNS + 4, 2 * STATE_COLUMNS + 4 + EXTRA_COLUMNS
 _KERNELS = copy_start, write_ends, write_still_ends, alter_end, as_read, place_anew
 
 
 class _Writers(dict[int, Callable[[], None]]):
-    """Functions that write the tables of ENDS, by the keys of _TABLES; made at the first use, from those of `past`,
-    which are lost."""
+    """Functions that write the tables of ENDS, by the keys of _TABLES; made at the first use. Those of `past` are
+    changed for this and can no longer be used."""
 
     def __init__(self, of: Crossing, past: _Writers | None) -> None:
         self._of = weakref.proxy(of)
@@ -94,10 +95,10 @@ class Crossing:
     write_ends: Callable[[int], int]
 
     def __init__(self, space: pymunk.Space, past: Crossing | None) -> None:
-        """Room for the bodies of a space, and their state now in STATES[NOW]. `past`: of the same space before, which
-        can no more be used to read and write; it keeps copies of what these arrays overwrite."""
+        """Make the arrays for the bodies of a space, and read their state into STATES[NOW]. `past`: of the same space
+        before. These arrays use its memory: it keeps copies of STATES and WALK, and can no longer read and write."""
         self.space = space
-        N = len((*space.bodies, space.static_body))  # which exists from its first access on
+        N = len((*space.bodies, space.static_body))  # the latter is created at its first access
         memory = Memory() if past is None else past._memory
         if past is not None:
             past.STATES, past.WALK = past.STATES.copy(), past.WALK.copy()
@@ -105,8 +106,8 @@ class Crossing:
         ends, row = END_COLUMNS * N + 1, 8 * N
         walk, extra, held = _WALK * row, _EXTRA * row, _HELD * row
         memory.provide(0, held + HELD * STATE_COLUMNS * row + 8 * ends)
-        # STATES and WALK have room for one body more: pymunk replaces memory that is too small by its own. After
-        # additions the ids differ at once, and other arrays are made.
+        # STATES and WALK have more rows than a call fills, so that there is room for one body more: pymunk replaces
+        # memory that is too small by its own. After additions the ids differ at once, and other arrays are made.
         self.STATES: FloatArray = memory.array((2, N, STATE_COLUMNS), float, 0)
         self.WALK: IntArray = memory.array((4, N), np.int64, walk)
         self.EXTRA: FloatArray = memory.array((N, EXTRA_COLUMNS), float, extra)
@@ -119,7 +120,7 @@ class Crossing:
         self._write: _Writers = _Writers(self, None if past is None else past._write)
 
     def bind(self, reading: Table, bound: Callable[..., list[Callable[..., Any]]]) -> None:
-        """Use the kernels of the `Reading` with these arrays."""
+        """Set `reading` and `bound`, and make the functions that use kernels on these arrays."""
         self.reading, self.bound = reading, bound
         self.check_start, self.write_ends, self._write_still_ends, self._alter_end, *more = bound(*_KERNELS)
         self.left_as_read, self.start_afresh = more
@@ -134,7 +135,7 @@ class Crossing:
         return take.bind(self.STATES, self.WALK, self.EXTRA, self.BODY)
 
     def reset_forces(self) -> None:
-        """Write the forces at the end of the step."""
+        """Write the forces and torques at the end of the step (table PULL), reset as pymunk does."""
         self._write[PULL]()
 
     @property
@@ -144,24 +145,28 @@ class Crossing:
         return state
 
     def forget_changes(self) -> None:
-        """Forget the changes by functions within the step."""
+        """Forget the changes by functions within a step, HELD[EARLY] and HELD[LATE]."""
         self.HELD[EARLY] = self.HELD[LATE] = 0.0
 
     def alter_end(self, stops: bool) -> tuple[int, float]:
-        """See `rehearsing.alter_end`; returns its status, and the energy that is lost."""
+        """See `rehearsing.alter_end`; returns its status, and the energy lost by damping 0."""
         return self._alter_end(int(stops)), float(self.ENDS[-1])
 
     def keep_unaltered(self) -> None:
-        """Take the end of the step before `alter_end` as STATES[LEFT]: bodies that functions have changed since then
-        count as edited in the next step."""
+        """Set STATES[LEFT] to the end of the step without HELD[LATE], so that bodies that functions have changed in the
+        step count as edited in the next one."""
         self.STATES[LEFT] = self.HELD[UNALTERED]
 
     def is_current(self) -> bool:
         """Whether `gather` has read these bodies, and no static one was moved."""
-        return np.array_equal(self.WALK[FOUND], self.WALK[KNOWN]) and not self.moved_static()
+        return self.same_bodies() and not self.moved_static()
+
+    def same_bodies(self) -> bool:
+        """Whether `gather` has read these bodies and no others."""
+        return np.array_equal(self.WALK[FOUND], self.WALK[KNOWN])
 
     def moved_static(self) -> bool:
-        """Whether a static one of these bodies was moved, as `gather` has read them."""
+        """Whether a static body was moved since the rows were made, by the states that `gather` has read."""
         still = self.bodies.static
         return not np.array_equal(self.STATES[NOW, still, :3], self.STATES[LEFT, still, :3])
 
@@ -172,7 +177,8 @@ class Crossing:
         return now
 
     def set_accelerations(self, change: Sequence[tuple[float, float, float]], dt: float) -> None:
-        """Set accelerations of the bodies with velocity functions: their velocities and spins change so within dt."""
+        """Set the accelerations of the bodies with velocity functions in EXTRA. `change`: of each of them, in the order
+        of `bodies.velocity_hooks`, the change of velocity (2) and spin within dt."""
         # One by one: for few bodies numpy's indices take several times as long.
         memory = self._extra
         for at, (x, y, spin) in zip(self._pushed, change, strict=True):
@@ -184,22 +190,23 @@ class Crossing:
 
     @cached_property
     def _pushed(self) -> list[int]:
-        """The places in EXTRA of the accelerations of the bodies with velocity functions."""
+        """Where the accelerations of the bodies with velocity functions begin in `_extra`."""
         return [row * EXTRA_COLUMNS + PUSH_X for row in self.bodies.velocity_hooks.tolist()]
 
     def write_whole(self) -> int:
-        """Write the end of the step to ENDS, with forces and angles in any case; returns its status bits."""
+        """Write the end of the step to ENDS, always with forces and angles; returns the status bits."""
         return self.write_ends(FORCES | TURNS)
 
     def ended(self) -> FloatArray:
-        """(N, 9) the end of the step; forces are reset as pymunk does."""
+        """(N, 9) the end of the step, by STATES[LEFT]; forces of moving bodies are 0, as after a step of pymunk."""
         state = self.state.copy()
         moving = ~self.bodies.static
         state[moving, :6], state[moving, 6:] = self.STATES[LEFT, moving, :6], 0.0
         return state
 
     def recall(self, before: Crossing) -> None:
-        """Copy STATES[LEFT] of bodies whose mass, moment and centre of gravity have not changed."""
+        """Copy STATES[LEFT] from the world before, of bodies whose mass, moment and centre of gravity are the same: the
+        next step counts them as unedited unless their state differs from it."""
         old, known = before.bodies.row, before.bodies.inertia
         at = [(i, old.get(body, -1)) for i, body in enumerate(self.bodies.items)]
         kinds, inertia = self.bodies.VALUES["kind"].tolist(), self.bodies.inertia
@@ -209,7 +216,7 @@ class Crossing:
             self.STATES[LEFT, to] = before.STATES[LEFT, of]
 
     def void_predictions(self) -> None:
-        """Void all predictions: in the next step all bodies count as placed by the program, and may overlap others."""
+        """Void all predictions: in the next step all bodies count as placed by the program (ANEW in `layout.py`)."""
         due = self.BODY["due"]
         np.minimum(due, ANEW, out=due)
 

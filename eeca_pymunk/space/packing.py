@@ -28,8 +28,8 @@ from .crossing import Crossing
 from .outlines import local_outline
 from .private import shapes as private_shapes
 
-_WORD = (1 << 64) - 1  # the lowest 64 bits of a filter's numbers, which equality and `&` need
-_VALUES = struct.Struct("2q3Q5dq")
+_WORD = (1 << 64) - 1  # of a filter's numbers the lowest 64 bits are packed, which suffice for equality and `&`
+_VALUES = struct.Struct("2q3Q5dq")  # a `ShapeValues`
 _POINT = 16  # bytes of a row of POINT
 
 
@@ -38,8 +38,9 @@ class Record(NamedTuple):
 
     Attributes:
         body: its body, or the static body of the space if its own is not in the space (`outside`).
-        vertices: in coordinates of `body`, counter-clockwise.
-        numbers: rounding, elasticity, friction, surface velocity (2).  filter: group, categories, mask.
+        vertices: (x, y) in coordinates of `body`, counter-clockwise: length.
+        numbers: rounding (length), elasticity, friction, surface velocity (2; length/time).
+        filter: group, categories, mask.
         packed, points: the bytes of its `ShapeValues`, and of its vertices.
     """
 
@@ -56,7 +57,7 @@ Records: TypeAlias = dict[pymunk.Shape, Record | None]
 
 
 def read(shape: pymunk.Shape, ground: pymunk.Body | None = None) -> Record:
-    """The record of a shape; if `ground` is given, at its present place as a shape of `ground`.
+    """The record of a shape. If `ground` is given, the record of an equal shape of `ground` at the same place.
 
     Raises:
         ValueError, UnsupportedFeature: see `check_shape`.
@@ -64,8 +65,8 @@ def read(shape: pymunk.Shape, ground: pymunk.Body | None = None) -> Record:
     numbers, words = _surface(shape)
     body, outline = shape_body(shape), local_outline(shape)
     if ground is not None:
-        place, taken = body.local_to_world, ground.world_to_local
-        outline = [tuple(taken(place((v[0], v[1])))) for v in outline]
+        to_world, to_ground = body.local_to_world, ground.world_to_local
+        outline = [tuple(to_ground(to_world((v[0], v[1])))) for v in outline]
         body = ground
     packed = _VALUES.pack(0, len(outline), *words, *numbers, 0)
     points = array("d", chain.from_iterable(outline)).tobytes()
@@ -84,14 +85,14 @@ def _surface(shape: pymunk.Shape) -> tuple[tuple[float, ...], tuple[int, int, in
     numbers = private_shapes.numbers(shape)
     rounding, elasticity, friction, *_ = numbers
     if shape.body is None or not (rounding >= 0.0 and elasticity >= 0.0 and friction >= 0.0 and isfinite(sum(numbers))):
-        check_shape(shape)  # which costs more, and finds out
+        check_shape(shape)  # raises with the name of the value; the test above costs less
     group, categories, mask = private_shapes.filter_of(shape)
     return numbers, (group & _WORD, categories & _WORD, mask & _WORD)
 
 
 def records_of(space: pymunk.Space, bodies: Bodies, known: Records, stale: Collection[Any]) -> tuple[Records, int]:
-    """The records of all shapes, None for sensors, and how many shapes were read: `known` records of those that are not
-    `stale` are used again.
+    """The records of all shapes, None for sensors, and how many shapes were read. `known` records are used again unless
+    their shape is in `stale`, or its body is not in the space.
 
     A shape whose body was removed from the space becomes a static shape at its present place, where pymunk detects it.
     """
@@ -148,7 +149,8 @@ class Packed:
         solid = [shape for shape, record in records.items() if record is not None]
         known = [record for record in records.values() if record is not None]
         k, N = len(solid), len(bodies)
-        # Places of shapes, and what `_write` overwrites, as they were before.
+        # What `write_again` starts from: of each shape its place in SHAPES, in bytes; SHAPES and POINT as they were
+        # before the kernel `write_rows` has overwritten them.
         self._unwritten: tuple[dict[pymunk.Shape, int], bytearray, bytes] | None = None
         row, points = bodies.row, b"".join([record.points for record in known])
         owner = [row[record.body] for record in known]
@@ -185,22 +187,30 @@ class Packed:
         return found
 
     def write_again(self, records: Records, edited: Mapping[pymunk.Shape, Record], moved: bool) -> bool:
-        """Write the rows again, in place, after changes of numbers, filters, masses, and, if `moved`, poses of static
-        bodies; False, with invalid rows, if the rows would be others. records: all; `edited` ones have changed."""
+        """Write the rows again, in place, after changes of numbers, filters and masses, and, if `moved`, of poses of
+        static bodies.
+
+        Args:
+            records: of all shapes.  edited: those of them that have changed.
+
+        Returns:
+            False, with invalid rows, if shapes have another number of vertices than before.
+        """
         vertices = self.LINK["vertices"].tobytes() if moved else b""
         if self._unwritten is None:
             known = {shape: record for shape, record in records.items() if record is not None}
             place = {shape: _VALUES.size * k for k, shape in enumerate(known)}
-            before = bytearray().join([record.packed for record in known.values()])
-            self._unwritten = place, before, b"".join([record.points for record in known.values()])
-        place, before, points = self._unwritten
+            packed = bytearray().join([record.packed for record in known.values()])
+            self._unwritten = place, packed, b"".join([record.points for record in known.values()])
+        place, packed, points = self._unwritten
         for shape, record in edited.items():
-            before[place[shape] : place[shape] + _VALUES.size] = record.packed
+            packed[place[shape] : place[shape] + _VALUES.size] = record.packed
         layout = self._layout
-        layout.write("SHAPES", before)
+        layout.write("SHAPES", packed)
         layout.write("POINT", points)
         if moved:
             layout.array("VERTEX").fill(0.0)
         layout.write("BODY", bytes(self.BODY.nbytes))
         self._write()
-        return not moved or self.LINK["vertices"].tobytes() == vertices  # of static shapes, two may become one
+        # Two vertices of a static shape may become one in world coordinates, by round-off.
+        return not moved or self.LINK["vertices"].tobytes() == vertices

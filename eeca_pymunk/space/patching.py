@@ -1,10 +1,14 @@
 """Patching: after edits in place the rows of a world are updated without reading the whole space.
 
-Rows are afterwards those that a new reading of the whole space would give, bit by bit: only edited objects are read
-again, and all rows are written again in place. This suffices for numbers and filters of shapes, masses and moments of
-bodies, and static bodies that were put elsewhere; where there are joints, or bodies may sleep, for numbers and filters
-of shapes apart from radii. All else (vertices, kinds and functions of bodies, sensors, what is added and removed) makes
-other rows, and is left to a new reading.
+Only edited objects are read again, and all rows are written again in place: afterwards they are those that a new
+reading would give, bit by bit. Which edits can be patched:
+
+| space | edits |
+|---|---|
+| without joints and sleeping | numbers and filters of shapes, masses and moments of bodies, moved static bodies |
+| with joints, or where bodies may sleep | filters of shapes, and their numbers but the radius |
+
+All others (of vertices, kinds and functions of bodies, sensors; additions and removals) need a new reading.
 """
 
 from __future__ import annotations
@@ -22,23 +26,22 @@ if TYPE_CHECKING:
 
 
 class Patched(NamedTuple):
-    """Whether a shape has become elastic (e = 1) or is so no more, whether filters or radii have changed, and whether
-    static bodies were moved."""
+    """What a patch has changed."""
 
-    elasticity: bool
-    reach: bool
-    moved: bool
+    elasticity: bool  # of a shape from below 1 to 1 or more, or back
+    reach: bool  # filters or radii
+    moved: bool  # static bodies
 
 
 def patch(world: World, surfaces: bool) -> Patched | None:
-    """Write all edits since the world was read into its rows, as if no step had been taken; joints keep what bodies of
-    earlier steps have left. No shapes were added or removed.
+    """Write all edits since the world was read into its rows, as if no step had been taken since. Where there are
+    joints, bodies keep the results of earlier steps. No shapes were added or removed.
 
     Args:
-        surfaces: whether only edits may be patched that leave sizes, masses and places as they were.
+        surfaces: whether only edits may be patched that leave sizes, masses and places unchanged.
 
     Returns:
-        what was changed; None if a new reading is due: the rows are then invalid.
+        what was changed; None if a new reading is needed: the rows are then invalid.
 
     Raises:
         ValueError, UnsupportedFeature, NotFiniteError: as a new reading would.
@@ -61,25 +64,25 @@ def patch(world: World, surfaces: bool) -> Patched | None:
             return None
         reach |= resized or new.filter != record.filter
         elasticity |= (new.numbers[1] < 1.0) != (record.numbers[1] < 1.0)
-    weighed: dict[int, bytes] = {}
+    masses: dict[int, bytes] = {}
     for i in [bodies.row[thing] for thing in stale if thing in bodies.row]:
-        masses, more = bodies.changed(i)
-        if more:
+        values, others_changed = bodies.changed(i)
+        if others_changed:
             return None
-        if masses is not None:
-            weighed[i] = masses
+        if values is not None:
+            masses[i] = values
     world.gather()
     status = world.check_start()
     moved = status == MOVED_STATIC
-    if status == OTHER_BODIES or not (stale or moved) or (surfaces and (weighed or moved)):
+    if status == OTHER_BODIES or not (stale or moved) or (surfaces and (masses or moved)):
         return None
     if status != 0:
         bodies.check_finite(world.state)
-    bodies.set_masses(weighed)
+    bodies.set_masses(masses)
     world.records.update(records)
     if not world.packed.write_again(world.records, records, moved):
         return None
-    world.read_at, world.objects_read = now, world.objects_read + len(records) + len(weighed)
+    world.read_at, world.objects_read = now, world.objects_read + len(records) + len(masses)
     if joints is None:
         world.start_afresh()
     else:

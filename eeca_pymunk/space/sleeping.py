@@ -26,7 +26,7 @@ import pymunk
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..compiled.records import over
-from ..layout import BODY_ROW, FOUND, KNOWN
+from ..layout import BODY_ROW
 from ..model.contacts import Impulse
 from ..report import Contacts
 from ..sleepers import approaches, rests, touches
@@ -193,8 +193,7 @@ class Sleep:
                 room = 1e-3 * (shape.bb.right - shape.bb.left + shape.bb.top - shape.bb.bottom)
                 low, high = (shape.bb.left - room, shape.bb.bottom - room), (shape.bb.right + room, shape.bb.top + room)
                 self._wake_within(pymunk.BB(*low, *high))
-        same_bodies = np.array_equal(self.world.WALK[FOUND], self.world.WALK[KNOWN])
-        if (same_bodies and self.world.moved_static()) or self.world.edited():
+        if (self.world.same_bodies() and self.world.moved_static()) or self.world.edited():
             self.wake()
 
     def _wake_within(self, box: pymunk.BB) -> bool:

@@ -42,22 +42,22 @@ class World(Crossing):
         records: the values of the shapes of the space, None for sensors.
         bodies: in pymunk's order, N with the static ones.  shapes: by row of SHAPE.
         owner: (k,) index in `bodies.items` of the body of each shape.
-        BODY, SHAPE, LINK, VERTEX: see `..model`.  disks, dynamic: numbers of the first rows of BODY that are single
-            disks, and dynamic bodies; then come kinematic bodies, and last the ground.
+        BODY, SHAPE, LINK, VERTEX: see `..model`.  disks, dynamic: BODY[:disks] are single disks, BODY[disks:dynamic]
+            other dynamic bodies; then come kinematic bodies, and last the ground, which has all static shapes.
         STATES, WALK, EXTRA, ENDS, HELD: the arrays exchanged with pymunk, see `layout.py`.
-        gravity: length/time².  damping: pymunk's, 1 is none.
+        gravity: length/time².  damping: pymunk's, the factor on velocities in one second; 1 is none.
         hooks: functions of bodies and constraints.  collisions: whether the space has collision handlers.
-        hooked: whether a step calls functions of the program, or damping is 0.  only_handlers: of collisions, that is.
-        plain: neither hooked nor with joints.
+        hooked: whether a step calls functions of bodies or handlers, or damping is 0.  only_handlers: whether collision
+            handlers are the only reason for that.  plain: neither hooked nor with joints.
         rules: decisions of collision handlers about pairs of rows of SHAPE in this step.
-        frictionless: whether friction, also that of handlers, is left out.  lacks_friction: and there is some.
+        frictionless: whether friction, also that of handlers, is left out.  lacks_friction: and the space has some.
         joints: the constraints of the space, None if it has none.
         undecided: whether no decision of a handler can apply: the steps before were silent, and nothing was edited.
         sleeps: whether bodies could sleep when it was read.  read_at: `edits.clock` when shapes and bodies were read.
         patches: number of patches so far.  packed: the arrays of the rows, and the kernel that writes them.
         objects_read: number of bodies, shapes and constraints read from pymunk for this world; others were known.
-        memory: of the event loop of this world.
-        parted: pairs of rows of SHAPE that do not collide because of joints of their bodies.
+        memory: of the scenes of its event loop, used again by the next world.
+        parted: pairs of rows of SHAPE that do not collide, by `collide_bodies` of a joint of their bodies.
     """
 
     packed: Packed
@@ -105,7 +105,7 @@ class World(Crossing):
         changes."""
         self.gravity, self.damping = settings(self.space)
         self._read_joints(anew)
-        self._seen = [self._edits[0]]
+        self._seen = [self._edits[0]]  # a list, because `current` reads its later values
         self._known = self._edits.in_place
         self.collisions = bool(private.handlers(self.space))
         if "rehearsal" in self.__dict__:
@@ -140,7 +140,7 @@ class World(Crossing):
         return Rehearsal(self)
 
     def end(self) -> None:
-        """Break cycles of references, so that memory is freed at once."""
+        """Break cycles of references, so that memory is freed without the garbage collector."""
         if (rehearsal := self.__dict__.pop("rehearsal", None)) is not None:
             rehearsal.end()
 
@@ -176,8 +176,8 @@ class World(Crossing):
         return nothing(self.bodies.items)
 
     def stale(self, contents: tuple[int, ...]) -> set[Any] | None:
-        """Shapes and bodies whose records may be out of date: edited, in the space or outside, or bodies of shapes that
-        were added or removed; None if unknown. `contents`: numbers of things in the space now."""
+        """Shapes and bodies to be read again: those edited, in the space or outside, and the bodies of shapes that were
+        added or removed, whose mass may have changed; None if unknown. `contents`: the result of `_count` now."""
         found, _ = edited_since(self.read_at) or (None, None)
         if found is None or contents == self._contents:
             return found
@@ -187,7 +187,7 @@ class World(Crossing):
         return found
 
     def patch(self, surfaces: bool) -> Patched | None:
-        """See `patching.patch`; also reads the settings of the space, and the present states into BODY."""
+        """`patching.patch`, then the settings of the space if these have changed, and the present states into BODY."""
         found = patch(self, surfaces or self.joints is not None)
         if found is not None:
             self.patches += 1
@@ -203,8 +203,8 @@ class World(Crossing):
         return found
 
     def show_joints(self) -> None:
-        """Show impulses and notches of the step to the program, and accept pymunk's rounding of positions as
-        unedited."""
+        """Let the program read impulses and notches of the step. Also, where pymunk has rounded positions as it wrote
+        them (`eccentric`), accept these as unedited."""
         joints = self.joints
         if joints is not None:
             joints.write()
@@ -230,11 +230,11 @@ class World(Crossing):
         return self.rules.of_pairs(self.SHAPE, self.parted)
 
     def _count(self) -> tuple[int, int, int, int]:
+        """Numbers by which additions and removals are found: see `private.contents`, and of bodies put to sleep."""
         return *private.contents(self.space), self._edits[1]
 
     def same_things(self) -> bool:
-        """Whether no shapes were added or removed, and the number of bodies is the same; they may be others, or
-        edited."""
+        """Whether no shape was added or removed, and the number of bodies is the same: the bodies may be others."""
         return self._contents == self._count()
 
     def edited(self) -> bool:
