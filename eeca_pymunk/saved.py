@@ -66,7 +66,7 @@ class Saved:
         joints = world.joints
         if joints is not None:
             for j in joints.measured():
-                joints.lengthen(j, float(self.method.joint[j].length))
+                joints.set_length(j, float(self.method.joint[j].length))
             joints.joint[:] = self.method.joint
             joints.rates.update(self._rates)
             self.method.rebind(joints.joint, joints.partners.PARTNER)

@@ -1,12 +1,14 @@
 """Contents of pymunk's arbiters after an EECA step: the impulses of the step, and the pairs that touched in it.
 
-pymunk's own solver took no part in the step: its arbiters are those of shapes that touch at the end, without impulses,
-or those of a rehearsal. `Body.each_arbiter` and `batch.get_space_arbiters` are replaced. While they run, the contacts
-of pymunk's arbiters have the impulses of the step, and pairs that touched only within the step have arbiters of their
-own; afterwards pymunk's arbiters are restored. A step has no cost for it.
+pymunk's solver does not compute an EECA step. Its arbiters are those of the rest step, of shapes that touch at the end,
+without impulses, or those of a rehearsal. Therefore `Body.each_arbiter` and `batch.get_space_arbiters` are replaced.
+While they run, the contacts of pymunk's arbiters have the impulses of the step, and pairs that touched only within the
+step have arbiters of their own; afterwards pymunk's arbiters are restored. All this is done when arbiters are read, not
+in the step.
 
 The impulse of an arbiter is the sum over the step. Its points are pymunk's, or those of the last touch. `total_ke`
-follows Chipmunk's formula for its total kinetic energy, sum of (1 - e)/(1 + e) j_n^2 k_nn + j_t^2 k_tt.
+follows Chipmunk's formula for its total kinetic energy, the sum over points of (1 - e)/(1 + e) j_n^2 / m_n + j_t^2 /
+m_t with the effective masses m.
 """
 
 from __future__ import annotations
@@ -26,8 +28,8 @@ from .private import spaces as private
 
 
 class Touch(NamedTuple):
-    """A pair of shapes in a step: the sum of its impulses on `b` (mass length/time), normal and points of its last
-    touch."""
+    """A pair of shapes in a step: the sum of its impulses on `b` (mass length/time), normal (unit, from a to b) and
+    points (length, one or two) of its last touch."""
 
     a: pymunk.Shape
     b: pymunk.Shape
@@ -37,7 +39,11 @@ class Touch(NamedTuple):
 
 
 class Touches:
-    """The pairs of a step, by the addresses of both shapes in Chipmunk, and by each of their bodies."""
+    """The pairs of a step.
+
+    Attributes:
+        all: the pairs, by the addresses of both shapes in Chipmunk.
+    """
 
     def __init__(self, found: Sequence[Touch]) -> None:
         self.all: dict[frozenset[int], Touch] = {}
@@ -53,17 +59,18 @@ class Touches:
         return self._of.get(body, {})
 
 
-Reading = Callable[[bool], "Touches | None"]
-_readings: WeakKeyDictionary[pymunk.Space, Reading] = WeakKeyDictionary()
+ReadTouches = Callable[[bool], "Touches | None"]
+_readers: WeakKeyDictionary[pymunk.Space, ReadTouches] = WeakKeyDictionary()
 _native_each: Any = pymunk.Body.each_arbiter
 _native_batch: Any = batch.get_space_arbiters
 _native_draw: Any = pymunk.Space.debug_draw
 
 
-def show_contacts(space: pymunk.Space, read: Reading) -> None:
-    """Let arbiters of a space have the contents that `read` returns, unless None; its argument is whether they are only
-    drawn. `read` must not refer to the space."""
-    _readings[space] = read
+def show_contacts(space: pymunk.Space, read: ReadTouches) -> None:
+    """Let arbiters of a space have the contents that `read` returns; if it returns None, those of pymunk. The argument
+    of `read` is whether arbiters are read only for a picture. It must not refer to the space, which could otherwise not
+    be freed."""
+    _readers[space] = read
     if pymunk.Body.each_arbiter is not _each_arbiter:  # setting any attribute of a class clears Python's caches of it
         pymunk.Body.each_arbiter = _each_arbiter  # type: ignore[method-assign]
         pymunk.Space.debug_draw = _debug_draw  # type: ignore[method-assign]
@@ -87,8 +94,8 @@ def touches(EVENT: Rows[Impulse], shapes: Sequence[pymunk.Shape]) -> list[Touch]
     return result
 
 
-def _of(space: pymunk.Space | None, drawn: bool = False) -> Touches | None:
-    read = None if space is None else _readings.get(space)
+def _touches_of(space: pymunk.Space | None, drawn: bool = False) -> Touches | None:
+    read = None if space is None else _readers.get(space)
     return None if read is None else read(drawn)
 
 
@@ -101,7 +108,7 @@ def _with_impulses(arbiters: Sequence[Any], found: dict[frozenset[int], Touch]) 
             if arbiter.count == 0 or private_arbiters.asleep(arbiter):
                 continue
             touch = missing.pop(private_arbiters.arbiter_key(arbiter), None)
-            impulse = None if touch is None else _along(arbiter, touch)
+            impulse = None if touch is None else _on_second(arbiter, touch)
             kept.append((arbiter, private_arbiters.set_impulse(arbiter, impulse)))
         there = [t for t in missing.values() if t.a.space is not None and t.b.space is not None]
         yield [private_arbiters.make_arbiter(t.a, t.b, t.normal, t.points, t.impulse) for t in there]
@@ -110,15 +117,15 @@ def _with_impulses(arbiters: Sequence[Any], found: dict[frozenset[int], Touch]) 
             private_arbiters.restore_impulse(arbiter, old)
 
 
-def _along(arbiter: Any, touch: Touch) -> tuple[float, float]:
-    """The impulse of a pair on the second shape of the arbiter."""
+def _on_second(arbiter: Any, touch: Touch) -> tuple[float, float]:
+    """The impulse of a pair on the second shape of the arbiter, whose shapes may be in the other order."""
     sign = 1.0 if private_arbiters.second_is(arbiter, touch.b) else -1.0
     return sign * touch.impulse[0], sign * touch.impulse[1]
 
 
 def _each_arbiter(self: pymunk.Body, func: Callable[..., None], *args: Any, **kwargs: Any) -> None:
     space = self.space
-    found = _of(space)
+    found = _touches_of(space)
     if found is None or space is None:
         _native_each(self, func, *args, **kwargs)
         return
@@ -132,7 +139,7 @@ def _each_arbiter(self: pymunk.Body, func: Callable[..., None], *args: Any, **kw
 
 
 def _get_space_arbiters(space: pymunk.Space, fields: batch.ArbiterFields, buffers: batch.Buffer) -> None:
-    found = _of(space)
+    found = _touches_of(space)
     if found is None:
         _native_batch(space, fields, buffers)
         return
@@ -143,7 +150,7 @@ def _get_space_arbiters(space: pymunk.Space, fields: batch.ArbiterFields, buffer
 
 def _debug_draw(self: pymunk.Space, options: pymunk.SpaceDebugDrawOptions) -> None:
     if options.flags & pymunk.SpaceDebugDrawOptions.DRAW_COLLISION_POINTS:
-        _of(self, drawn=True)  # makes arbiters
+        _touches_of(self, drawn=True)  # for its effect: `Sync.renew` makes the arbiters that pymunk draws
     _native_draw(self, options)
 
 

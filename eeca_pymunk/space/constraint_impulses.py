@@ -20,11 +20,12 @@ from .private import spaces as private
 
 
 class Impulses:
-    """Values of `constraint.impulse` by row of `joint` (j,). They exist as long as one of the constraints, and do not
-    refer to constraints or their space.
+    """The impulses in `joint` (j,), which `constraint.impulse` returns. The constraints refer to this object through
+    `_shown`; it refers neither to them nor to the space, so that both can be freed.
 
     Attributes:
-        shows: number of calls, for any constraints, by which `show` has changed what they return.
+        shows: number of times that `_shown` was changed, by any space. While it is the same as at the last `show`, the
+            constraints still refer to the same object, and `show` need not test that.
     """
 
     shows: ClassVar[int] = 0
@@ -34,8 +35,8 @@ class Impulses:
         self._stamp = self._checked = -1
 
     def show(self, items: Sequence[pymunk.Constraint], stamp: int) -> None:
-        """Let `impulse` of these constraints return their impulses in the rows of `joint`, until pymunk's count of its
-        own steps is no longer `stamp`."""
+        """Let `impulse` of these constraints return their impulses in the rows of `joint`, as long as the number of
+        pymunk's own steps (`private.timestamp`) is `stamp`."""
         self._stamp = stamp
         if self._checked != Impulses.shows:
             if _shown.get(items[0], _NATIVE)[0] is not self:
@@ -47,8 +48,8 @@ class Impulses:
             self._checked = Impulses.shows
 
     def read(self, j: int) -> float | None:
-        """The impulse of row j, mass length/time (of rotary joints, times length): of springs signed (positive pushes),
-        else >= 0; None if pymunk has taken a step since."""
+        """The impulse of row j, mass length/time; of rotary joints mass length²/time. That of springs has a sign
+        (positive pushes the bodies apart), others are >= 0. None if pymunk has taken a step since."""
         space = self._space()
         if space is not None and private.timestamp(space)() != self._stamp:
             return None
@@ -58,6 +59,7 @@ class Impulses:
         return math.hypot(first + x, second + y)
 
 
+# The impulses of each constraint, and its row there; _NATIVE for constraints that no EECA step has moved.
 _shown: WeakKeyDictionary[pymunk.Constraint, tuple[Impulses | None, int]] = WeakKeyDictionary()
 _NATIVE = None, 0
 _native_impulse: Any = pymunk.Constraint.impulse

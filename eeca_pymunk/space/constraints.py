@@ -1,8 +1,13 @@
 """Constraints: pymunk's ten constraints as rows of JOINT, and the check of their values.
 
 Anchors of pymunk are relative to the body's origin, those of JOINT to its centre of mass. Degenerate constraints become
-others: a pin of length 0 and a groove of length 0 pivots, a slide with equal limits a pin, a rotary limit with equal
-limits a gear.
+others:
+
+| constraint | read as |
+|---|---|
+| pin of length 0, groove of length 0 | pivot |
+| slide with equal limits | pin |
+| rotary limit with equal limits | gear |
 """
 
 from __future__ import annotations
@@ -30,12 +35,12 @@ from ..model.joints import (
     Joint,
 )
 
-_SMALL = 1e-9  # a pin shorter than this, over its anchors' distances, is a pivot
+_SMALL = 1e-9  # a pin is a pivot if its length, over the largest coordinate of its anchors, is at most this
 _KINDS = (
     pymunk.PinJoint, pymunk.SlideJoint, pymunk.PivotJoint, pymunk.GrooveJoint, pymunk.DampedSpring,
     pymunk.DampedRotarySpring, pymunk.RotaryLimitJoint, pymunk.RatchetJoint, pymunk.GearJoint, pymunk.SimpleMotor,
 )  # fmt: skip
-# Attributes that must be finite; that may be infinite but must be >= 0; that must not be 0.
+# Attributes that must be finite; that must be >= 0, and may be infinite unless also in _FINITE; that must not be 0.
 _FINITE = (
     "anchor_a", "anchor_b", "groove_a", "groove_b", "distance", "stiffness", "damping", "rest_length", "rest_angle",
     "phase", "ratchet", "ratio", "rate",
@@ -47,16 +52,16 @@ _NOT_ZERO = ("ratio", "ratchet")
 @cache
 def _numbers(kind: Any) -> tuple[list[str], list[str], list[str]]:
     """The attributes of a kind of constraint that must be finite, >= 0, and not 0."""
-    finite, positive, some = ([a for a in names if hasattr(kind, a)] for names in (_FINITE, _POSITIVE, _NOT_ZERO))
-    return finite, positive, some
+    finite, positive, not_zero = ([a for a in names if hasattr(kind, a)] for names in (_FINITE, _POSITIVE, _NOT_ZERO))
+    return finite, positive, not_zero
 
 
 def check_constraint(c: Any) -> None:
-    """ValueError, with the remedy, for values that no joint can have."""
+    """ValueError, with the remedy, for values that no joint can have; UnsupportedFeature for an unknown kind."""
     if not isinstance(c, _KINDS):
         raise UnsupportedFeature(f"{name(c)} is none of pymunk's constraints; remove it or use ep.Native(space)")
     kind: Any = type(c)
-    finite, positive, some = _numbers(kind)
+    finite, positive, not_zero = _numbers(kind)
     for attribute in finite:
         value = getattr(c, attribute)
         if not (all(map(math.isfinite, value)) if isinstance(value, tuple) else math.isfinite(value)):
@@ -67,7 +72,7 @@ def check_constraint(c: Any) -> None:
             raise ValueError(f"{name(c)} has {attribute} = {value}: set a value >= 0")
     if not c.error_bias <= 1.0:
         raise ValueError(f"{name(c)} has error_bias = {c.error_bias}: set a value from 0 to 1")
-    for attribute in some:
+    for attribute in not_zero:
         if getattr(c, attribute) == 0.0:
             raise ValueError(f"{name(c)} has {attribute} = 0: set another one")
     if isinstance(c, (pymunk.SlideJoint, pymunk.RotaryLimitJoint)):
@@ -83,7 +88,8 @@ def name(c: Any) -> str:
 
 
 class ConstraintValues(NamedTuple):
-    """The values of a constraint: fields of `Joint`, 0 where its kind has none."""
+    """The values of a constraint: fields of `Joint`, with its units; 0 where its kind has none. Anchors are relative to
+    centres of mass."""
 
     kind: int
     force: tuple[float, float, float]  # max_force, error_bias, max_bias
@@ -104,7 +110,8 @@ class ConstraintValues(NamedTuple):
 
     @property
     def shape(self) -> tuple[object, ...]:
-        """All values on which `plan` and `reach` depend, but `gear`, which servos change in every step."""
+        """Kind, bounds, anchors, length and limits: all values on which `plan` and `reach` depend except `gear`, which
+        programs may change in every step, to drive a servo."""
         return self[:6]
 
     @property
@@ -115,11 +122,11 @@ class ConstraintValues(NamedTuple):
 
     @property
     def reach(self) -> tuple[object, ...]:
-        """The values that decide whether it can hold bodies where they are (`..joints.pinned`)."""
+        """The values that decide whether it can hold bodies immobile (`..joints.pinned`)."""
         return self.kind, self.bounded, self.anchor_a, self.anchor_b, self.length, self.limits, self.gear
 
     def is_fine(self) -> bool:
-        """Whether no value can be wrong; if not, `check_constraint`, which costs more, finds out."""
+        """Whether all values are valid. A fast test; if it fails, `check_constraint` tests each value."""
         (force, error, bias), (lower, upper), (stiffness, damping, rest) = self.force, self.limits, self.spring
         total = sum(self.anchor_a) + sum(self.anchor_b) + self.length + sum(self.groove) + stiffness + damping + rest
         total += sum(self.gear) + self.rate + sum(self.ratchet)
@@ -130,7 +137,7 @@ class ConstraintValues(NamedTuple):
         )
 
     def put(self, memory: bytearray, j: int, a: int, b: int) -> None:
-        """Write it to row j of JOINT, whose memory is given, for bodies in the rows a and b."""
+        """Write the values to row j of JOINT, whose memory is given, as EDITED, for bodies in the rows a and b."""
         _ROW.pack_into(
             memory, j * Joint.TYPE.itemsize, self.kind, a, b, self.bounded, *self.anchor_a, *self.anchor_b, *self.force,
             self.length, *self.limits, *self.groove, *self.spring, 0.0, *self.gear, self.rate, *self.ratchet, 0, EDITED,
@@ -147,7 +154,7 @@ def read(c: Any) -> ConstraintValues:
         ValueError, UnsupportedFeature: see `check_constraint`.
     """
     if isinstance(c, pymunk.RatchetJoint) or not isinstance(c, _KINDS):
-        check_constraint(c)  # before anything is divided by its numbers
+        check_constraint(c)  # first, because `_notch` divides by `ratchet`
     found = _read(c, (c.max_force, c.error_bias, c.max_bias))
     if not found.is_fine():
         check_constraint(c)
@@ -183,7 +190,7 @@ def _read(c: Any, force: tuple[float, float, float]) -> ConstraintValues:
 
 
 def _anchor(anchor: tuple[float, float], body: pymunk.Body) -> tuple[float, float]:
-    """From the centre of mass of a body."""
+    """An anchor relative to the centre of mass of its body, not rotated."""
     (x, y), (kx, ky) = anchor, body.center_of_gravity
     return x - kx, y - ky
 
@@ -209,8 +216,9 @@ def _groove(c: pymunk.GrooveJoint, force: tuple[float, float, float], b: tuple[f
 
 
 def _notch(c: pymunk.RatchetJoint) -> float:
-    """The notch as in pymunk's step: kept while the angle has not reached it, else the last one passed."""
-    turned = c.b.angle - c.a.angle
-    if (c.angle - turned) * c.ratchet > 0.0:
+    """The notch as in pymunk's step: `c.angle` while the relative angle has not reached it, else the last notch that
+    was passed."""
+    relative = c.b.angle - c.a.angle
+    if (c.angle - relative) * c.ratchet > 0.0:
         return float(c.angle)
-    return math.floor((turned - c.phase) / c.ratchet) * c.ratchet + c.phase
+    return math.floor((relative - c.phase) / c.ratchet) * c.ratchet + c.phase

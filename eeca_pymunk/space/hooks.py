@@ -1,11 +1,11 @@
-"""Hooks: functions that a program has registered in a space, called once a step.
+"""Hooks: functions that a program has set for bodies and constraints of a space, called once a step.
 
-Velocity and position functions are called with the real dt. The order of the others is
+Velocity and position functions are called with the dt of the step. The order of the others is
 
 1. in the rehearsal (`rehearsal.py`), if there are collision handlers: `pre_solve` of constraints, and the handlers;
 2. without a rehearsal: `pre_solve` of constraints, before the step;
-3. after the step: `post_solve` of constraints, which can read its impulses, and then, if there are such, `post_solve`
-   of collisions, which pymunk calls after them.
+3. after the step: `post_solve` of constraints, which can read the impulses of the step; then, if there are such
+   functions, the `post_solve` of handlers, because pymunk calls them in this order.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class Hooks:
         steered, moved: how many bodies have a velocity function, and a position function.
 
     Attributes:
-        some: whether any body has one.  late: calls that wait for `after`.
+        some: whether any body has such a function.  late: calls of handlers' `post_solve` that `after` makes.
     """
 
     def __init__(self, space: pymunk.Space, bodies: Bodies, joints: JointRows | None, steered: int, moved: int) -> None:
@@ -42,14 +42,14 @@ class Hooks:
         self.late: list[Callable[[], None]] = []
 
     def none_within_steps(self) -> bool:
-        """Whether steps of pymunk call no function of a body or constraint, and need not keep bodies outside the
-        space."""
+        """Whether steps of pymunk would call no function of a body or constraint, and could change no velocity of a
+        body outside the space."""
         joints = self.joints
         return not self.some and (joints is None or not (joints.partners.outside or joints.calling or joints.own))
 
     def before(self, dt: float) -> None:
-        """Call `pre_solve` of the constraints that no rehearsal calls. pymunk calls none whose first body is outside
-        the space, with a warning."""
+        """Call `pre_solve` of the constraints: of all if there is no rehearsal, else of those whose first body is
+        outside the space, which pymunk's step does not call (it warns instead)."""
         if self.joints is not None:
             collisions = bool(private.handlers(self.space))
             with private.locked(self.space), private_joints.TimeStep(self.space, dt):
@@ -57,10 +57,10 @@ class Hooks:
                     if not collisions or item.a.space is None:
                         assert item.pre_solve is not None
                         item.pre_solve(item, self.space)
-        self.__dict__.pop("_settings", None)  # which these may have changed
+        self.__dict__.pop("_settings", None)  # the functions may have changed them
 
     def after(self, dt: float) -> None:
-        """Call `post_solve` of the constraints, then the delayed ones of collisions."""
+        """Call `post_solve` of the constraints, then the delayed calls of handlers."""
         with private.locked(self.space), private_joints.TimeStep(self.space, dt):
             for item in () if self.joints is None else self.joints.after:
                 assert item.post_solve is not None
@@ -86,20 +86,20 @@ class Hooks:
         return [self.bodies.items[row] for row in self.bodies.position_hooks.tolist()] if self.moved else []
 
     def velocity_changes(self, dt: float) -> list[tuple[float, float, float]]:
-        """Changes of velocity and spin by the velocity functions; the bodies are restored."""
+        """Changes of velocity (2) and spin by the velocity functions within dt; the bodies are restored."""
         gravity, damping = self._settings
         with private_joints.TimeStep(self.space, dt):
             return private_functions.velocity_changes(self._steered, gravity, damping**dt, dt)
 
     @cached_property
     def _settings(self) -> tuple[pymunk.Vec2d, float]:
-        """Gravity and damping, as velocity functions take them."""
+        """Gravity and damping of the space; the properties are slow."""
         return self.space.gravity, self.space.damping
 
     def positions(self, state: FloatArray, end: FloatArray, dt: float) -> None:
-        """Call the position functions on `state` (N, 9) with the velocity that leads to `end` (N, 9) within dt, and
-        write their results to `end`."""
-        ways = self.bodies.centers(end) - self.bodies.centers(state)
+        """Call the position functions of the bodies at `state` (N, 9), each with the mean velocity that leads to `end`
+        (N, 9) within dt, and write the resulting poses to `end`."""
+        displacements = self.bodies.centers(end) - self.bodies.centers(state)
         items = self._moved
         # A rehearsal leaves corrections of overlaps that this step did not have; `update_position` would apply them.
         private_shapes.forget_corrections(private.pointers(items))
@@ -107,7 +107,7 @@ class Hooks:
             function = private.position_function(body)
             assert function is not None
             turn = end[row, ANGLE] - state[row, ANGLE]
-            body.velocity, body.angular_velocity = tuple(ways[row] / dt), float(turn / dt)
+            body.velocity, body.angular_velocity = tuple(displacements[row] / dt), float(turn / dt)
             if (*body.position, body.angle) != tuple(state[row, :3]):
                 # A rehearsal of collisions has moved the body as pymunk does.
                 body.angle = float(state[row, ANGLE])

@@ -1,7 +1,7 @@
 """Edits of constraints are recorded when they are made.
 
-pymunk does not: its setters write into Chipmunk at once. But all attributes of constraints are set through Python. So
-`pymunk.Constraint.__setattr__` is replaced when the first constraint is watched; for other constraints it acts as
+pymunk records none: its setters write into Chipmunk at once. But all attributes of constraints are set in Python. So
+`pymunk.Constraint.__setattr__` is replaced when the first `Edits` is made; for constraints without one it acts as
 before.
 """
 
@@ -17,9 +17,14 @@ _native_setattr = pymunk.Constraint.__setattr__
 
 
 class Edits:
-    """`some`: rows of the constraints of which an attribute was set since the last `take`."""
+    """The edits of the constraints of one listing.
+
+    Attributes:
+        some: rows of the constraints of which an attribute was set since the last `take`.
+    """
 
     def __init__(self, row: dict[pymunk.Constraint, int]) -> None:
+        """`row`: the row of each constraint."""
         self._row = row
         self.some: set[int] = set()
         _watching.add(self)
@@ -32,7 +37,7 @@ class Edits:
         return edited
 
     def forget(self, row: int) -> None:
-        """Remove a row: the last setting was not an edit by the program."""
+        """Remove a row, of which this package has just set an attribute itself."""
         self.some.discard(int(row))
 
     def record(self, constraint: pymunk.Constraint) -> None:

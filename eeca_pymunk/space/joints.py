@@ -19,27 +19,29 @@ from .joint_edits import Edits
 from .listing import Listing, calls_of
 from .partners import Partners
 from .private import spaces as private
-from .spring_functions import Motion, Rate, law, put_law
+from .spring_functions import Motion, Rate, law, write_law
 
-_ROUND_OFF = 1e-12  # of the length of a pin
+_ROUND_OFF = 1e-12  # of the distance of a pin's anchors, over that distance
 
 
 class JointRows(Listing):
     """The constraints of a space as rows of JOINT, updated after edits by the program.
 
     Attributes, beside those of `Listing`:
-        joint: (j,).
-        partners: bodies of joints that have no row of their own; theirs are n + row of PARTNER.
+        joint: (j,) the rows.
+        partners: bodies of joints without a row in BODY; in `joint["body"]` their numbers are n + row of PARTNER.
         parted: pairs of bodies whose shapes do not collide, by `collide_bodies`; None after a change (`find_parted`).
-        rates: for springs with functions, the rate of length and the dt of the last step, see `put_law`.
-        replan: whether kinds, anchors or bounds of joints have changed since `planned` was called.
-        ends_moved: whether lengths or anchors have, or static bodies outside the space that joints end at.
+        rates: of springs with functions, the rate of length and the dt of the last step, see `write_law`.
+        replan: whether kinds, anchors or bounds of joints have changed since `planned` was called, so that components
+            need a new plan.
+        ends_moved: whether lengths or anchors have changed since then, or poses of static bodies outside the space, so
+            that other bodies may be held by joints (`..joints.pinned`).
     """
 
     def __init__(
         self, space: pymunk.Space, row: Mapping[pymunk.Body, int], n: int, past: JointRows | None = None
     ) -> None:
-        """Read the constraints of `space`; `row`: rows of its bodies, out of n. Rows that `past` has are reused.
+        """Read the constraints of `space`. `row`: row in BODY (of n rows) of its bodies. Rows of `past` are used again.
 
         Raises:
             ValueError, UnsupportedFeature: see `check_constraint`.  NotFiniteError: see `Partners`.
@@ -67,11 +69,12 @@ class JointRows(Listing):
         self._find_pushing()
 
     def _find_pushing(self) -> None:
-        """Find what always pushes, and what has a sleeping body; forget `parted`. Constraints of bodies that batch
-        calls do not reach always exert forces in a rest step, too."""
-        far = {body: body.body_type == pymunk.Body.DYNAMIC for body in self.partners.items}
-        asleep = {body: dynamic and body.space is self.space for body, dynamic in far.items()}
-        always = sorted({*self.forcing, *self.with_body(far)})
+        """Find the constraints that always exert forces in a rest step, and those with a sleeping body; forget
+        `parted`. Dynamic partners sleep or are outside the space: batch calls do not set their velocities to 0, so that
+        their constraints always exert forces, too."""
+        unreached = {body: body.body_type == pymunk.Body.DYNAMIC for body in self.partners.items}
+        asleep = {body: dynamic and body.space is self.space for body, dynamic in unreached.items()}
+        always = sorted({*self.forcing, *self.with_body(unreached)})
         self._always, self._asleep = [self.items[j] for j in always], {self.items[j] for j in self.with_body(asleep)}
         self._touched, self._pushing = b"", list[pymunk.Constraint]()
         self._last_awake: tuple[Sequence[pymunk.Constraint], list[pymunk.Constraint]] = (), []
@@ -79,12 +82,12 @@ class JointRows(Listing):
 
     @cached_property
     def _at(self) -> dict[int, list[int]]:
-        """The joints of each body (row)."""
-        at: dict[int, list[int]] = {}
+        """The joints (rows) of each body (row)."""
+        of: dict[int, list[int]] = {}
         for j, pair in enumerate(self.joint["body"].tolist()):
             for row in pair:
-                at.setdefault(row, []).append(j)
-        return at
+                of.setdefault(row, []).append(j)
+        return of
 
     def refresh(self) -> bool:
         """Read edited constraints again; returns whether a new plan of components is needed."""
@@ -96,7 +99,7 @@ class JointRows(Listing):
         except ValueError:
             self._edits.some.update(edited)
             raise
-        others = False
+        regroup = False  # whether `find_functions` and `_find_pushing` may find other constraints
         for j, values in found.items():
             item, before = self.items[j], self.values[j]
             values.put(self._memory, j, *(self._row_of[body] for body in self.pairs[item]))
@@ -104,29 +107,30 @@ class JointRows(Listing):
             if before.shape != values.shape:
                 self.ends_moved |= before.reach != values.reach
                 if before.plan != values.plan:
-                    self.replan = others = True
+                    self.replan = regroup = True
             elif before.gear != values.gear and any(b.body_type == pymunk.Body.STATIC for b in self.pairs[item]):
                 self.ends_moved = True
             calls = calls_of(item)
-            others |= calls != self.calls[j]
+            regroup |= calls != self.calls[j]
             self.calls[j] = calls
-        if others:
+        if regroup:
             self.find_functions()
             self._find_pushing()
         return self.replan
 
     def pushing(self) -> list[pymunk.Constraint]:
         """The constraints that exert forces in a rest step of pymunk (`sync.py`): those that always do, and joints that
-        are or may be apart. The list is another one only if they are others."""
+        are or may be violated (`touched`). The list is a new object only if its content differs (see `awake`)."""
         touched = self.joint["touched"].tobytes()
         if touched != self._touched:
-            apart = np.flatnonzero(self.joint["touched"]).tolist()
+            violated = np.flatnonzero(self.joint["touched"]).tolist()
             self._touched = touched
-            self._pushing = list(dict.fromkeys((*self._always, *(self.items[j] for j in apart))))
+            self._pushing = list(dict.fromkeys((*self._always, *(self.items[j] for j in violated))))
         return self._pushing
 
     def awake(self, items: Sequence[pymunk.Constraint]) -> list[pymunk.Constraint]:
-        """Those of constraints that have no sleeping body; `items` must stay as it is."""
+        """Those of the constraints that have no sleeping body. `items` must not be changed in place: the last result is
+        kept for the same object."""
         if items is not self._last_awake[0]:
             self._last_awake = items, [item for item in items if item not in self._asleep]
         return self._last_awake[1]
@@ -136,24 +140,24 @@ class JointRows(Listing):
         return [law(self.items[j], self.joint[j]) for j in self.functions]
 
     def measured(self) -> list[int]:
-        """Rows of the pins whose length is the distance of their anchors: after loading a pickle of pymunk, which lacks
-        lengths, all pins are of this kind."""
+        """Rows of the pins whose length is the distance of their anchors, up to round-off: pickles of pymunk lack the
+        lengths of pins, so that a loaded pin has this one."""
         found = []
         for j, item in enumerate(self.items):
             if isinstance(item, pymunk.PinJoint):
-                apart = item.a.local_to_world(item.anchor_a).get_distance(item.b.local_to_world(item.anchor_b))
-                if abs(item.distance - apart) <= _ROUND_OFF * apart:
+                distance = item.a.local_to_world(item.anchor_a).get_distance(item.b.local_to_world(item.anchor_b))
+                if abs(item.distance - distance) <= _ROUND_OFF * distance:
                     found.append(j)
         return found
 
-    def lengthen(self, j: int, length: float) -> None:
+    def set_length(self, j: int, length: float) -> None:
         """Set the length of the pin of row j, without recording an edit."""
         self.items[j].distance = length
         self._edits.forget(j)
         self.joint[j].length = length
 
     def planned(self) -> None:
-        """Note that there is a plan for the present joints."""
+        """Record that the plan of the components fits the present joints."""
         self.replan = self.ends_moved = False
 
     def calls_back(self) -> bool:
@@ -178,7 +182,8 @@ class JointRows(Listing):
             state: (N, 9) at the start of the step.  place: rows of bodies in it.  dt: time.
 
         Raises:
-            ValueError, UnsupportedFeature, NotFiniteError: as a new reading, or for a function of a spring.
+            ValueError, UnsupportedFeature, NotFiniteError: as the first reading does.  NotFiniteError: a function of a
+                spring has not returned a finite number.
         """
         self.refresh()
         if self.partners.outside and (moved := self.partners.read()):
@@ -190,7 +195,7 @@ class JointRows(Listing):
                 for j in self.functions:
                     item = self.items[j]
                     a, b = (self._motion(body, state, place) for body in (item.a, item.b))
-                    self.rates[item] = put_law(item, a, b, dt, self.joint[j], self.rates.get(item))
+                    self.rates[item] = write_law(item, a, b, dt, self.joint[j], self.rates.get(item))
 
     def _motion(self, body: pymunk.Body, state: FloatArray, place: Mapping[pymunk.Body, int]) -> Motion:
         row = self._row_of[body]
@@ -200,7 +205,8 @@ class JointRows(Listing):
         return x, y, angle, vx, vy, spin
 
     def find_parted(self, owner: IntArray, bodies: Sequence[pymunk.Body]) -> set[tuple[int, int]]:
-        """Find `parted`; returns the pairs of their shapes, whose bodies are owner (k,), indices in `bodies`."""
+        """Find `parted`; returns the pairs (i < j) of shapes of these bodies. `owner` (k,): index in `bodies` of the
+        body of each shape."""
         pairs = zip(self.pairs.values(), self.calls, strict=True)
         self.parted = frozenset(pair for pair, calls in pairs if not calls.collide)
         found: set[tuple[int, int]] = set()
@@ -212,7 +218,7 @@ class JointRows(Listing):
         return found
 
     def touch(self, rows: Iterable[int]) -> None:
-        """Mark as edited the joints of bodies (rows) that the program has moved or pushed."""
+        """Mark as EDITED the joints of bodies (rows) that the program has moved or whose velocity it has set."""
         touched = self.joint["touched"]
         for row in rows:
             for j in self._at.get(row, ()):

@@ -1,4 +1,4 @@
-"""Listing: the constraints of a space as read, whatever the rows of their bodies are."""
+"""Listing: the constraints of a space, and what is read of them independently of the rows of their bodies."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from .constraints import ConstraintValues, read
 from .spring_functions import own_function
 
 _PUSHING = SPRING, ROTARY_SPRING, MOTOR
+# The attributes of a `Listing` that another one of the same constraints uses again.
 _LISTED = (
     "pairs", "bodies", "ends", "row", "values", "calls", "ratchets", "forcing", "functions", "own", "before",
     "after", "calling",
@@ -21,9 +22,9 @@ _LISTED = (
 class Calls(NamedTuple):
     """The functions of a constraint, None for none, and whether its bodies collide."""
 
-    own: object
-    before: object
-    after: object
+    own: object  # the force or torque function of the program
+    before: object  # `pre_solve`
+    after: object  # `post_solve`
     collide: bool
 
 
@@ -33,16 +34,17 @@ def calls_of(item: pymunk.Constraint) -> Calls:
 
 
 class Listing:
-    """The constraints of a space; of those of an earlier list what has been read is used again.
+    """The constraints of a space. Values that `past`, an earlier listing, has read are used again.
 
     Attributes:
         items: the constraints, in the order of the rows.  row: the row of each.
         pairs: the bodies of each.  bodies: all of these.  ends: (j, 2) places in `bodies`.
         values, calls: the values and the functions of each.
-        fresh: rows of the constraints that were not in the list before.
+        fresh: rows of the constraints that `past` does not have.
         functions: rows of springs that have a force or torque function of the program.  own: these springs.
         before, after, calling: constraints with a `pre_solve`, with a `post_solve`, with either.
-        ratchets: rows of these.  forcing: rows of those that always exert forces in a rest step of pymunk.
+        ratchets: rows of the ratchets.  forcing: rows of springs, motors and joints with a bounded force, which exert
+            forces in a rest step of pymunk even if they are not violated.
     """
 
     def __init__(self, space: pymunk.Space, past: Listing | None) -> None:
@@ -67,7 +69,7 @@ class Listing:
         self.find_functions()
 
     def find_functions(self) -> None:
-        """Find what depends on kinds and functions."""
+        """Find the lists of constraints that depend on kinds, bounds and functions."""
         self.ratchets = [j for j, values in enumerate(self.values) if values.kind == RATCHET]
         self.forcing = [j for j, values in enumerate(self.values) if values.bounded or values.kind in _PUSHING]
         self.functions = [j for j, calls in enumerate(self.calls) if calls.own]
@@ -76,9 +78,9 @@ class Listing:
         self.after = [item for item, calls in zip(self.items, self.calls, strict=True) if calls.after is not None]
         self.calling = list(dict.fromkeys((*self.before, *self.after)))
 
-    def with_body(self, these: dict[pymunk.Body, bool]) -> list[int]:
-        """The rows of the constraints with one of the bodies that are so marked."""
-        if not any(these.values()):
+    def with_body(self, marked: dict[pymunk.Body, bool]) -> list[int]:
+        """The rows of the constraints of which a body is marked True."""
+        if not any(marked.values()):
             return []
-        marked = np.array([these.get(body, False) for body in self.bodies])
-        return np.flatnonzero(marked[self.ends].any(axis=1)).tolist()
+        marks = np.array([marked.get(body, False) for body in self.bodies])
+        return np.flatnonzero(marks[self.ends].any(axis=1)).tolist()
