@@ -74,7 +74,7 @@ class HookedStepper(PackedSpace):
         elif self.sync or (world.joints is not None and world.joints.calling):
             self._sync.call_back()
         now = self._sleep
-        if now is not None and now.some and now.world is self._world and self.may_touch_sleepers(now):
+        if now is not None and now.any_asleep and now.world is self._world and self.may_touch_sleepers(now):
             now.wake(now.touched(report.contacts))  # by changes that functions have made
         return report
 

@@ -189,7 +189,7 @@ class PackedSpace(Stepper):
         no step, after which all is read again in any case."""
         if self._sleep is None:
             return self.space.sleep_time_threshold == math.inf and (world.joints is None or world.edited())
-        return world.edited() and not (self._sleep.some or self._sleep.changed())
+        return world.edited() and not (self._sleep.any_asleep or self._sleep.changed())
 
     def _update_settings(self, world: World) -> World:
         """The world of the last step, after changes of settings and joints only."""

@@ -74,7 +74,7 @@ class PackedStepper(HookedStepper):
             if self.sync:
                 self._sync.call_back()
             return StepReport(self.time, world.empty, book=self._idle_book)
-        if changed or (sleep.some and sleep.wake_ahead(dt)):
+        if changed or (sleep.any_asleep and sleep.wake_ahead(dt)):
             world = self._update_world(anew=True)
         report = self._step(world, dt)
         now = self._sleep
@@ -90,7 +90,7 @@ class PackedStepper(HookedStepper):
 
     def _rewound_copy(self, world: World) -> list[AnyArray]:
         """A copy of `rewound`, if the step may have to be repeated."""
-        sleepers = self._sleep is not None and self._sleep.some
+        sleepers = self._sleep is not None and self._sleep.any_asleep
         return [array.copy() for array in self.rewound(world)] if sleepers else []
 
     def _repeat_awake(
@@ -98,7 +98,7 @@ class PackedStepper(HookedStepper):
     ) -> tuple[World, int]:
         """Repeat the step with the sleeping bodies awake that it has touched, until it touches none, or until functions
         are to be called. before: what `rewound` had before the step."""
-        while self._sleep is not None and self._sleep.some and status >= 0 and status & EVENTS:
+        while self._sleep is not None and self._sleep.any_asleep and status >= 0 and status & EVENTS:
             if not self.may_touch_sleepers(self._sleep):
                 break
             details = self.details(world, dt)
@@ -110,7 +110,7 @@ class PackedStepper(HookedStepper):
                 array[:] = was
             world = self._update_world(anew=True)
             if self._calls(world):
-                if self._sleep is not None and self._sleep.some and self._sleep.wake_ahead(dt):
+                if self._sleep is not None and self._sleep.any_asleep and self._sleep.wake_ahead(dt):
                     world = self._update_world(anew=True)
                 break
             world.gather()

@@ -1,4 +1,4 @@
-"""Values of bodies: what is read of a body once, as the bytes of a `BodyValues`."""
+"""Values of bodies that are read once: mass, moment, centre of gravity, kind; as the bytes of a `BodyValues`."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from .private import spaces as private
 
 _KIND = {pymunk.Body.DYNAMIC: DYNAMIC, pymunk.Body.KINEMATIC: KINEMATIC, pymunk.Body.STATIC: STATIC}
 _VALUES = struct.Struct("4q9d2q")
-# Mass, moment and their inverses; bytes where these begin and end, and where the centre of gravity ends.
+# Mass, moment and their inverses; in the bytes they are [_FROM:_TO], and the centre of gravity [_TO:_CENTRE].
 _MASSES, _FROM, _TO, _CENTRE = struct.Struct("4d"), 32, 64, 80
-FIXED = math.inf, math.inf, 0.0, 0.0  # masses of bodies that nothing moves
+FIXED = math.inf, math.inf, 0.0, 0.0  # those of static, kinematic and sleeping bodies
 
 
 def read(body: pymunk.Body) -> bytes:
@@ -32,7 +32,7 @@ def read(body: pymunk.Body) -> bytes:
                 "set body.mass and body.moment, or the mass or density of its shapes"
             )
         masses = mass, moment, 1.0 / mass, 1.0 / moment
-    # The public properties return pymunk's default when unset.
+    # The public properties cannot be used: they return pymunk's default when no function is set.
     hooks = private.velocity_function(body) is not None, private.position_function(body) is not None
     return _VALUES.pack(kind, 0, *hooks, *masses, *body.center_of_gravity, 0.0, 0.0, 0.0, -1, 0)
 
@@ -48,5 +48,5 @@ def others(values: bytes) -> bytes:
 
 
 def inertia(values: bytes, asleep: bool) -> bytes:
-    """Masses and centre of gravity, for comparison; nothing moves a body that sleeps."""
+    """Masses and centre of gravity, for comparison; of a sleeping body with the masses FIXED."""
     return _MASSES.pack(*FIXED) + values[_TO:_CENTRE] if asleep else values[_FROM:_CENTRE]

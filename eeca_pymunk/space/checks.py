@@ -1,5 +1,4 @@
-"""Checks: conditions that a space must meet for steppers that work on arrays (`PackedStepper`), and errors
-otherwise."""
+"""Checks of a space for steppers that work on arrays (`PackedStepper`): errors for what they cannot step."""
 
 from __future__ import annotations
 
@@ -20,7 +19,7 @@ def shape_body(shape: pymunk.Shape) -> pymunk.Body:
 
 
 def settings(space: pymunk.Space) -> tuple[tuple[float, float], float]:
-    """Gravity and damping of a space; ValueError for values that cannot be stepped."""
+    """Gravity (length/time²) and damping of a space; ValueError for values that cannot be stepped."""
     (x, y), damping = space.gravity, space.damping
     if not 0.0 <= damping < math.inf:
         raise ValueError(f"space.damping = {damping}: set a finite value >= 0; 1 is none")
@@ -55,6 +54,7 @@ def check_shape(shape: Any) -> None:
 
 
 def has_friction(shapes: Sequence[pymunk.Shape]) -> bool:
-    """Whether shapes of two bodies, one of them dynamic, have friction: pymunk multiplies the two."""
+    """Whether a contact of these shapes can have friction: the product of two shapes of different bodies, one of them
+    dynamic, is not 0."""
     rough = {shape_body(shape) for shape in shapes if shape.friction > 0}
     return len(rough) > 1 and any(body.body_type == pymunk.Body.DYNAMIC for body in rough)

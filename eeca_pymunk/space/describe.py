@@ -50,8 +50,8 @@ def describe(world: World) -> str:
 
 
 def _joints(joints: JointRows) -> str:
-    """Numbers of constraints by kind, the most frequent first; limits, motors, springs and bounded forces; the
-    order."""
+    """Numbers of constraints by kind, the most frequent first; whether there are limits, motors, springs and bounded
+    forces; the order of accuracy."""
     joints.refresh()
     names = [type(item).__name__ for item in joints.items]
     kinds = sorted(set(names), key=lambda kind: (-names.count(kind), kind))

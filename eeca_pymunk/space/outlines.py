@@ -1,4 +1,4 @@
-"""Outlines of shapes in body coordinates, as steps take them; and those of a space as plain arrays, for drawing them at
+"""Outlines of shapes in body coordinates, as steps use them; and those of a space as plain arrays, for drawing them at
 the poses of a recording."""
 
 from __future__ import annotations
@@ -14,7 +14,8 @@ from ..arrays import BoolArray, FloatArray, IntArray, rotated
 from ..errors import UnsupportedFeature
 from .private import shapes as private_shapes
 
-_STRAIGHT = 1e-12  # of its coordinates: distance of a vertex from the line of its neighbours that is round-off
+# Largest distance of a collinear vertex from the line of its neighbours, over the largest coordinate.
+_STRAIGHT = 1e-12
 
 
 @dataclass
@@ -67,7 +68,8 @@ class Outlines:
 
 
 def place(local: FloatArray, owner: IntArray, position: FloatArray, angle: FloatArray) -> FloatArray:
-    """(V, 2) world coordinates of points of the bodies `owner` (V,); those of owner -1 are there already."""
+    """(V, 2) world coordinates of points of the bodies `owner` (V,); points of owner -1 are in world coordinates
+    already."""
     world = local.copy()
     moved = np.flatnonzero(owner >= 0)
     row = owner[moved]
@@ -85,8 +87,8 @@ def local_outline(shape: pymunk.Shape) -> list[tuple[float, ...]]:
 
 
 def corners(outline: list[tuple[float, ...]]) -> list[tuple[float, ...]]:
-    """A convex outline without vertices that are collinear with their neighbours, up to round-off: for two collinear
-    edges round-off would decide to which of them a point belongs."""
+    """A convex outline without vertices that are collinear with their neighbours, up to round-off. With two collinear
+    edges, round-off would decide on which of them a point is nearest."""
     limit = _STRAIGHT * max([abs(c) for v in outline for c in v])
     kept: list[tuple[float, ...]] = []
     (ax, ay), ahead = outline[-1], (*outline[1:], outline[0])

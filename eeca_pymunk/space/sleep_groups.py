@@ -19,41 +19,42 @@ def resting_groups(
     space: pymunk.Space, bodies: Bodies, ready: BoolArray, contacts: Contacts,
     jointed: Iterable[tuple[pymunk.Body, pymunk.Body]],
 ) -> list[list[pymunk.Body]]:  # fmt: skip
-    """The groups of bodies that touch or are jointed, all of which have been at rest for long enough.
+    """The groups of bodies that touch or are jointed, all of which may fall asleep.
 
     Args:
-        ready: (N,) whether a body has.  contacts: of the last step.  jointed: the bodies of each constraint.
+        ready: (N,) whether a body has been at rest for long enough.  contacts: of the last step.
+        jointed: the bodies of each constraint.
     """
-    groups = list(range(len(bodies)))
+    parents = list(range(len(bodies)))  # union-find: bodies of one group have one root
 
     def root(i: int) -> int:
-        while groups[i] != i:
-            groups[i] = groups[groups[i]]
-            i = groups[i]
+        while parents[i] != i:
+            parents[i] = parents[parents[i]]
+            i = parents[i]
         return i
 
     awake: BoolArray = bodies.dynamic & ~ready
     pairs = list(zip(contacts.body_a.tolist(), contacts.body_b.tolist(), strict=True))
-    # pymunk keeps a contact with a sleeping body for good, so that both bodies must sleep or none.
+    # pymunk's contacts count too: it keeps one with a sleeping body forever, so that both bodies must sleep or neither.
     for one, two in (*jointed, *private.touching(space)):
         if one in bodies.row and two in bodies.row:
             pairs.append((bodies.row[one], bodies.row[two]))
     for a, b in pairs:
         if bodies.dynamic[a] and bodies.dynamic[b]:
-            groups[root(a)] = root(b)
+            parents[root(a)] = root(b)
         for one, other in ((a, b), (b, a)):
             # A body on a kinematic body, or jointed to it, stays awake.
             awake[one] |= bodies.dynamic[one] and not (bodies.dynamic[other] or bodies.static[other])
-    stay = {root(int(i)) for i in np.flatnonzero(awake)}
+    awake_roots = {root(int(i)) for i in np.flatnonzero(awake)}
     resting: dict[int, list[pymunk.Body]] = {}
     for i in np.flatnonzero(ready).tolist():
-        if (lead := root(i)) not in stay:
-            resting.setdefault(lead, []).append(bodies.items[i])
+        if (group := root(i)) not in awake_roots:
+            resting.setdefault(group, []).append(bodies.items[i])
     return list(resting.values())
 
 
 def sleeping_groups(bodies: Sequence[pymunk.Body]) -> IntArray:
-    """(N,) for each body the index of another one of its sleeping group, or its own; -1 if it is awake."""
+    """(N,) for each body the index of the first body of its sleeping group (`edits.leader`), -1 if it is awake."""
     place = {body: i for i, body in enumerate(bodies)}
     asleep = private_sleep.sleeping(bodies)
     groups = [place.get(leader(body), i) if asleep[i] else -1 for body, i in place.items()]
@@ -61,7 +62,8 @@ def sleeping_groups(bodies: Sequence[pymunk.Body]) -> IntArray:
 
 
 def put_to_sleep(bodies: Sequence[pymunk.Body], groups: IntArray) -> None:
-    """Put awake bodies to sleep in groups; `groups`: index of another body of the group, -1 for none."""
+    """Put awake bodies to sleep in groups; `groups` (N,): equal numbers for the bodies of a group, -1 for bodies that
+    stay awake."""
     leaders: dict[int, pymunk.Body] = {}
     for body, group in zip(bodies, groups.tolist(), strict=True):
         if group < 0:
@@ -74,7 +76,8 @@ def put_to_sleep(bodies: Sequence[pymunk.Body], groups: IntArray) -> None:
 
 
 def wake_neighbours(space: pymunk.Space) -> None:
-    """Wake bodies that are jointed to an awake body, or touch one according to pymunk."""
+    """Wake sleeping bodies that are jointed to an awake body of the space that is not static, or touch one according to
+    pymunk; then the neighbours of these, and so on."""
     if not any(private_sleep.sleeping(space.bodies)):
         return
     pairs = [*((c.a, c.b) for c in space.constraints), *private.touching(space)]

@@ -1,17 +1,18 @@
 """Sleeping: which bodies of a space sleep, when others fall asleep, and what wakes them.
 
 A sleeping body acts like a static one and takes part in no step. If a moving body touches it within a step, it and its
-group wake, and the step is taken again from its start with them awake; so no body is ever thrown back by a sleeper.
+group wake, and the step is repeated from its start with them awake: no body bounces off a body as if that were fixed.
 
 Bodies fall asleep by `body.sleep()`, or as a group of bodies that touch or are jointed, all of which have been at rest
-for `space.sleep_time_threshold`. A body counts as at rest if, at both ends of a step,
+for `space.sleep_time_threshold`. A body counts as at rest if, at both ends of a step, no force of the program acts and
 
     |v|, |spin| size <= AT_REST |g| dt     and     |x - x0| <= AT_REST |g| dt^2 + round-off,
 
-up to round-off of the fastest body, without forces of the program. The impulses of the step's contacts and joints, each
-within its law, then balance gravity to that accuracy: the body is in equilibrium. A body at its highest point, which is
-slow for an instant, has a velocity of |g| dt one step later. Without gravity only motion by round-off counts as rest.
-Islands at rest (`..islands`) meet this criterion; it also holds for bodies that are solved in every step.
+where velocities may have the round-off of the fastest body, x0 is the position at the start, and size the extent of the
+body. Then the impulses of contacts and joints, which obey their laws, balance gravity to that accuracy: the body is in
+equilibrium. A body at its highest point is slow for an instant, but has the velocity |g| dt one step later. Without
+gravity only motion by round-off counts as rest. Islands at rest (`..islands`) meet this criterion; it also applies to
+bodies that are solved in every step.
 """
 
 from __future__ import annotations
@@ -38,9 +39,9 @@ from .sleep_groups import resting_groups
 if TYPE_CHECKING:
     from .world import World
 
-AT_REST = 1e-6  # tolerance above; `..model.bodies.AT_REST` is a state
+AT_REST = 1e-6  # ratio in the criterion above; `..model.bodies.AT_REST` is a state
 _AGAIN = 16  # steps from one search for groups that may fall asleep to the next
-# Groups fall asleep at once if they are at least 1/_SHARE of the bodies awake, others after _PATIENCE steps.
+# Groups fall asleep at once if they are at least 1/_SHARE of the bodies awake; else _PATIENCE steps after the last one.
 _SHARE, _PATIENCE = 8, 120
 
 
@@ -48,31 +49,31 @@ class Sleep:
     """The sleeping bodies of a world, and the times for which others have been at rest.
 
     Args:
-        world: of a space whose `sleep_time_threshold` is finite.  past: that of the last world of this space.
+        world: of a space whose `sleep_time_threshold` is finite.  past: the `Sleep` of the last world of this space.
 
     Attributes:
-        some, everyone: whether any body sleeps; whether all dynamic ones do.
+        any_asleep, all_asleep: whether any body sleeps; whether all dynamic bodies do, and there is one.
     """
 
     def __init__(self, world: World, past: Sleep | None) -> None:
         self.world, self.space, bodies = world, world.space, world.bodies
         self._sleepers = [body for body, asleep in zip(bodies.items, bodies.asleep, strict=True) if asleep]
-        self.some = bool(self._sleepers)
-        self.everyone = self.some and not bodies.dynamic.any()
+        self.any_asleep = bool(self._sleepers)
+        self.all_asleep = self.any_asleep and not bodies.dynamic.any()
         self._unmoved = private_sleep.unmoved(
-            [self.space.static_body, *(b for b in bodies.items if not b.is_sleeping)] if self.everyone else []
+            [self.space.static_body, *(b for b in bodies.items if not b.is_sleeping)] if self.all_asleep else []
         )
         self._timestamp = private.timestamp(self.space)
         self._stamp = self._timestamp()
         self._wait, self._since = 0, _PATIENCE
-        self._rested: FloatArray = np.zeros(len(bodies))  # seconds
+        self._rested: FloatArray = np.zeros(len(bodies))  # time at rest
         if past is not None:
             self._wait, self._since = past._wait, past._since
             before = past.world.bodies.row
             for i, body in enumerate(bodies.items):
                 if body in before and not past.world.bodies.asleep[before[body]]:
                     self._rested[i] = past._rested[before[body]]
-        self._steps, self._dt = self.space.collision_persistence + 2, 0.0
+        self._steps, self._dt = self.space.collision_persistence + 2, 0.0  # see `step`
         self._ready: IntArray = np.zeros(len(bodies), np.int64)
         row = world.WALK[BODY_ROW]
         self._size: FloatArray = np.where(row >= 0, world.BODY["extent"][row], 0.0)
@@ -81,27 +82,27 @@ class Sleep:
         self._rests = rests.bind(world.STATES, world.WALK, moved, self._size, self._rested, self._ready)
         self._still = bodies.asleep.astype(np.int64), bodies.static.astype(np.int64)
         self._touches: tuple[memoryview | None, Callable[[int], int]] = None, int  # bound to this log
-        # Bodies that something other than the solver moves: all, if functions are called; else kinematic ones.
+        # Bodies that may wake others before the step, see `wake_ahead`; the index is `world.plain`.
         movers: tuple[BoolArray, BoolArray] = ~bodies.static, ~bodies.static & ~bodies.dynamic
         self._moves: list[IntArray] = [np.flatnonzero(moves) for moves in movers]
         self._nears: dict[bool, tuple[IntArray, Callable[[float, float], int]]] = {}
 
     def changed(self) -> bool:
-        """Whether other bodies may sleep now than when this was made, or pymunk has taken a step."""
+        """Whether other bodies may sleep now than when this was made, or pymunk has taken a step since."""
         return self._timestamp() != self._stamp or self.woken()
 
     def woken(self) -> bool:
-        """Whether a body is awake that slept when this was made."""
-        return self.some and not self.world.bodies.in_order()
+        """Whether a body that slept when this was made may be awake: pymunk's order of bodies has changed."""
+        return self.any_asleep and not self.world.bodies.in_order()
 
     def nothing_moves(self) -> bool:
         """Whether all dynamic bodies sleep, and all others have their old poses and velocity 0."""
-        return self.everyone and self._unmoved()
+        return self.all_asleep and self._unmoved()
 
     def step(self, dt: float) -> None:
         """Take a step in which nothing moves: pymunk's own until it has forgotten all earlier contacts; then none,
-        since a step of this dt would change nothing. pymunk wakes bodies that touch a kinematic body, and pushes them
-        out of it; the motion is undone."""
+        since a step of this dt would change nothing. pymunk's step may wake bodies that touch a kinematic body, and
+        correct the overlap; this motion is cleared."""
         if self._steps > 0 or dt != self._dt:
             self._steps, self._dt = self._steps - 1, dt
             private.step_without_end(self.space, dt)
@@ -116,8 +117,8 @@ class Sleep:
             body.activate()
 
     def wake_ahead(self, dt: float) -> bool:
-        """Wake the sleeping bodies that a kinematic body may meet in the step; if functions are called, which cannot be
-        repeated, those that any body may meet. Returns whether there was any."""
+        """Wake the sleeping bodies that a kinematic body may meet in the step; unless the world is plain, those that
+        any body may meet, since a step that calls functions cannot be repeated. Returns whether there was one."""
         world, found = self.world, False
         if len(self._moves[world.plain]) == 0:
             return False
@@ -128,33 +129,33 @@ class Sleep:
         return found
 
     def _reached(self, i: int, dt: float) -> pymunk.BB | None:
-        """A box that has all shapes of a body within dt; None if it does not move."""
+        """A box that contains all shapes of body i within dt; None if the body does not move or is not finite."""
         world, bodies = self.world, self.world.bodies
         x, y, _, vx, vy, spin, fx, fy, _ = world.state[i].tolist()
         if self._size[i] == 0.0 or (not bodies.dynamic[i] and vx == vy == spin == 0.0):
             return None
         pull = math.hypot(*world.gravity) + math.hypot(fx, fy) * bodies.inverse_mass[i]
         reach = float(self._far[i]) + dt * (math.hypot(vx, vy) + dt * pull)
-        # Not finite: the step raises.
+        # If it is not finite, the step raises.
         return pymunk.BB(x - reach, y - reach, x + reach, y + reach) if math.isfinite(x + y + reach) else None
 
     def _left_alone(self, groups: list[list[pymunk.Body]], dt: float) -> list[list[pymunk.Body]]:
-        """Those of groups that would not be woken at once if they slept, see `wake_ahead`."""
+        """Those of the groups that `wake_ahead` would not wake in the next step; all others may move in it."""
         row, moves = self.world.bodies.row, self._moves[self.world.plain].tolist()
         if moves:
             self.world.gather()
         while True:
-            still = {row[body] for group in groups for body in group}
-            boxes = [box for i in moves if i not in still and (box := self._reached(i, dt)) is not None]
+            sleepers = {row[body] for group in groups for body in group}
+            boxes = [box for i in moves if i not in sleepers and (box := self._reached(i, dt)) is not None]
             met = {shape.body for box in boxes for shape in self.space.bb_query(box, pymunk.ShapeFilter())}
-            alone = [group for group in groups if met.isdisjoint(group)]
-            if len(alone) == len(groups):
+            remaining = [group for group in groups if met.isdisjoint(group)]
+            if len(remaining) == len(groups):
                 return groups
-            groups = alone
+            groups = remaining
 
     def _near(self, dt: float, pull: float) -> list[int]:
-        """Those of the movers (rows) that may come to the box of a shape asleep within dt, see
-        `sleepers.approaches`."""
+        """Those of `_moves` (rows) that may reach the box of a sleeping shape within dt, see `sleepers.approaches`.
+        `pull`: length of the acceleration by gravity."""
         plain, world = self.world.plain, self.world
         if plain not in self._nears:
             near = np.zeros(len(self._moves[plain]), np.int64)
@@ -165,18 +166,18 @@ class Sleep:
 
     @cached_property
     def _boxes(self) -> FloatArray:
-        """(w, 4) left, bottom, right and top of the shapes of bodies asleep."""
+        """(w, 4) left, bottom, right and top of the shapes of sleeping bodies, in world coordinates."""
         boxes = [(b.left, b.bottom, b.right, b.top) for body in self._sleepers for b in (s.bb for s in body.shapes)]
         return np.array(boxes, float).reshape(-1, 4)
 
     def rested(self, bodies: Sequence[pymunk.Body]) -> FloatArray:
-        """(N,) the times for which bodies have been at rest, 0 for those that are new."""
+        """(N,) the times for which these bodies have been at rest, 0 for those that are not in the world."""
         row, rested = self.world.bodies.row, self._rested.tolist()
         return np.array([rested[row[body]] if body in row else 0.0 for body in bodies], float)
 
     @property
     def timers(self) -> IntArray:
-        """(2,) steps up to the next search for groups that may fall asleep, and since the last one that did."""
+        """(2,) number of steps until the next search for groups that may fall asleep, and since groups last did."""
         return np.array([self._wait, self._since], np.int64)
 
     def recall(self, rested: Mapping[pymunk.Body, float], timers: IntArray) -> None:
@@ -186,7 +187,7 @@ class Sleep:
 
     def wake_changed(self) -> None:
         """Wake bodies near removed shapes; wake all if static bodies were moved or shapes edited."""
-        if not self.some:
+        if not self.any_asleep:
             return
         for shape in self.world.records.keys() - set(self.space.shapes):
             if self.world.records[shape] is not None:
@@ -203,7 +204,7 @@ class Sleep:
         return bool(woken)
 
     def is_touched(self, log: memoryview, count: int) -> bool:
-        """Whether a moving body has touched a sleeping one in the first `count` impulses of this memory."""
+        """Whether a moving body has touched a sleeping one in the first `count` impulses of the log (`Impulse`)."""
         known, call = self._touches
         if known is not log:
             call = touches.bind(over(Impulse, log), self.world.owner, *self._still)
@@ -221,7 +222,7 @@ class Sleep:
     def rest(self, dt: float) -> bool:
         """Update the times at rest after a step; returns whether any body may fall asleep."""
         self._stamp = self._timestamp()
-        # Sums of dt fall short of the threshold by round-off.
+        # The sum of dt may be less than the threshold by round-off.
         need = self.space.sleep_time_threshold * (1.0 - 1e-9)
         ready = self._rests(AT_REST * math.hypot(*self.world.gravity) * dt, dt, need)
         self._wait = max(self._wait - 1, 0)
@@ -233,7 +234,7 @@ class Sleep:
         in a step of length dt."""
         bodies, joints = self.world.bodies, self.world.joints
         self._wait = _AGAIN
-        # Putting bodies to sleep reads the world again and loses contact forces, so small groups wait.
+        # After bodies have fallen asleep the world is read again and contact forces are lost, so small groups wait.
         enough = np.count_nonzero(bodies.dynamic) / _SHARE if self._since < _PATIENCE else 0.0
         if np.count_nonzero(self._ready) < enough:
             return
