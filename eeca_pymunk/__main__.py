@@ -1,4 +1,5 @@
-"""`python -m eeca_pymunk`: versions on which results depend, the code that kernels run, and the reason."""
+"""`python -m eeca_pymunk` prints the versions on which results depend, how kernels run (library, JIT or plain Python),
+and why."""
 
 from __future__ import annotations
 
@@ -7,7 +8,7 @@ from importlib.metadata import PackageNotFoundError, version
 from .compiled.backend import Backend, choose
 from .recorder import versions
 
-_SAYS = {
+_DESCRIPTIONS = {
     "library": "library",
     "jit": "compiled for this processor, at the first step",
     "python": "plain Python, some hundred times slower",
@@ -20,12 +21,12 @@ def lines() -> list[str]:
         numba = version("numba")
     except PackageNotFoundError:
         numba = "not installed"
-    found = versions() | {"numba": numba}
-    return [f"{name:12} {number}" for name, number in found.items()] + [f"{'kernels':12} {_kernels(choose(False))}"]
+    numbers = versions() | {"numba": numba}
+    return [f"{name:12} {number}" for name, number in numbers.items()] + [f"{'kernels':12} {_kernels(choose(False))}"]
 
 
 def _kernels(backend: Backend) -> str:
-    return f"{_SAYS[backend.kind]}: {backend.why}"
+    return f"{_DESCRIPTIONS[backend.kind]}: {backend.why}"
 
 
 if __name__ == "__main__":

@@ -19,14 +19,15 @@ class Rollouts:
     """The results of K rollouts of b bodies, T frames each.
 
     Attributes:
-        states: (K, b, 6) position, angle, velocity, spin at the start.
-        frames: (K, T, b, 6) the same afterwards.
-        ledger: (K, T, 6) energies since the start of each, in the order of the fields of `Ledger`.
+        states: (K, b, 6) position (2; length), angle (rad), velocity (2; length/time), spin (rad/time) at the start.
+        frames: (K, T, b, 6) the same at the end of each frame.
+        ledger: (K, T, 6) energies, summed from the start of the rollout to the end of each frame, in the order of the
+            fields of `Ledger`.
         unmet: (K,) number of steps that did not meet all budgets and tolerances.
-        events: the impacts of all rollouts, one after the other, each in the order of time; numbers of bodies are those
-            in `frames`.
+        events: the impacts of all rollouts, rollout after rollout, each in the order of time since its start. Indices
+            of bodies are those in `frames`.
         first: (K + 1,) the impacts of rollout k are [first[k], first[k + 1]).
-        error: (K,) length, an estimate of the largest position error in any frame (`certify`); NaN before.
+        error: (K,) length, an estimate of the largest position error in any frame; NaN until `certify` is called.
         parameters: arguments of `rollout`, versions, and what the user adds (seeds, units, licence).
     """
 

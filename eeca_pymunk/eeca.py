@@ -18,15 +18,16 @@ if TYPE_CHECKING:
 
 
 class Closure(Protocol):
-    """Chooses psi2, the parameter that conservation leaves free: the instant at which impulses act."""
+    """Chooses psi2, the parameter that the conservation laws leave free: the instant at which impulses act, tau =
+    (1 - psi2) dt / 2 after the start of the step."""
 
     def prepare(self, world: World) -> Method:
-        """The method that steps this world, energy and momentum exact; UnsupportedFeature for features that the closure
-        does not support."""
+        """A method that steps this world and conserves energy and momentum; UnsupportedFeature for features that the
+        closure does not support."""
 
 
 class EECA(RunningStepper):
-    """Conserves energy, linear and angular momentum through every contact, at any dt (paper).
+    """Conserves energy, linear and angular momentum in every contact, at any dt (the paper's algorithm).
 
     Args:
         space: a pymunk space.
@@ -41,6 +42,7 @@ class EECA(RunningStepper):
     ) -> None:
         self.closure: Closure = TimeOfImpact() if closure is None else closure
         self._saved: Saved | None = None  # in a copy, until its first step
+        # The pairs that arbiters show: stamp of the step, world, pairs.
         self._shown: tuple[float, World | None, Touches | None] = -1.0, None, None
         super().__init__(space, sync=sync, ignore=ignore)
 
@@ -56,8 +58,8 @@ class EECA(RunningStepper):
         self._saved = None
 
     def prepare(self, world: World, past: World | None) -> None:
-        myself = ref(self)
-        show_contacts(self.space, lambda drawn: None if (me := myself()) is None else me._touches(drawn))
+        reference = ref(self)  # weak, see `show_contacts`
+        show_contacts(self.space, lambda drawn: None if (stepper := reference()) is None else stepper._touches(drawn))
         self._sync.renews = self._sleep is None  # groups of sleeping bodies are found from arbiters
         saved, self._saved = self._saved, None
         if saved is not None and saved.resume(world, self.decisions):

@@ -19,15 +19,15 @@ if TYPE_CHECKING:
 
 @dataclass
 class Events:
-    """m impacts in the order of time. Persistent contacts are not included.
+    """m impacts of bodies a and b in the order of time. Persistent contacts are not included.
 
     Attributes:
-        time: (m,) since the start of the recording.
-        bodies: (m, 2) indices of a and b among the recorded bodies, -1 for a static one.
+        time: (m,) since the start of the recording or rollout.
+        bodies: (m, 2) indices of a and b among the recorded bodies, -1 for a body that is not recorded (a static one).
         point: (m, 2) length, halfway between the two surfaces.
         normal: (m, 2) unit, from a to b.
-        impulse: (m,) on b along the normal, >= 0.
-        friction: (m,) on b along t = (-n_y, n_x): mass length/time.
+        impulse: (m,) on b along the normal n, >= 0: mass length/time.
+        friction: (m,) impulse on b along t = (-n_y, n_x): mass length/time.
     """
 
     time: FloatArray = field(default_factory=lambda: np.zeros(0))
@@ -41,18 +41,18 @@ class Events:
         return len(self.time)
 
     def part(self, first: int, last: int) -> Events:
-        """Those from number `first` to before `last`."""
+        """The impacts [first, last)."""
         return Events(*(getattr(self, f.name)[first:last] for f in fields(self)))
 
     def in_order(self) -> Events:
-        """Sorted by time, at equal times by bodies."""
+        """The same impacts sorted by time, at equal times by bodies."""
         order = np.lexsort((self.bodies[:, 1], self.bodies[:, 0], self.time))
         return Events(*(getattr(self, f.name)[order] for f in fields(self)))
 
     @staticmethod
     def of(EVENT: Rows[Impulse], place: IntArray) -> Events:
-        """Of (m,) impacts, in their order; `place` (k,): index of each shape's body among the recorded ones, -1 for
-        none."""
+        """The impacts in (m,) records of kernels, in their order. `place` (k,): index of each shape's body among the
+        recorded ones, -1 for others."""
         bodies = np.stack((place[EVENT["first"].astype(np.intp)], place[EVENT["second"].astype(np.intp)]), axis=-1)
         return Events(
             EVENT["when"].copy(), bodies, columns(EVENT, "px", "py"), columns(EVENT, "nx", "ny"),
@@ -61,19 +61,19 @@ class Events:
 
     @staticmethod
     def of_report(report: StepReport, start: float, place: Mapping[pymunk.Body, int]) -> Events:
-        """The impacts of a step that began at `start`; `place`: indices of the recorded bodies."""
+        """The impacts of a step that began at the time `start`; `place`: indices of the recorded bodies."""
         contacts = report.contacts
-        now = np.flatnonzero((contacts.duration == 0.0) & (report.impulse != 0.0))
-        at = np.array([place.get(body, -1) for body in contacts.bodies] if len(now) else [], np.intp)
-        bodies = np.stack((at[contacts.body_a[now]], at[contacts.body_b[now]]), axis=-1)
+        impacts = np.flatnonzero((contacts.duration == 0.0) & (report.impulse != 0.0))
+        indices = np.array([place.get(body, -1) for body in contacts.bodies] if len(impacts) else [], np.intp)
+        bodies = np.stack((indices[contacts.body_a[impacts]], indices[contacts.body_b[impacts]]), axis=-1)
         return Events(
-            start + contacts.time[now], bodies, contacts.point[now], contacts.normal[now], report.impulse[now],
-            report.friction[now],
+            start + contacts.time[impacts], bodies, contacts.point[impacts], contacts.normal[impacts],
+            report.impulse[impacts], report.friction[impacts],
         )  # fmt: skip
 
     @staticmethod
     def joined(parts: Sequence[Events]) -> Events:
-        """Several, one after the other."""
+        """The impacts of several `Events`, one after the other."""
         if not parts:
             return Events()
         return Events(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(Events)))

@@ -1,4 +1,4 @@
-"""Files that are whole or absent; named arrays in files."""
+"""Files that are written completely or not at all; named arrays in files."""
 
 from __future__ import annotations
 
@@ -43,8 +43,11 @@ def check_writable(path: str | Path) -> Path:
 
 
 def save_arrays(path: str | Path, arrays: Mapping[str, _Array], parameters: Mapping[str, Any]) -> None:
-    """Write named arrays, parameters as JSON, and a SHA-256 hash of everything, whole or not at all: HDF5 for .h5 and
-    .hdf5, which needs h5py, with a group for each part before a dot of a name; else NumPy's format."""
+    """Write named arrays, parameters as JSON, and a SHA-256 hash of both, completely or not at all.
+
+    The format is HDF5 for .h5 and .hdf5, which needs h5py: a dot in a name separates group and data set. For others it
+    is NumPy's, compressed.
+    """
     text = json.dumps(parameters, sort_keys=True)
     digest = _digest(arrays, text)
     with whole_file(path) as partial:
@@ -66,12 +69,12 @@ def load_arrays(path: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
     found: dict[str, Any] = {}
     if path.suffix in _HDF5:
 
-        def keep(name: str, item: Any) -> None:
+        def collect(name: str, item: Any) -> None:
             if hasattr(item, "shape"):
                 found[name.replace("/", ".")] = item[()]
 
         with _h5py().File(path, "r") as file:
-            file.visititems(keep)
+            file.visititems(collect)
             text, digest = str(file.attrs["parameters"]), str(file.attrs[_HASH])
     else:
         with np.load(path) as data:
@@ -85,12 +88,12 @@ def load_arrays(path: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
 
 def arrays_of(record: Any, prefix: str = "") -> dict[str, _Array]:
     """The fields of a dataclass whose values are arrays, by their names with a prefix."""
-    held = {f"{prefix}{f.name}": getattr(record, f.name) for f in fields(record)}
-    return {name: value for name, value in held.items() if isinstance(value, np.ndarray)}
+    values = {f"{prefix}{f.name}": getattr(record, f.name) for f in fields(record)}
+    return {name: value for name, value in values.items() if isinstance(value, np.ndarray)}
 
 
 def take_part(arrays: dict[str, Any], prefix: str) -> dict[str, Any]:
-    """Remove the arrays whose names begin with a prefix; returns them by the rest of their names."""
+    """Remove from `arrays` those whose names begin with a prefix; returns them by the rest of their names."""
     return {name.removeprefix(prefix): arrays.pop(name) for name in list(arrays) if name.startswith(prefix)}
 
 

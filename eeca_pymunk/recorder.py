@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     import pymunk
 
 _PER_BODY = 6 * 8  # bytes for a body and moment: position, angle, velocity, spin
-_PER_MOMENT = 11 * 8  # further bytes for a moment: time, energies, momentum, ledger
-MEMORY = 2.0**30  # bytes
+_PER_MOMENT = 11 * 8  # further bytes for a moment: time, energies (2), momentum (2), ledger (6)
+MEMORY = 2.0**30  # bytes that a recording may take by default
 
 
 @functools.cache
@@ -41,7 +41,8 @@ def versions() -> dict[str, str]:
 
 
 def step_count(duration: float, dt: float) -> int:
-    """Steps of dt that fill the duration; ValueError unless both are positive and finite."""
+    """Number of steps of dt whose sum is nearest to the duration, at least 1; ValueError unless both are positive and
+    finite."""
     if check_dt(dt) == 0.0 or check_dt(duration) == 0.0:
         raise ValueError(f"duration = {duration}, dt = {dt}: give numbers > 0")
     return max(1, round(duration / dt))
@@ -50,15 +51,19 @@ def step_count(duration: float, dt: float) -> int:
 def record(
     stepper: Stepper, duration: float, dt: float, every: int = 1, progress: bool = False, memory: float = MEMORY
 ) -> Recording:
-    """Run `stepper` for round(duration / dt) steps and keep the start, every `every`-th step, and all impacts.
+    """Run `stepper` for round(duration / dt) steps, at least one, and store the start, every `every`-th step, and all
+    impacts.
 
     For EECA this is one compiled call if `stepper.run` is one.
 
     Args:
         duration, dt: time, > 0.
-        every: store one of so many steps, >= 1.
+        every: number of steps between two stored moments, >= 1.
         progress: show a progress bar.
-        memory: bytes for the moments, at most. ValueError, before the first step, if they would take more.
+        memory: largest number of bytes for the moments. ValueError, before the first step, if they would take more.
+
+    Raises:
+        ValueError: also if a body that is not static is added during the run; for all others see `Stepper.step`.
     """
     if every < 1:
         raise ValueError(f"every = {every}: give a whole number >= 1")
@@ -72,26 +77,26 @@ def record(
             f"give every >= {int(np.ceil(every * needed / memory))}, or more memory"
         )
     if isinstance(stepper, RunningStepper) and stepper.compiles():
-        recording = _filmed(stepper, kept, count, dt, every, progress)
+        recording = _record_compiled(stepper, kept, count, dt, every, progress)
     else:
-        film = _Moments(stepper.space, kept, moments)
-        film.keep(0)
+        filled = _Moments(stepper.space, kept, moments)
+        filled.store(0)
         for k in tqdm(range(1, count + 1), desc=type(stepper).__name__, unit="step", disable=not progress):
-            film.book(stepper.step(dt), (k - 1) * dt)
+            filled.add_step(stepper.step(dt), (k - 1) * dt)
             if k % every == 0:
-                film.keep(k // every)
-        recording = film.recording
-        recording.parameters["steps_unmet"] = film.unmet
-        recording.events = Events.joined(film.events).in_order()
+                filled.store(k // every)
+        recording = filled.recording
+        recording.parameters["steps_unmet"] = filled.unmet
+        recording.events = Events.joined(filled.events).in_order()
     recording.time[:] = (dt * every) * np.arange(moments)
     recording.parameters.update(stepper=type(stepper).__name__, dt=dt, duration=count * dt, every=every, **versions())
     return recording
 
 
-def _filmed(
+def _record_compiled(
     stepper: RunningStepper, kept: list[pymunk.Body], count: int, dt: float, every: int, progress: bool
 ) -> Recording:  # fmt: skip
-    """The recording of a run in compiled code."""
+    """The recording of a run in compiled code, whose times are 0."""
     space = stepper.space
     outlines = Outlines.of(space, kept)
     world = stepper.current()
@@ -103,7 +108,7 @@ def _filmed(
     buffers = stepper.buffered_run(count, dt, kept, every, events=True, progress=progress)
     frames = buffers.frames
     position, angle, velocity, spin = frames[:, :, :2], frames[:, :, 2], frames[:, :, 3:5], frames[:, :, 5]
-    d = np.argsort(rows)  # as `measure` adds
+    d = np.argsort(rows)  # sums in the order of `measure`, so that they are equal to it bit by bit
     d = d[dynamic[d]]
     kinetic, potential, momentum, _ = traces(
         mass[d], moment[d], position[:, d], velocity[:, d], spin[:, d], space.gravity
@@ -116,7 +121,7 @@ def _filmed(
 
 
 class _Moments:
-    """A recording that is being filled."""
+    """A recording that is filled step by step; its times are 0."""
 
     def __init__(self, space: pymunk.Space, kept: list[pymunk.Body], moments: int) -> None:
         self.space, self.kept = space, kept
@@ -138,14 +143,14 @@ class _Moments:
         self.present: IntArray = np.array([i for i, b in enumerate(self.kept) if b in self.bodies.row], np.intp)
         self.rows: IntArray = np.array([self.bodies.row[self.kept[i]] for i in self.present], np.intp)
 
-    def book(self, report: StepReport, start: float) -> None:
-        """Add the ledger and the impacts of a step that began at `start`."""
+    def add_step(self, report: StepReport, start: float) -> None:
+        """Add the ledger and the impacts of a step that began at the time `start`."""
         self.total += entries(report.ledger)
         self.unmet += not report.converged
         self.events.append(Events.of_report(report, start, self.place))
 
-    def keep(self, i: int) -> None:
-        """Write moment number i."""
+    def store(self, i: int) -> None:
+        """Write the present state of the space as moment i."""
         state = self.bodies.gather()
         if state is None:
             self._read()

@@ -15,7 +15,7 @@ from .events import Events
 from .files import arrays_of, load_arrays, save_arrays, take_part
 from .space.outlines import Outlines
 
-# Parts of a recording that are records of arrays.
+# The attributes of a recording that are dataclasses of arrays.
 _PARTS: dict[str, type[Any]] = {"outlines": Outlines, "ledger": LedgerTrace, "events": Events}
 
 
@@ -31,9 +31,9 @@ class Recording:
         position: (T, N, 2) length.
         angle: (T, N) rad.
         velocity: (T, N, 2) length/time.
-        energy: (T,) kinetic plus gravity.
-        kinetic: (T,) its first part.
-        momentum: (T, 2).
+        energy: (T,) kinetic energy, and potential energy of gravity.
+        kinetic: (T,) kinetic energy.
+        momentum: (T, 2) linear, mass length/time.
         ledger: ledgers summed since the start, arrays (T,); NaN for steppers that have none.
         mass: (N,) infinite for kinematic bodies.
         outlines: the shapes at the start.

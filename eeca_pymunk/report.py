@@ -56,8 +56,8 @@ class Details(NamedTuple):
     friction: FloatArray | None = None
 
 
-# How a step was solved: its seven ledger entries (`energy.ledger`; None if the stepper has none), the scale of the
-# energy lock that was farthest from 1, whether all budgets and tolerances were met, and iterations of the solver.
+# How a step was solved: its seven ledger entries (`energy.ledger`; None if the stepper has none), the factor of the
+# energy lock farthest from 1, whether all budgets and tolerances were met, and the number of iterations of the solver.
 Outcome: TypeAlias = tuple[list[float] | None, float, bool, int]
 
 
@@ -68,8 +68,8 @@ class StepReport:
         time: see the property.
         details: the arrays, or a function that makes them at the first access.
         iterations, lock, converged: see the properties.
-        book: of `energy.ledger`.
-        unmet: budgets and tolerances that were not met, or a function that makes them.
+        book: the seven entries from which `energy.ledger` makes the ledger; None if the stepper has none.
+        unmet: budgets and tolerances that were not met, or a function that returns them at the first access.
     """
 
     __slots__ = ("_book", "_converged", "_details", "_iterations", "_lock", "_time", "_unmet")
@@ -142,7 +142,7 @@ class StepReport:
 
     @property
     def iterations(self) -> int:
-        """Iterations of the solver."""
+        """Number of iterations of the solver in the step."""
         return self._iterations
 
     @property
@@ -152,7 +152,8 @@ class StepReport:
 
     @property
     def lock(self) -> float:
-        """Scale of the energy lock farthest from 1; 1.0 if none. |lock - 1| estimates the solver's error."""
+        """Factor of the energy lock on impulses, of all its uses the one farthest from 1; 1.0 if it was not used.
+        |lock - 1| estimates the solver's relative error."""
         return self._lock
 
     @property
@@ -192,8 +193,8 @@ class RunReport:
         ledger: sum of the ledgers of all steps; None if the stepper has none.
         impacts: number of impacts, without persistent contacts.
         unmet: number of steps that did not meet all budgets and tolerances, see `StepReport.converged`.
-        iterations: of the solver.
-        lock: scale of the energy lock that was farthest from 1.
+        iterations: number of iterations of the solver in all steps.
+        lock: factor of the energy lock that was farthest from 1, as `StepReport.lock`.
     """
 
     time: float
@@ -211,17 +212,19 @@ class RunReport:
 
 
 def nothing(bodies: tuple[pymunk.Body, ...] = ()) -> Details:
-    """The arrays of no contact."""
+    """The arrays of a report without contacts."""
     rows, none, vectors = np.zeros(0, np.intp), np.zeros(0), np.zeros((0, 2))
     return Details(Contacts(bodies, rows, rows, vectors, vectors, none, none), none, none, none, none)
 
 
 def of_events(EVENT: Rows[Impulse], dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray) -> Details:
-    """The arrays of the impulses of a step, in the order of time: psi2 = 1 - 2 tau / dt gives the instant of each,
-    psi1 is infinite (rigid limit), and Delta g is Eq. 20 with the impulse's own Delta p.
+    """The arrays of the impulses of a step, in the order of time.
+
+    psi2 = 1 - 2 tau / dt for an impulse at the time tau after the start of the step; psi1 is infinite (rigid limit);
+    Delta g is that of Eq. 20 with the change of momentum by this impulse alone.
 
     Args:
-        EVENT: (m,).
+        EVENT: (m,) impulses of the step.
         dt: time.
         bodies: of the space.
         owner: (k,) index in `bodies` of each shape's body.
