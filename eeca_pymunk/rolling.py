@@ -1,4 +1,4 @@
-"""Rolling: copies of a scene for rollouts, kept from call to call."""
+"""Rolling: copies of a scene, one for each thread of a rollout, kept from call to call."""
 
 from __future__ import annotations
 
@@ -26,11 +26,12 @@ from .space.world import World
 
 @dataclass(frozen=True)
 class Job:
-    """Inputs and outputs of K rollouts of b bodies.
+    """Inputs and outputs of K rollouts of b bodies with T frames; all of them as in `rollout` and `Rollouts`.
 
     Attributes:
-        states: (K, b, 6).  push: (K, T, b, 3) controls, or None.  steps, every, dt: see `rollout`.
-        frames: (K, T, b, 6), out.  ledger: (K, T, 6), out.  unmet: (K,), out.  full: whether impacts are stored.
+        states: (K, b, 6).  push: (K, T, b, 3) controls, or None.  every, dt: see `rollout`.
+        steps: number of steps of a rollout, T * every.  full: whether impacts are stored.
+        frames: (K, T, b, 6), output.  ledger: (K, T, 6), output.  unmet: (K,), output.
     """
 
     states: FloatArray
@@ -45,9 +46,10 @@ class Job:
 
 
 class Copy:
-    """The arrays of a scene that has taken no step, for one thread; `rows` (b,): rows of its bodies in STATES."""
+    """A copy of the arrays of a scene, for one thread."""
 
     def __init__(self, world: World, loop: EventLoop, rows: IntArray) -> None:
+        """`loop`: that of `world`, which has taken no step.  `rows` (b,): rows of the moving bodies in STATES."""
         self.world, self.rows = world, rows
         self.loop = copy.deepcopy(loop)
         self._reading = table_of(
@@ -62,8 +64,8 @@ class Copy:
         self.loop.keep_fresh()
 
     def roll(self, job: Job, first: int, last: int) -> list[Events]:
-        """Compute rollouts [first, last); returns the impacts of each, or none unless the job is full."""
-        if not self.loop.listed:
+        """Compute rollouts [first, last); returns the impacts of each, an empty list unless `job.full`."""
+        if not self.loop.listed:  # near lists are the same for all states: the kernel begins each rollout itself
             return self._take_rollouts(job, first, last)
         events = []
         for k in range(first, last):
@@ -72,6 +74,7 @@ class Copy:
         return events
 
     def _take_rollouts(self, job: Job, first: int, last: int) -> list[Events]:
+        """Compute rollouts [first, last) in one call of the kernel; returns as `roll`."""
         T, world = job.frames.shape[1], self.world
         buffers = RunBuffers(
             job.dt, world.gravity, world.half_damping(job.dt), 0.0, self.rows, (last - first) * T, job.every, job.full,
@@ -96,13 +99,13 @@ class Rolling:
     """The copies of the scene of a stepper.
 
     Args:
-        twin: a second stepper of the space, which takes no steps.
+        twin: another stepper of the same space. It takes no steps, so that its event loop is one before the first step.
     """
 
     def __init__(self, twin: RunningStepper) -> None:
         self.twin = twin
         self._made: list[Copy] = []
-        self._of: tuple[object, ...] = ()
+        self._version: tuple[object, ...] = ()  # of the scene from which they were made
 
     @staticmethod
     def of(stepper: RunningStepper, dt: float) -> Rolling:
@@ -114,15 +117,15 @@ class Rolling:
         return rolling
 
     def _refresh(self, dt: float) -> None:
-        """Forget the copies if the space has changed."""
+        """Forget the copies if the space has changed since they were made."""
         world = self.world = self.twin.adjusted(dt)
         loop = self.twin.event_loop
         assert loop is not None
         rules = loop.scene.RULE.tobytes()
         joints = (loop.joint.tobytes(),) if loop.jointed else ()
-        now = id(world), world.patches, id(loop), rules, *joints
-        if now != self._of:
-            self._made, self._of = [], now
+        version = id(world), world.patches, id(loop), rules, *joints
+        if version != self._version:
+            self._made, self._version = [], version
 
     def copies(self, count: int) -> list[Copy]:
         """The first `count` copies, made if necessary."""
@@ -134,8 +137,9 @@ class Rolling:
         return self._made[:count]
 
 
-def roll_slowly(twin: RunningStepper, job: Job, done: Callable[[int], object]) -> list[Events]:
-    """The rollouts step by step on the space of `twin`, which is left changed; returns the impacts of each."""
+def roll_in_python(twin: RunningStepper, job: Job, done: Callable[[int], object]) -> list[Events]:
+    """The rollouts step by step on the space of `twin`, whose state is not restored; returns the impacts of each.
+    `done`: called with 1 after each rollout."""
     bodies, found = moving(twin.space), []
     place = {body: i for i, body in enumerate(bodies)}
     for k, state in enumerate(job.states):

@@ -19,13 +19,13 @@ from .errors import UnsupportedFeature
 from .events import Events
 from .recorder import versions
 from .reentry import refuse_within
-from .rolling import Copy, Job, Rolling, roll_slowly
+from .rolling import Copy, Job, Rolling, roll_in_python
 from .runs import RunningStepper
 from .space.bodies import moving
 from .stepper import check_dt, check_steps
 
-_PIECES = 8  # number of pieces of work for each thread, so that none waits long for another
-_STEPS = 4096  # steps of a piece, at least
+_PIECES_PER_THREAD = 8  # largest number of pieces of work for each thread, so that threads end at about the same time
+_STEPS_PER_PIECE = 4096  # least number of steps of a piece, unless there would be fewer pieces than threads
 
 
 @overload
@@ -44,17 +44,19 @@ def rollout(
     stepper: RunningStepper, states: npt.ArrayLike, steps: int, dt: float, every: int = 1,
     controls: npt.ArrayLike | None = None, threads: int | None = None, progress: bool = False, full: bool = False,
 ) -> FloatArray | Rollouts:  # fmt: skip
-    """The paths of K copies of a scene from K states: bit by bit as if `stepper.set_state(states[k])` were followed by
-    so many steps. The space and its stepper are not changed.
+    """The paths of K copies of a scene from K states. Each is bit by bit that of `stepper.set_state(states[k])` and
+    `steps` calls of `stepper.step(dt)`. The space and its stepper are not changed.
 
     Args:
         stepper: an EECA, of the scene.
         states: (K, b, 6) position, angle, velocity and spin of the b bodies that are not static, in the order of
             `space.bodies`; length, rad, per time.
-        steps, dt: number > 0; time > 0.
-        every: store one of so many steps: T = steps // every frames. Remaining steps are not taken.
-        controls: (K, T, b, 3) forces at the centres of mass and torques, constant over the steps up to each frame.
-        threads: as many as there are processors if None. The result does not depend on the number.
+        steps, dt: number of steps, > 0; time, > 0.
+        every: number of steps from frame to frame, so that there are T = steps // every frames. Steps after the last
+            frame are not taken.
+        controls: (K, T, b, 3) force (2) at the centre of mass and torque of each body, constant over the steps that end
+            in a frame.
+        threads: their number; that of the processors if None. The result does not depend on it.
         progress: show a progress bar.
         full: also return ledgers, impacts, and which steps did not converge.
 
@@ -62,7 +64,7 @@ def rollout(
         (K, T, b, 6) frames; a `Rollouts` if `full`.
 
     Raises:
-        ValueError: shapes do not fit, or a number is not finite or becomes so.
+        ValueError: a shape of an array is wrong, or a number is or would become infinite or NaN.
         UnsupportedFeature: functions are called within steps, and the space cannot be copied, see below.
 
     If `stepper.run` is a Python loop, so is this, in one thread: on the space itself, whose state is restored
@@ -99,7 +101,7 @@ def rollout(
         if stepper.compiles():
             events = _on_threads(stepper, job, min(count, max(K, 1)), bar.update)
         else:
-            events = _one_by_one(stepper, job, bar.update)
+            events = _in_python(stepper, job, bar.update)
     if not full:
         return job.frames
     first = np.cumsum([0, *map(len, events)])
@@ -110,26 +112,26 @@ def rollout(
 def certify(
     stepper: RunningStepper, rollouts: Rollouts, threads: int | None = None, progress: bool = False
 ) -> FloatArray:  # fmt: skip
-    """Estimate the errors of the frames of rollouts without controls: they are computed again with half the time step.
+    """Estimate the errors of the frames of rollouts: they are computed again with half the time step and compared.
 
     For a method of order p >= 1 and small dt the error is 2^p / (2^p - 1) <= 2 times the difference. Where the method
     is exact (impacts of disks, free flight) the two differ by round-off, and the difference measures how it grows from
-    impact to impact. Rollouts with controls are compared with motions without: do not use it for them.
+    impact to impact. Only for rollouts without controls: the second computation has none.
 
     Returns:
         (K,) length, twice the largest difference of a position in any frame; also stored as `rollouts.error`.
     """
-    of = rollouts.parameters
-    again = rollout(stepper, rollouts.states, 2 * of["steps"], 0.5 * of["dt"], 2 * of["every"], None, threads, progress)
-    apart = np.linalg.norm(again[..., :2] - rollouts.frames[..., :2], axis=-1)
-    rollouts.error = 2.0 * apart.max(axis=(1, 2), initial=0.0)
+    steps, dt, every = (rollouts.parameters[name] for name in ("steps", "dt", "every"))
+    finer = rollout(stepper, rollouts.states, 2 * steps, 0.5 * dt, 2 * every, None, threads, progress)
+    distance = np.linalg.norm(finer[..., :2] - rollouts.frames[..., :2], axis=-1)
+    rollouts.error = 2.0 * distance.max(axis=(1, 2), initial=0.0)
     return rollouts.error
 
 
 def _on_threads(stepper: RunningStepper, job: Job, threads: int, done: Callable[[int], object]) -> list[Events]:
-    """All rollouts on threads; returns the impacts of each."""
+    """All rollouts in compiled code on threads; returns the impacts of each."""
     K = len(job.states)
-    count = max(threads, min(threads * _PIECES, K * job.steps // _STEPS))
+    count = max(threads, min(threads * _PIECES_PER_THREAD, K * job.steps // _STEPS_PER_PIECE))
     size = max(1, -(-K // count))
     pieces = [(k, min(k + size, K)) for k in range(0, K, size)]
     free: SimpleQueue[Copy] = SimpleQueue()
@@ -155,13 +157,13 @@ def _on_threads(stepper: RunningStepper, job: Job, threads: int, done: Callable[
     return found
 
 
-def _one_by_one(stepper: RunningStepper, job: Job, done: Callable[[int], object]) -> list[Events]:
-    """All rollouts by a Python loop; returns the impacts of each."""
+def _in_python(stepper: RunningStepper, job: Job, done: Callable[[int], object]) -> list[Events]:
+    """All rollouts by a Python loop; returns the impacts of each. The space is restored, or copied first."""
     if stepper.calls():
-        return roll_slowly(_twin(stepper), job, done)
+        return roll_in_python(_twin(stepper), job, done)
     state = stepper.get_state()
     try:
-        return roll_slowly(stepper, job, done)
+        return roll_in_python(stepper, job, done)
     finally:
         stepper.set_state(state)
 

@@ -28,8 +28,10 @@ if TYPE_CHECKING:
 
     from .rolling import Rolling
 
-_FIRST = 256  # number of steps after which the loop returns for the first time
-_SHORT, _LONG = 0.05, 0.2  # it shall return after so many seconds, for the progress bar and interrupts
+_FIRST = 256  # steps after which the compiled loop returns for the first time
+# Seconds within which it returns then, so that Python can update the progress bar and handle interrupts: the number of
+# steps of the next call is doubled or halved.
+_SHORT, _LONG = 0.05, 0.2
 
 
 class RunningStepper(PackedStepper):
@@ -40,13 +42,13 @@ class RunningStepper(PackedStepper):
     """
 
     rolling: Rolling | None = None
-    _patches = False  # whether shapes or bodies were ever edited in place
+    _patches = False  # whether a shape or body was ever edited in place
 
     def __getstate__(self) -> dict[str, object]:
         return {**super().__getstate__(), "rolling": None}
 
     def adjusted(self, dt: float) -> World:
-        """`current`, ready for a step of length dt."""
+        """The result of `current`, with joints and rules of the method updated for a step of length dt."""
         world = self.current()
         if not world.plain and not self.adjust(world, dt):
             self.refresh()
@@ -73,7 +75,7 @@ class RunningStepper(PackedStepper):
         if self.calls() or self.event_loop is None or self._sleep is not None:
             return False
         world = self._world
-        assert world is not None  # `calls` has looked
+        assert world is not None  # set by `calls`
         return not (world.eccentric or (world.joints is not None and world.joints.partners.outside))
 
     def calls(self) -> bool:
@@ -85,8 +87,8 @@ class RunningStepper(PackedStepper):
 
     def get_state(self) -> IntArray:
         """Everything that determines the further path of the space, as a 1-D array of integers: poses, velocities and
-        forces of its bodies, and results of earlier steps that the stepper keeps. `set_state` takes it, in this process
-        or in another one with the same space.
+        forces of its bodies, and results of earlier steps that the stepper keeps. `set_state` restores it, in this
+        process or in another one with an equal space.
 
         If some bodies sleep, the results of earlier steps are left out: paths then agree up to round-off.
         """
@@ -98,8 +100,8 @@ class RunningStepper(PackedStepper):
         Args:
             state: the result of `get_state`: the space then follows the same path, bit by bit. Or (b, 6) position,
                 angle, velocity and spin of the b bodies that are not static, in the order of `space.bodies`; length,
-                rad, per time. That clears forces and results of earlier steps: equal states give equal paths, whatever
-                was run before. Sleeping bodies wake.
+                rad, per time. This also clears forces and results of earlier steps, so that equal states give equal
+                paths, whatever was run before. Sleeping bodies wake.
 
         Raises:
             ValueError: it is neither, belongs to another space, or is not finite; nothing is changed.
@@ -107,7 +109,7 @@ class RunningStepper(PackedStepper):
         set_state(self, np.asarray(state))
 
     def start_anew(self, world: World, state: FloatArray) -> None:
-        """Forget results of earlier steps; bodies have been set to `state` (N, 9)."""
+        """Forget results of earlier steps, after the bodies of the space have been set to `state` (N, 9)."""
         loop = self.event_loop
         if loop is None or world.joints is not None or self._sleep is not None:
             self.refresh()
@@ -130,7 +132,8 @@ class RunningStepper(PackedStepper):
                 self.prepare(world, world)
             return found is not None
         if loop is None or not hasattr(loop, "fresh"):
-            self._patches = True  # memory from which patches start, which costs time, is kept from now on
+            # From now on `prepare` keeps a copy of the new scene, from which patches start. This edit is not patched.
+            self._patches = True
             return False
         sides, found = sides_of(world, loop), world.patch(surfaces)
         if found is None:
@@ -164,7 +167,8 @@ class RunningStepper(PackedStepper):
             kept: bodies that are not static.  every: steps from frame to frame, 0 for none; the start is the first one.
             events: whether impacts are stored.  progress: whether to show a progress bar.
 
-        A step that fails raises as `step` does; the space is at the end of the step before.
+        Raises:
+            as `step` does; the space is then at the end of the step before.
         """
         world = self.adjusted(dt)
         rows = np.array([world.bodies.row[body] for body in kept], np.int64)
@@ -179,28 +183,28 @@ class RunningStepper(PackedStepper):
             if status < 0:
                 self._raise_failure(world, dt, status)
         finally:
-            # After an interrupt too.
+            # In any case, also after an interrupt: the steps that were taken are written.
             self._write_run_end(world, buffers, dt, status)
         return buffers
 
     def _take_steps(self, world: World, buffers: RunBuffers, steps: int, progress: bool) -> int:
-        """Take the steps; returns status bits or a negative code."""
-        RUN, loop, stretch, status = buffers.progress, self.event_loop, _FIRST, 0
+        """Take the steps, in several calls of the kernel; returns status bits or a negative code."""
+        RUN, loop, count, status = buffers.progress, self.event_loop, _FIRST, 0
         assert loop is not None
         with tqdm(total=steps, desc=type(self).__name__, unit="step", disable=not progress) as bar:
             while status >= 0 and RUN.done < steps:
-                RUN.until = min(steps, int(RUN.done) + stretch)
+                RUN.until = min(steps, int(RUN.done) + count)
                 began, before = perf_counter(), int(RUN.done)
                 status = loop.follow(buffers, world.reading)
                 took = perf_counter() - began
-                stretch = 2 * stretch if took < _SHORT else max(stretch // 2, 1) if took > _LONG else stretch
+                count = 2 * count if took < _SHORT else max(count // 2, 1) if took > _LONG else count
                 bar.update(int(RUN.done) - before)
         return status
 
     def _write_run_end(self, world: World, buffers: RunBuffers, dt: float, status: int) -> None:
-        """Write the end of the steps taken to the space."""
+        """Write the end of the last complete step to the space."""
         RUN = buffers.progress
-        if status < 0 or RUN.stage != BETWEEN:
+        if status < 0 or RUN.stage != BETWEEN:  # the last step is not complete: NOW has its start
             self._world = None
             moves = world.WALK[BODY_ROW] >= 0
             world.STATES[LEFT, moves, :6] = world.STATES[NOW, moves, :6]

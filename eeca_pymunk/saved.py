@@ -1,5 +1,8 @@
-"""Saved: results of earlier steps that a stepper keeps, for a copy of it that continues bit by bit; `Sides`: the sides
-of thin shapes, across readings of the space."""
+"""Results of earlier steps that outlast the arrays of one world.
+
+`Saved` is what a pickled stepper has of them, so that the copy continues bit by bit. `Sides` has the sides of thin
+shapes, which are kept when the space is read again.
+"""
 
 from __future__ import annotations
 
@@ -20,14 +23,14 @@ from .space.world import World
 
 _FIXED = ["extent", "elasticity", "friction"]  # fields of BODY that no step changes
 _NO_SIDES = rows(Side, 0)
-_TIE = "kind", "body", "bounded"  # fields of JOINT that decide the plan
+_TIE = "kind", "body", "bounded"  # fields of JOINT that decide the plan of the components
 
 
 class Saved:
     """The event loop of a world and everything else that determines its next step; pickled with the space.
 
-    It has copies of shapes, bodies and joints, and is used only for a space in which all of them are equal, and by the
-    version of the package that made it: the arrays of others may be shorter.
+    It is used only if all shapes, bodies and joints of the unpickled space are equal to those it has recorded, and only
+    by the version of the package that made it, since arrays of other versions may differ in size.
     """
 
     def __init__(self, world: World, method: EventLoop, decisions: Decisions) -> None:
@@ -42,8 +45,8 @@ class Saved:
         self._made_by = sources_hash()
 
     def resume(self, world: World, decisions: Decisions) -> bool:
-        """Continue with a world that was just read, and decisions of its handlers; False, and nothing changed, if it is
-        not equal."""
+        """Write the saved results into a world that was just read, and into the stepper's `decisions`. If the world is
+        not equal to the saved one, change nothing and return False."""
         if getattr(self, "_made_by", "") != sources_hash():
             return False
         scene = self.method.scene
@@ -81,6 +84,7 @@ class Saved:
         return True
 
     def _same_joints(self, world: World) -> bool:
+        """Whether the constraints of a world are equal to the saved ones, but for values that steps change."""
         joints, method = world.joints, self.method
         if joints is None or not method.jointed:
             return joints is None and not method.jointed
@@ -90,76 +94,82 @@ class Saved:
         for name in Joint.TYPE.names or ():
             if name in ("touched", *OF_STEPS):
                 continue
-            apart = (method.joint[name] != joints.joint[name]).reshape(len(differs), -1).any(axis=1)
-            # Values that steps change: the notch of a ratchet, the law of a spring with a function.
+            unequal = (method.joint[name] != joints.joint[name]).reshape(len(differs), -1).any(axis=1)
+            # Steps change the notch of a ratchet and the law of a spring with a function; pickles lack lengths of pins.
             if name == "notch":
-                apart[joints.joint["kind"] == RATCHET] = False
+                unequal[joints.joint["kind"] == RATCHET] = False
             elif name == "length":
-                apart[joints.measured()] = False
+                unequal[joints.measured()] = False
             if name not in _TIE:
-                apart[joints.functions] = False
-            differs |= apart
+                unequal[joints.functions] = False
+            differs |= unequal
         return not differs.any()
 
 
 class Sides:
-    """The remembered sides of thin shapes of a world, to be kept when the space is patched or read again: of shapes
-    that have not changed and are near where the last step left them (see `transfer.take`), whatever their new rows are.
-    Kinematic bodies with such shapes only have not been moved: what overlaps them is not lifted for nothing."""
+    """The remembered sides of thin shapes of a world, to be kept when the space is patched or read again.
+
+    Kept are those of shapes that have not changed and are near where the last step left them (see `transfer.take`),
+    whatever their new rows are. Kinematic bodies that have only such shapes count as unmoved, with or without thin
+    shapes, so that bodies that overlap them are not corrected as if they were just placed there.
+    """
 
     def __init__(self, world: World, known: Rows[Side] | None) -> None:
+        """`known`: the sides; None if only kinematic bodies matter."""
         sided = known is not None
         self._sided, self._known = sided, _NO_SIDES if known is None else known.copy()
         row, records = world.WALK[BODY_ROW].tolist(), world.records
         shapes = enumerate(zip(world.shapes, world.owner.tolist(), strict=True))
-        # Without sides only kinematic bodies matter, whose rows come after those of dynamic ones.
+        # Row, shape, row of the body and record of each shape that matters. Kinematic bodies have the rows of BODY
+        # after those of dynamic ones.
         self._shapes = [
             (k, shape, i, records[shape]) for k, (shape, i) in shapes if sided or row[i] >= world.dynamic
         ]  # fmt: skip
         self._count, self._bodies = len(world.shapes), world.bodies.items
         self._left: list[list[float]] = world.STATES[LEFT, :, :3].tolist()
 
-    def _ways(self, world: World) -> dict[int, tuple[int, float]]:
-        """Of each body that is near where it was left: its row now, and how far its points were moved since."""
-        ways, row, rows = {}, world.bodies.row, world.WALK[BODY_ROW].tolist()
+    def _moves(self, world: World) -> dict[int, tuple[int, float]]:
+        """Of each body (old row) that is near where the last step left it: its row now, and how far its points were
+        moved since, at most (length)."""
+        moves, row, rows = {}, world.bodies.row, world.WALK[BODY_ROW].tolist()
         state, extent = world.state[:, :3].tolist(), world.BODY["extent"].tolist()
         for i in {i for _, _, i, _ in self._shapes}:
             at = row.get(self._bodies[i], -1)
             if at >= 0:
                 (x, y, angle), (x0, y0, angle0) = state[at], self._left[i]
                 size = extent[rows[at]] if rows[at] >= 0 else 0.0
-                way = abs(x - x0) + abs(y - y0) + size * abs(angle - angle0)
-                if way <= INTERVAL_DEPTH_LEAST * size:
-                    ways[i] = at, way
-        return ways
+                move = abs(x - x0) + abs(y - y0) + size * abs(angle - angle0)
+                if move <= INTERVAL_DEPTH_LEAST * size:
+                    moves[i] = at, move
+        return moves
 
     def recall(self, world: World, loop: EventLoop) -> None:
-        """Write them into the loop of the present world, which has taken no step."""
-        places, records, owner, ways = world.places, world.records, world.owner.tolist(), self._ways(world)
-        of = [-1] * self._count
+        """Write the sides into the loop of the present world, which has taken no step."""
+        places, records, owner, moves = world.places, world.records, world.owner.tolist(), self._moves(world)
+        new_rows = [-1] * self._count  # of each old row of SHAPE; -1 if its sides are not kept
         for k, shape, i, before in self._shapes:
             place = places.get(shape, -1)
-            if place < 0 or i not in ways or owner[place] != ways[i][0]:
+            if place < 0 or i not in moves or owner[place] != moves[i][0]:
                 continue
             now = records[shape]
             if now is before or _outline(now) == _outline(before):
-                of[k] = place
-        same, rows = set(of), world.WALK[BODY_ROW].tolist()
+                new_rows[k] = place
+        same, rows = set(new_rows), world.WALK[BODY_ROW].tolist()
         kept = {owner[place] for place in same if place >= 0}
         changed = {i for place, i in enumerate(owner) if place not in same} if kept else kept
         at = [i for i in kept if rows[i] >= 0 and (i not in changed if rows[i] >= world.dynamic else self._sided)]
         if at:
-            nudged = {i for i, way in ways.values() if way > 0.0}
+            nudged = {i for i, move in moves.values() if move > 0.0}
             left, present, due = world.STATES[LEFT], world.state, world.BODY["due"]
             for i in at:  # one by one: for few bodies numpy's indices take several times as long
                 left[i, :3] = present[i, :3]
                 due[rows[i]] = NUDGED if i in nudged else ANEW
         if self._sided and loop.thin:
-            keep_sides(loop.table, self._known, np.array(of, np.int64))
+            keep_sides(loop.table, self._known, np.array(new_rows, np.int64))
 
 
 def sides_of(world: World, loop: EventLoop) -> Sides | None:
-    """The remembered sides, None if there are none, nor a kinematic body."""
+    """The remembered sides of a world; None if it has neither sides nor kinematic bodies."""
     known = loop.sides if loop.thin else None
     if known is not None and not (known["key"] > 0).any():
         known = None
@@ -167,6 +177,7 @@ def sides_of(world: World, loop: EventLoop) -> Sides | None:
 
 
 def _outline(record: Record | None) -> object:
+    """Vertices and radius, for comparison."""
     return record and (record.vertices, record.numbers[0])
 
 

@@ -1,8 +1,10 @@
-"""The state of a stepper as one array: everything that determines the path of its space.
+"""The state of a stepper as one array of 64-bit integers: everything that determines the path of its space.
 
-    mark (a magic number), fingerprint, number of parts, length of each part; then the parts, in words of 8 bytes.
+    magic number, fingerprint, number of parts, length of each part; then the parts.
 
-The words are integers, because floats may be NaN: two states are equal if their arrays are.
+Lengths are numbers of integers; each part is the memory of an array, filled up with zeros. Integers, because floats may
+be NaN: two states are equal if and only if their arrays are. `get_state` and `set_state` have the parts in the same
+order.
 """
 
 from __future__ import annotations
@@ -32,7 +34,7 @@ _MARK = 0x65656361_00000001
 def get_state(stepper: RunningStepper) -> IntArray:
     """See `RunningStepper.get_state`."""
     world, loop = stepper.current(), stepper.event_loop
-    at = _rows(world)
+    at = _rows(world)  # states have bodies in the order of `_everyone`
     parts: list[AnyArray] = [world.state[at], np.array([stepper.time]), *stepper.sleep_state(_everyone(stepper.space))]
     decided = stepper.decisions.state(world)
     parts += [np.array([len(decided)]), decided]
@@ -109,7 +111,8 @@ def _recall(stepper: RunningStepper, state: IntArray) -> None:
 
 
 def _remember(stepper: RunningStepper, world: World, parts: _Parts, at: IntArray) -> None:
-    """Restore the results of earlier steps from a state; its bodies have now the rows `at` (N,)."""
+    """Restore the results of earlier steps from the remaining parts of a state. `at` (N,): the present rows of its
+    bodies."""
     loop, joints = stepper.event_loop, world.joints
     assert loop is not None
     moves = ~world.bodies.static
@@ -129,17 +132,17 @@ def _remember(stepper: RunningStepper, world: World, parts: _Parts, at: IntArray
         tally[:] = parts.take(np.int64, tally.shape)
         rates = parts.take(np.float64, (len(joint), 2))
         known = zip(joints.items, rates.tolist(), strict=True)
-        joints.rates = {item: (r, h) for item, (r, h) in known if r == r}
+        joints.rates = {item: (r, h) for item, (r, h) in known if r == r}  # NaN stands for no rate
         joints.write()
     world.STATES[LEFT, moves] = left[moves]
     if world.eccentric:
-        # pymunk rounds the positions of such bodies: what is read counts as unedited.
+        # pymunk has rounded the positions of such bodies when they were written: they count as unedited.
         world.gather()
         world.left_as_read()
 
 
 class _Parts:
-    """The parts of a state, one after the other."""
+    """The parts of a state, read one after the other; ValueError if the array is no state, or a part does not fit."""
 
     def __init__(self, state: IntArray) -> None:
         count = int(state[2]) if len(state) > 3 and state[0] == _MARK else -1
@@ -152,11 +155,11 @@ class _Parts:
 
     @property
     def left(self) -> bool:
-        """Whether there are more."""
+        """Whether there are more parts."""
         return self._next < len(self._ends) - 1
 
     def take(self, dtype: Any, shape: tuple[int, ...]) -> AnyArray:
-        """The next part, of this dtype and shape."""
+        """The next part, as a copy of this dtype and shape."""
         kind = np.dtype(dtype)
         size = int(np.prod(shape)) * kind.itemsize
         begin, end = self._ends[self._next : self._next + 2]
@@ -179,16 +182,17 @@ def _everyone(space: pymunk.Space) -> list[pymunk.Body]:
 
 
 def _rows(world: World) -> IntArray:
-    """Rows of the bodies of `_everyone` in the world."""
+    """(N,) the rows in the world of the bodies of `_everyone`."""
     return np.array([world.bodies.row[body] for body in _everyone(world.space)], np.int64)
 
 
 def _fingerprint(space: pymunk.Space, loop: EventLoop | None) -> int:
-    """Hash of what a state does not contain: kinds of bodies, shapes and joints, the event loop, sizes of records."""
+    """Hash of what a state does not contain, but must fit: kinds of bodies, shapes and joints and how they are
+    connected, the kind of the event loop, sizes of records."""
     bodies = {body: i for i, body in enumerate(_everyone(space))}
-    of: list[object] = [type(loop).__name__, None if loop is None else loop.together]
-    of += [(name, kind.itemsize) for name, kind in sorted(KINDS.items())]
-    of += [body.body_type for body in bodies]
-    of += [(type(s).__name__, bodies.get(s.body, -1), s.sensor) for s in space.shapes if s.body is not None]
-    of += [(type(c).__name__, bodies.get(c.a, -1), bodies.get(c.b, -1)) for c in space.constraints]
-    return int.from_bytes(hashlib.sha256(repr(of).encode()).digest()[:8], "little", signed=True)
+    hashed: list[object] = [type(loop).__name__, None if loop is None else loop.together]
+    hashed += [(name, kind.itemsize) for name, kind in sorted(KINDS.items())]
+    hashed += [body.body_type for body in bodies]
+    hashed += [(type(s).__name__, bodies.get(s.body, -1), s.sensor) for s in space.shapes if s.body is not None]
+    hashed += [(type(c).__name__, bodies.get(c.a, -1), bodies.get(c.b, -1)) for c in space.constraints]
+    return int.from_bytes(hashlib.sha256(repr(hashed).encode()).digest()[:8], "little", signed=True)

@@ -39,6 +39,9 @@ class Stepper(ABC):
     A step completes, or raises and leaves the space unchanged. There is one exception: if a post-step callback raises,
     the step has been taken, and bodies and `time` are at its end, as under pymunk. Between steps shapes and bodies may
     be added, removed and edited. Functions that are called within a step cannot step the same space: RuntimeError.
+
+    Attributes:
+        space: the pymunk space.  time: sum of the dt of all steps so far.
     """
 
     def __init__(self, space: pymunk.Space) -> None:
@@ -51,7 +54,7 @@ class Stepper(ABC):
         UnsupportedFeature for features that the stepper does not support."""
 
     def run(self, steps: int, dt: float, progress: bool = False) -> RunReport:
-        """Advance the space by so many steps of dt, as a loop of `step` does, bit by bit.
+        """Advance the space by `steps` steps of dt, as a loop of `step` does, bit by bit.
 
         EECA takes them in one compiled call if no Python function has to be called in between, and updates pymunk's
         space once, at the end (`python -m comparisons rollouts` prints the time saved).
@@ -61,7 +64,7 @@ class Stepper(ABC):
             dt: time, >= 0.
             progress: show a progress bar.
 
-        If a step raises, or at an interrupt, the space is at the end of the step before.
+        If a step raises, or after an interrupt, the space is at the end of the last complete step.
         """
         steps, dt = check_steps(steps), check_dt(dt)
         total, impacts, unmet, iterations, lock, done = np.zeros(6), 0, 0, 0, 1.0, 0

@@ -19,10 +19,10 @@ from tqdm import tqdm
 
 Case = TypeVar("Case")
 Result = TypeVar("Result")
-_SHOWN = 3  # failed cases that a message names
-_LONGEST = 80  # characters of a case in a message
-_RAISED = "_raised_by_its_case"  # attribute of an error: not the executor's own
-_AHEAD = 2  # cases submitted for each worker of a pool that may break; these are in doubt if it does
+_SHOWN = 3  # failed cases that a message names, at most
+_LONGEST = 80  # characters of a case in a message, at most
+_RAISED = "_raised_by_its_case"  # attribute of exceptions that a case has raised, and not the executor
+_AHEAD = 2  # cases submitted for each worker of a pool of processes; if it breaks, any of them may be the cause
 
 
 class SweepError(RuntimeError):
@@ -79,7 +79,7 @@ def sweep(
 
 
 class _Work(Generic[Case, Result]):
-    """Finished and failed cases of a sweep."""
+    """Finished and failed cases of a sweep, by their indices."""
 
     def __init__(self, function: Callable[[Case], Result], cases: Sequence[Case], bar: tqdm[Any]) -> None:
         self.function, self.cases, self.bar = function, cases, bar
@@ -126,25 +126,26 @@ class _Work(Generic[Case, Result]):
         return self.on(executor, [i], 1, turn=2)
 
     def left(self) -> list[int]:
-        """Cases that are neither done nor failed."""
+        """Indices of the cases that are neither done nor failed."""
         return [i for i in range(len(self.cases)) if i not in self.done and i not in self.failed]
 
-    def on(self, executor: Executor, places: Iterable[int], most: int, turn: int = 1) -> list[int]:
-        """Run cases given by their indices, at most `most` submitted at a time; returns those submitted when the
-        executor broke."""
-        waiting, out = deque(places), dict[Future[Result], int]()
+    def on(self, executor: Executor, indices: Iterable[int], most: int, turn: int = 1) -> list[int]:
+        """Run cases, at most `most` submitted at a time, in attempt number `turn`; returns those that were submitted
+        and not done when the executor broke, empty if it did not."""
+        waiting, submitted = deque(indices), dict[Future[Result], int]()
         broken: list[int] = []
         try:
-            while out or (waiting and not broken):
-                while waiting and len(out) < most and not broken:
+            while submitted or (waiting and not broken):
+                while waiting and len(submitted) < most and not broken:
                     try:
-                        out[executor.submit(_attempt, self.function, self.cases[waiting[0]], turn)] = waiting[0]
+                        future = executor.submit(_attempt, self.function, self.cases[waiting[0]], turn)
+                        submitted[future] = waiting[0]
                     except BrokenExecutor as error:
                         broken.append(waiting[0])
                         self._fail(waiting[0], error)
                     waiting.popleft()
-                for future in wait(out, return_when=FIRST_COMPLETED).done:
-                    i, raised = out.pop(future), CancelledError() if future.cancelled() else future.exception()
+                for future in wait(submitted, return_when=FIRST_COMPLETED).done:
+                    i, raised = submitted.pop(future), CancelledError() if future.cancelled() else future.exception()
                     if raised is None:
                         self.done[i] = future.result()
                         self.bar.update()
@@ -153,7 +154,7 @@ class _Work(Generic[Case, Result]):
                     if isinstance(raised, BrokenExecutor):
                         broken.append(i)
         finally:
-            for future in out:
+            for future in submitted:
                 future.cancel()
         return broken
 

@@ -16,13 +16,19 @@ class Unmet(NamedTuple):
     """A budget or tolerance that a step did not meet.
 
     Attributes:
-        name: "impacts" (number for a body in a step; further ones are ignored and may penetrate), "hits" (number on an
-            island; likewise, until the next step), "impact" (residual velocity of a simultaneous impact, length/time),
-            "solves" (bodies of all solves; the step ends early), "contacts" (that persist: residual velocity,
-            length/time, of up to 40 contacts; of jointed bodies no numbers), "joints" (status of their solve).
-        value: reached.
-        limit: largest allowed; nan if there is no such number.
-        bodies: those concerned, as far as they are known.
+        name: a word of the list below, which says what `value` is.
+        value: the value that was reached.
+        limit: the largest value allowed; nan if there is none.
+        bodies: the bodies concerned, as far as they are known.
+
+    Names:
+        "impacts": number of impacts on a body in a step. Further ones are ignored and may penetrate.
+        "hits": number of impacts on an island. Further ones are ignored until the next step and may penetrate.
+        "impact": residual velocity of a simultaneous impact, length/time.
+        "solves": work of the step, as the number of bodies in all its solves. The step ends early.
+        "contacts": residual velocity of the persistent contacts of an island of up to 40 contacts, length/time; nan if
+            bodies are jointed.
+        "joints": status of the solve of jointed bodies.
     """
 
     name: str
