@@ -1,4 +1,4 @@
-"""HookedStepper: what a step does with its method, and the step that calls functions of the program."""
+"""HookedStepper: the parts of a step that use the method, and steps that call functions of the program."""
 
 from __future__ import annotations
 
@@ -23,8 +23,11 @@ class HookedStepper(PackedSpace):
     `PackedStepper`."""
 
     def adjust(self, world: World, dt: float) -> bool:
-        """Update the method from joints and collision handlers before the next step; False if the space has to be read
-        anew, since joints hold other bodies."""
+        """Update the method before a step: edited joints, and the laws of pairs by joints and collision handlers.
+
+        Returns:
+            False if the space must be read again, because joints hold other bodies immobile.
+        """
         parted = False
         joints = world.joints
         if joints is not None:
@@ -59,7 +62,7 @@ class HookedStepper(PackedSpace):
         return self._method.step(world.reading, dt, gx, gy, half_damping)
 
     def details(self, world: World, dt: float) -> Details | Callable[[], Details]:
-        """The arrays of the report of the last step, whose status has EVENTS, or a function that makes them."""
+        """The arrays of the report of the last step, whose status had the bit EVENTS, or a function that makes them."""
         return self._method.details(dt, world.bodies.items, world.owner)
 
     def _hooked_step(self, world: World, dt: float) -> StepReport:
@@ -73,18 +76,19 @@ class HookedStepper(PackedSpace):
             self._sync.finish_rehearsal(dt, world.rehearsal.left_out)
         elif self.sync or (world.joints is not None and world.joints.calling):
             self._sync.call_back()
-        now = self._sleep
-        if now is not None and now.any_asleep and now.world is self._world and self.may_touch_sleepers(now):
-            now.wake(now.touched(report.contacts))  # by changes that functions have made
+        sleep = self._sleep
+        if sleep is not None and sleep.any_asleep and sleep.world is self._world and self.may_touch_sleepers(sleep):
+            sleep.wake(sleep.touched(report.contacts))  # `wake_ahead` does not know what functions change
         return report
 
     def may_touch_sleepers(self, sleep: Sleep) -> bool:
-        """Whether the last step may have touched a sleeping body; if False, its report need not be made."""
+        """Whether a sleeping body may have been touched in the last step; if False, its report need not be made."""
         loop = self.event_loop
         return loop is None or sleep.is_touched(loop.log, loop.impulses)
 
     def _start_hooked(self, world: World) -> World:
-        """Read the state of all bodies; returns their world, which may be new."""
+        """Read and check the state of all bodies; returns their world, a new one if bodies were exchanged or static
+        bodies moved."""
         world.gather()
         status = world.check_start()
         if status in (OTHER_BODIES, MOVED_STATIC):
@@ -96,7 +100,11 @@ class HookedStepper(PackedSpace):
         return world
 
     def _take_hooked(self, world: World, dt: float) -> tuple[World, StepReport]:
-        """The step without post-step callbacks, and its world."""
+        """The step without post-step callbacks; returns its world, which may be new, and its report.
+
+        `called`: whether functions may have changed bodies. `alters`: whether the end of the step is changed after the
+        method has computed it: by damping 0, position functions, post_solve or separate. `lost`: the energy of that.
+        """
         world = self._start_hooked(world)
         half_damping, lost, hooks, called = world.half_damping(dt), 0.0, world.hooks, True
         try:
@@ -131,13 +139,13 @@ class HookedStepper(PackedSpace):
                     bits = world.write_whole()
             elif called:
                 bits = world.write_whole()
-            # Else bodies and their forces are as they were read.
+            # If nothing was called, bodies and their forces in the space are still those that were read.
             if alters or status & FORCES or (called and (hooks.some or world.joints is not None)):
                 world.reset_forces()
             status = status & EVENTS | bits
             self._write_hooked_end(world, dt, status)
             if alters:
-                # So that changes by functions after the step count as edits in the next one.
+                # Changes by functions count as edits in the next step.
                 world.keep_unaltered()
         except BaseException:
             self._undo(world, world.start)
@@ -145,8 +153,8 @@ class HookedStepper(PackedSpace):
         return world, self._finish(world, dt, status, outcome, lost)
 
     def _reread_awoken(self, world: World) -> World:
-        """The world anew, where pymunk's step has woken bodies in a rehearsal, as it does on kinematic bodies; with
-        what functions have done up to there."""
+        """The world read again after a rehearsal in which pymunk has woken bodies, as it does if they touch a kinematic
+        body. What functions have done in this step is kept."""
         for body, slept in zip(world.bodies.items, world.bodies.asleep.tolist(), strict=True):
             if slept and not body.is_sleeping:
                 body.velocity, body.angular_velocity = (0.0, 0.0), 0.0
@@ -184,8 +192,8 @@ class HookedStepper(PackedSpace):
                 self._sync.accept()
 
     def _outcome(self, world: World, dt: float) -> Outcome:
-        """The outcome of the step. NotFiniteError, before the space is changed, if the energy overflows though
-        positions and velocities do not."""
+        """The outcome of the step. NotFiniteError, before the space is changed, if the energy is not finite, though all
+        positions and velocities are."""
         outcome = self._method.outcome()
         book = outcome[0]
         if book is not None and not isfinite(book[AFTER]):
@@ -193,8 +201,8 @@ class HookedStepper(PackedSpace):
         return outcome
 
     def _finish(self, world: World, dt: float, status: int, outcome: Outcome, lost: float = 0.0) -> StepReport:
-        """Once the end of the step is in the space: its time, its report, and the joints as the program sees them.
-        `lost`: energy taken by damping 0 at the end."""
+        """After the end of the step was written: update `time`, make the report, and let the program read impulses of
+        joints. `lost`: energy lost by damping 0 at the end."""
         self.time += dt
         report = self._report(world, dt, status, outcome, lost)
         if not world.plain:
@@ -202,7 +210,7 @@ class HookedStepper(PackedSpace):
         return report
 
     def _report(self, world: World, dt: float, status: int, outcome: Outcome, lost: float) -> StepReport:
-        """The report of the step with this outcome."""
+        """The report of the step with this outcome; `lost` is entered in its book as a loss by damping."""
         book, lock, converged, iterations = outcome
         if lost and book is not None:
             book[DAMPED] += lost

@@ -30,30 +30,32 @@ from .transfer import NOT_FINITE, OVERFLOW
 if TYPE_CHECKING:
     import pymunk
 
-TOO_FAR = "the step would overflow; take a smaller dt, or stop this run"
+TOO_FAR = "the step would overflow; take a smaller dt, or stop this run"  # remedy, at the end of messages
 
 
 class Method(Protocol):
-    """Steps the arrays of one world: an `EventLoop`, or `closures.motion.Disks`. Results of earlier steps that it
-    keeps, such as contact forces, last as long as the world."""
+    """Steps the arrays of one world: an `EventLoop`, or `closures.motion.Disks`. It keeps results of earlier steps,
+    such as contact forces, as long as the world is used."""
 
     def step(self, reading: Table, dt: float, gx: float, gy: float, half_damping: float) -> int:
-        """From the states read to those to be written: status bits or a negative code of `transfer.py`."""
+        """Move the bodies from STATES[NOW] to STATES[LEFT] and ENDS (`layout.py`), by the gravity (gx, gy) and the
+        factor of half a step's damping. Returns status bits or a negative code of `transfer.py`."""
 
     def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
-        """Values of collision handlers for pairs of shapes (a < b) in the next step: elasticity (negative: no
-        collision), friction, and surface velocity of b relative to a."""
+        """Set the laws of pairs of rows of SHAPE (a < b) that differ from those of their shapes, by collision handlers
+        or joints, from the next step on: elasticity (negative: no collision), friction, and surface velocity (2) of b
+        relative to a."""
 
     def details(self, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray) -> Details | Callable[[], Details]:
         """The arrays of the report of the last step, or a function that makes them; `owner` (k,): index in `bodies` of
         the body of each shape."""
 
     def outcome(self) -> Outcome:
-        """Of the last step, or of none."""
+        """How the last step was solved; before the first step, that of a step without contacts."""
 
 
 Own = TypeVar("Own", bound="PackedSpace")
-# Bodies, and what `PackedSpace.sleep_state` returns of them.
+# Bodies, and the result of `PackedSpace.sleep_state` for these.
 Slept: TypeAlias = tuple[list["pymunk.Body"], FloatArray, IntArray, IntArray]
 
 
@@ -61,12 +63,11 @@ class PackedSpace(Stepper):
     """A stepper that keeps its space as the arrays of a `World`; arguments as of `PackedStepper`.
 
     Attributes:
-        reads: number of readings of the whole space: one at the start, and one after each change that rows cannot be
-            patched for.
-        patches: number of changes that were put into the rows of the last reading: of numbers of shapes and bodies, or
-            in which constraints came or went.
-        objects_read: number of bodies, shapes and constraints whose values these have read from pymunk; all others
-            were known.
+        reads: number of readings of the whole space: one at the start, and one after each change that cannot be
+            patched.
+        patches: number of updates without such a reading: after edits in place (`space/patching.py`), and after
+            constraints were added or removed.
+        objects_read: number of bodies, shapes and constraints that both have read from pymunk.
         decisions: of collision handlers in earlier steps.
     """
 
@@ -81,13 +82,13 @@ class PackedSpace(Stepper):
         self._slept: Slept | None = None  # in a copy, until its first step
         self._method: Method
         self._ruled: Rules | None = None  # the rules that the method has
-        self._idle_book: list[float] | None = None  # ledger entries of a step in which all dynamic bodies sleep
+        self._idle_book: list[float] | None = None  # book of a step in which all dynamic bodies sleep: zeros
         self.reads = self.patches = self.objects_read = 0
         self.decisions = Decisions()
         self._update_world()
 
     def __getstate__(self) -> dict[str, object]:
-        # The original is not changed. The copy reads its space again.
+        # Called for copies and pickles. The original is not changed; the copy reads its space at its first step.
         state = self.__dict__.copy()
         for made in ("_sync", "_method"):
             state.pop(made, None)
@@ -103,16 +104,16 @@ class PackedSpace(Stepper):
         self._put_copy_to_sleep()
 
     def _put_copy_to_sleep(self) -> None:
-        """In a copy, put to sleep what sleeps in the original: all bodies of pymunk's copies are awake. If the space
-        refers to its stepper, its bodies are not in it before both are complete: then at the first step."""
+        """In a copy, put to sleep the bodies that sleep in the original: those of pymunk's copies are awake. Called
+        again before its first step: a space that refers to its stepper is still without bodies at the first call."""
         if self._slept is not None:
             bodies, _, groups, _ = self._slept
             if all(body.space is self.space for body in bodies):
                 put_to_sleep(bodies, groups)
-                groups.fill(-1)
+                groups.fill(-1)  # once only
 
     def __copy__(self: Own) -> Own:
-        """Another stepper of the same space, without results of earlier steps: two cannot share their arrays."""
+        """Another stepper of the same space, without results of earlier steps, whose arrays two cannot share."""
         other = type(self).__new__(type(self))
         other.__dict__.update({**self.__getstate__(), "_saved": None, "_slept": None})
         return other
@@ -123,7 +124,8 @@ class PackedSpace(Stepper):
 
     @abstractmethod
     def prepare(self, world: World, past: World | None) -> None:
-        """Make the method (`_use`) for a world that was just read; `past` is the world before, if any."""
+        """Make the method for a world that was just read, and call `_use`. `past`: the world before, if any; `world`
+        itself if only its joints or rows have changed."""
 
     def _use(self, method: Method) -> None:
         """Step the present world by this method, which has no rules yet."""
@@ -135,8 +137,8 @@ class PackedSpace(Stepper):
         return self._method if isinstance(self._method, EventLoop) else None
 
     def patch(self, world: World) -> bool:
-        """Write edits of shapes and bodies into the rows of a world, and into the stepper's own arrays; none were added
-        or removed. False if a new reading is needed."""
+        """Write edits of shapes and bodies into the rows of a world, and into the arrays of the method. No shape or
+        body was added or removed. False if a new reading is needed."""
         return False
 
     @property
@@ -144,7 +146,7 @@ class PackedSpace(Stepper):
         return describe(self._present())
 
     def _present(self) -> World:
-        """The present space as a checked World; the states of its bodies may be older."""
+        """The present space as a checked World; the states in its arrays may be those of an earlier step."""
         world = self._world
         return world if world is not None and world.current() else self._update_world()
 
@@ -185,8 +187,8 @@ class PackedSpace(Stepper):
         return self._adopt(world)
 
     def _patchable(self, world: World) -> bool:
-        """Whether changes may be patched: they can wake no sleeping body, and where bodies may sleep pymunk has taken
-        no step, after which all is read again in any case."""
+        """Whether `patch` may be tried. Where bodies may sleep, only if none sleeps, since changes would wake some, and
+        pymunk has taken no step of its own, after which the space is read again anyway."""
         if self._sleep is None:
             return self.space.sleep_time_threshold == math.inf and (world.joints is None or world.edited())
         return world.edited() and not (self._sleep.any_asleep or self._sleep.changed())
@@ -203,7 +205,7 @@ class PackedSpace(Stepper):
         return self._adopt(world)
 
     def _adopt(self, world: World) -> World:
-        """Use a world that is current."""
+        """Use this world, which is current, in the next steps."""
         self.objects_read, world.objects_read = self.objects_read + world.objects_read, 0
         self._world = world
         return world
@@ -215,8 +217,7 @@ class PackedSpace(Stepper):
             wake_neighbours(self.space)
 
     def sleep_state(self, bodies: Sequence[pymunk.Body]) -> tuple[FloatArray, IntArray, IntArray]:
-        """For how long bodies have been at rest (N,); index of another body of their sleeping group (N,), -1 for awake
-        bodies; (2,) the timers of `space/sleeping.py`."""
+        """(N,) times at rest of the bodies, (N,) their groups as of `sleeping_groups`, (2,) `Sleep.timers`."""
         if self._sleep is None:
             return np.zeros(len(bodies)), sleeping_groups(bodies), np.zeros(2, np.int64)
         return self._sleep.rested(bodies), sleeping_groups(bodies), self._sleep.timers
@@ -231,12 +232,12 @@ class PackedSpace(Stepper):
             self._sleep.recall(dict(zip(bodies, rested.tolist(), strict=True)), timers)
 
     def _undo(self, world: World, state: FloatArray) -> None:
-        """Restore the states of the bodies."""
+        """After a failure in a step: restore the states (N, 9) of the bodies; the space is read again."""
         self._world = None
         world.bodies.scatter(state)
 
     def _raise_failure(self, world: World, dt: float, status: int) -> None:
-        """Raise the exception of a negative status."""
+        """Raise NotFiniteError for a negative status, with the body and value if known."""
         self._world = None
         if status == ENERGY:
             book = self._method.outcome()[0]

@@ -2,16 +2,18 @@
 
 | stage | method |
 |---|---|
-| have settings, shapes or bodies changed? | `World.current`, else `PackedSpace._update_world` |
+| have settings, shapes or bodies changed? | `World.current`; if so, `PackedSpace._update_world` |
 | read all states | `World.gather` |
 | move the arrays | `advance`, by the `Method` of the world |
-| repeat the step with sleeping bodies that were touched | `_repeat_awake` |
-| take the ledger's numbers | `_outcome` |
+| if sleeping bodies were touched, wake them and repeat the step | `_repeat_awake` |
+| get the ledger's numbers | `_outcome` |
 | write the states, and update pymunk's shapes | `write_end` |
 | make the report | `_finish` |
 | call post-step callbacks | `Sync.call_back` |
 
-Steps that call functions of the program have their own method, `HookedStepper._hooked_step`.
+Other kinds of steps: `HookedStepper._hooked_step` calls functions of the program; `_silent_step` is that of a space
+whose only functions are collision handlers, of which none would be called; `_sleeping_step` is around all of these
+where bodies may sleep.
 """
 
 from __future__ import annotations
@@ -77,13 +79,13 @@ class PackedStepper(HookedStepper):
         if changed or (sleep.any_asleep and sleep.wake_ahead(dt)):
             world = self._update_world(anew=True)
         report = self._step(world, dt)
-        now = self._sleep
-        if now is not None and now.world is self._world and now.rest(dt) and now.world.current():
-            now.fall_asleep(report.contacts, dt)
+        present = self._sleep  # another one if the world was read again
+        if present is not None and present.world is self._world and present.rest(dt) and present.world.current():
+            present.fall_asleep(report.contacts, dt)
         return report
 
     def rewound(self, world: World) -> list[AnyArray]:
-        """Arrays that a step writes, and that one which takes its place needs as they were."""
+        """The arrays that a step changes and that must be restored before it is repeated."""
         loop = self.event_loop
         left = world.STATES[LEFT]
         return [left] if loop is None or not loop.thin else [left, as_integers(loop.scene.SIDE)]
@@ -96,8 +98,11 @@ class PackedStepper(HookedStepper):
     def _repeat_awake(
         self, world: World, dt: float, half_damping: float, status: int, before: list[AnyArray]
     ) -> tuple[World, int]:
-        """Repeat the step with the sleeping bodies awake that it has touched, until it touches none, or until functions
-        are to be called. before: what `rewound` had before the step."""
+        """While the step has touched sleeping bodies, wake these and repeat it. It is not repeated, but begun by the
+        caller, if it calls functions of the program then. Returns the world and status of the last repetition.
+
+        `before`: a copy of the arrays of `rewound`, made before the step.
+        """
         while self._sleep is not None and self._sleep.any_asleep and status >= 0 and status & EVENTS:
             if not self.may_touch_sleepers(self._sleep):
                 break
@@ -106,8 +111,8 @@ class PackedStepper(HookedStepper):
             if not touched:
                 break
             self._sleep.wake(touched)
-            for array, was in zip(self.rewound(world), before, strict=True):
-                array[:] = was
+            for array, old in zip(self.rewound(world), before, strict=True):
+                array[:] = old
             world = self._update_world(anew=True)
             if self._calls(world):
                 if self._sleep is not None and self._sleep.any_asleep and self._sleep.wake_ahead(dt):
@@ -122,7 +127,8 @@ class PackedStepper(HookedStepper):
         return not world.plain and (world.hooked or (world.joints is not None and world.joints.calls_back()))
 
     def _is_silent(self, world: World, dt: float, half_damping: float) -> bool:
-        """Whether a step calls no function of a world that has `only_handlers`; then it is read, and rehearsed."""
+        """Whether a step of a world that has `only_handlers` calls none of them. If so, its states were read, and its
+        rehearsal was done or left out."""
         if self._sleep is not None or self.decisions.laws or world.rules.some:
             return False
         if world.joints is not None and world.joints.calls_back():
@@ -130,7 +136,7 @@ class PackedStepper(HookedStepper):
         return world.rehearsal.is_silent_again(dt, half_damping, self._sync)
 
     def _silent_step(self, world: World, dt: float, half_damping: float) -> StepReport:
-        """A step that `_is_silent`."""
+        """A step for which `_is_silent` has returned True."""
         left_out = world.rehearsal.left_out
         try:
             status = self.advance(world, dt, half_damping)
@@ -143,7 +149,7 @@ class PackedStepper(HookedStepper):
                 status = status if left_out else status & EVENTS | world.write_whole()
                 world.scatter(status)
         except BaseException:
-            self._undo(world, world.state)  # which a rehearsal has changed
+            self._undo(world, world.state)  # a rehearsal that was not left out has moved the bodies
             raise
         if status < 0:
             self._undo(world, world.state)
@@ -153,7 +159,7 @@ class PackedStepper(HookedStepper):
         return report
 
     def _step(self, world: World, dt: float) -> StepReport:
-        """A step of the awake bodies."""
+        """A step of the awake bodies, of the kind that the functions of the space require."""
         half_damping = world.half_damping(dt)
         if not world.plain and self._calls(world):
             if world.only_handlers and self._is_silent(world, dt, half_damping):
