@@ -60,19 +60,20 @@ def plain(count: int, start: int, gain: float, joints: bool, length: int) -> str
 
 def compositions(count: int, minutes: float, start: int, joints: bool) -> int:
     """Play so many compositions, or for so long; how many break a law."""
-    clock, failed, longest, unconverged, done = time.perf_counter(), 0, 0.0, 0, 0
+    clock, failed, longest, unconverged, late, done = time.perf_counter(), 0, 0.0, 0, 0, 0
     with tqdm(total=count, unit="scene", desc="compositions") as bar:
         while done < count and time.perf_counter() - clock < 60.0 * minutes:
             try:
                 found = Varied(start + done, joints).play()
                 longest, unconverged = max(longest, found.longest), unconverged + found.unconverged
+                late += found.late
             except Exception as error:
                 failed += 1
                 tqdm.write(f"seed {start + done}: {type(error).__name__}: {error}")
             done += 1
             bar.update(1)
     spent = time.process_time() / max(done, 1)
-    print(f"{done} compositions, {failed} fail, longest step {1e3 * longest:.0f} ms", end=", ")
+    print(f"{done} compositions, {failed} fail, longest step {1e3 * longest:.0f} ms, {late} take too long", end=", ")
     print(f"{unconverged / max(done, 1):.2f} steps of each not converged, {spent:.2f} s each")
     return failed
 
