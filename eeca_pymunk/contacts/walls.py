@@ -10,14 +10,29 @@ from __future__ import annotations
 from math import inf
 
 from ..arrays import FloatArray
-from ..compiled import nonallocating
+from ..compiled import Choice, inlined, nonallocating
 from ..geometry.sides import depth_limit
-from ..model.contacts import AnyProblem
+from ..model.contacts import AnyProblem, JointedProblem, Problem
 from ..model.parameters.intervals import WALL_SWEEPS
 from ..model.scene import Scene
 from ..rows.build import normal_rate
-from ..rows.lifting import is_out, meet_gap
+from ..rows.lifting import meet_gap
 from .memory import shapes_of
+
+
+@inlined
+def is_out_free(problem: Problem, i: int) -> bool:
+    """Whether no impulse moves contact i."""
+    return False
+
+
+@inlined
+def is_out_jointed(problem: JointedProblem, i: int) -> bool:
+    """Whether no impulse moves contact i."""
+    return bool(problem.C.OUT[i] != 0)
+
+
+is_out = Choice(is_out_free, is_out_jointed)
 
 
 @nonallocating

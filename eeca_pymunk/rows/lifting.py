@@ -40,30 +40,15 @@ def meet_gap(problem: AnyProblem, GAP: float, MU: FloatArray, D: FloatArray, i: 
     return float(abs(d) / k)
 
 
-@inlined
-def is_out_free(problem: Problem, i: int) -> bool:
-    """Whether no impulse moves contact i."""
-    return False
-
-
-@inlined
-def is_out_jointed(problem: JointedProblem, i: int) -> bool:
-    """Whether no impulse moves contact i."""
-    return bool(problem.C.OUT[i] != 0)
-
-
-is_out = Choice(is_out_free, is_out_jointed)
-
-
 @nonallocating
 def keep_walls(problem: AnyProblem, n: int, GAPS: FloatArray, MU: FloatArray, D: FloatArray) -> None:
     """After a `lift` that has come to no end: displace none of the n bodies that impulses move deeper into what nothing
-    moves than it is. In sweeps, as a body may have several such contacts: what lifts one end of a face lowers the other
-    one."""
+    moves than it is; contacts with an infinite gap are left out. In sweeps, as a body may have several such contacts:
+    what lifts one end of a face lowers the other one."""
     for _ in range(WALL_SWEEPS):
         met = True
         for i in range(problem.m):
-            if max(problem.ROWS[i].a, problem.ROWS[i].b) >= n and not is_out(problem, i):
+            if max(problem.ROWS[i].a, problem.ROWS[i].b) >= n:
                 if GAPS[i] + normal_rate(problem.ROWS[i], D) < min(GAPS[i], 0.0):
                     met = meet_gap(problem, max(GAPS[i], 0.0), MU, D, i) == 0.0 and met
         if met:
