@@ -12,7 +12,8 @@ bounce is e max(-u, 0) for e < 1, -u for e = 1.
 
 Where a body without mobility turns, u is by a part c of -u less than with the geometry of the start, and u+ more than
 with that of the end: u + c bounces, and c is added to the bounce. What the body carries along neither sinks nor loses
-energy so, to second order: with the bounce 0 it would go along the tangent of the middle, through the wall.
+energy so, to second order: with the bounce 0 it would go along the tangent of the middle, through the wall. 2 c/h is
+an acceleration, too.
 """
 
 from __future__ import annotations
@@ -54,7 +55,7 @@ def target(ROWS: Rows[Row], m: int, ACC: FloatArray, EXPECTED: FloatArray, pull:
             if hardly_bounces(e, begins, max(-along * h, EXPECTED[i] / ROWS[i].k_n)):
                 bounce = 0.0
             bounce += begins - u
-        if u < -IMPACT_SPEED * pull * h or (e >= 1.0 and ROWS[i].gap > 0.0):
+        if begins < -IMPACT_SPEED * (pull * h + 2.0 * ROWS[i].turned) or (e >= 1.0 and ROWS[i].gap > 0.0):
             ROWS[i].target = bounce
             ROWS[i].wake = close
         else:

@@ -29,7 +29,7 @@ def carried(
         lam, beta = L[i, 0], L[i, 1]
         if lam == 0.0 and beta == 0.0:
             continue
-        work -= beta * ROWS[i].surface
+        work -= beta * (ROWS[i].surface + ROWS[i].swung)
         fx = lam * ROWS[i].nx - beta * ROWS[i].ny
         fy = lam * ROWS[i].ny + beta * ROWS[i].nx
         a, b = ROWS[i].a, ROWS[i].b

@@ -207,9 +207,9 @@ def stick_time(ROWS: Rows[Row], L: FloatArray, FREE: FloatArray, VN: FloatArray,
     for z in range(m):
         most = ROWS[z].friction * L[z, 0]
         before = abs(ROWS[z].ut)
-        # The slip of contacts that stick throughout is round-off.
+        # The slip of contacts that stick throughout is round-off, or the error of what a turning body carries along.
         change = most / ROWS[z].k_t
-        if most == 0.0 or before <= STICK * change:
+        if most == 0.0 or before <= max(STICK * change, ROWS[z].unsure):
             continue
         if abs(tangent_rate(ROWS[z], VN)) > STICK * before:
             continue

@@ -18,7 +18,7 @@ from .bounded_rows import settle_bounded
 def slip_of(row: Row, WAY: FloatArray, h: float) -> float:
     """How far a contact slips in h while bodies go WAY: its surfaces move at a rate, bodies by ways, of which nothing
     may be rounded away where h is short."""
-    return slip_rate(row, WAY) + h * row.surface
+    return slip_rate(row, WAY) + h * (row.surface + row.swung)
 
 
 @nonallocating

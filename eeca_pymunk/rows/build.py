@@ -14,7 +14,7 @@ from ..model.parameters.impulses import SINGULAR
 @nonallocating
 def place_row(row: Row, px: float, py: float, POSE: FloatArray, IM: FloatArray, II: FloatArray) -> None:
     """Complete a row, whose bodies, unit normal, gap, elasticity, friction and surface velocity are set, for a contact
-    at the point (px, py), with target 0, active.
+    at the point (px, py), with target 0, active, where nothing turns.
 
     Arms that are round-off of the point's coordinates (a circle about its centre of mass) become 0, so that
     frictionless impulses exert no torque on disks.
@@ -33,7 +33,7 @@ def place_row(row: Row, px: float, py: float, POSE: FloatArray, IM: FloatArray, 
     row.k_n, row.k_t = 1.0 / nn, 1.0 / tt
     if row.friction > 0.0:
         invert(row, nn, nt, tt)
-    row.target, row.wake = 0.0, np.inf
+    row.target, row.wake, row.turned, row.swung, row.unsure = 0.0, np.inf, 0.0, 0.0, 0.0
 
 
 @nonallocating
@@ -65,7 +65,7 @@ def slip_rate(row: Row, V: FloatArray) -> float:
 
 @nonallocating
 def tangent_rate(row: Row, V: FloatArray) -> float:
-    """u_t of a contact at velocities V (k, 3), surface velocities included."""
+    """u_t of a contact at velocities V (k, 3) at the end of its interval, surface velocities included."""
     return slip_rate(row, V) + row.surface
 
 
@@ -88,7 +88,7 @@ def rates(ROWS: Rows[Row], V: FloatArray, m: int) -> None:
     """Set u_n and u_t before the impulses of m contacts from velocities V (k, 3)."""
     for i in range(m):
         ROWS[i].un = normal_rate(ROWS[i], V)
-        ROWS[i].ut = tangent_rate(ROWS[i], V)
+        ROWS[i].ut = tangent_rate(ROWS[i], V) + 2.0 * ROWS[i].swung
 
 
 @nonallocating
