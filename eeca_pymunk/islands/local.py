@@ -133,8 +133,9 @@ def write_contacts(
         A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, A.PUSHED_BY[c].root = a, b, root
         pushed = A.PUSHED[c]
         pushed.normal, pushed.tangential, pushed.start, pushed.length = L[z, 0], L[z, 1], t, h
-        pushed.un_before, pushed.ut_before = ROWS[z].un, ROWS[z].ut
-        pushed.un_after, pushed.ut_after = normal_rate(ROWS[z], VN), tangent_rate(ROWS[z], VN)
+        # Those that do work: rates between them are linear.
+        pushed.un_before, pushed.ut_before = ROWS[z].un, ROWS[z].ut - ROWS[z].swung
+        pushed.un_after, pushed.ut_after = normal_rate(ROWS[z], VN), tangent_rate(ROWS[z], VN) + ROWS[z].swung
         pushed.work = carried(ROWS[z : z + 1], L[z : z + 1], isle.V, VN, isle.IM, isle.II, 1)
         pushed.held = 0.0
         pushed.nx, pushed.ny = ROWS[z].nx, ROWS[z].ny
