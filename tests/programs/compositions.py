@@ -332,13 +332,13 @@ class Composition:
             raise Broken(f"step {k}: the ledger's change is off by {(ledger.change - change) / scale:.1e}")
         most = outside.most(report, self.dt, True) if found.off <= HOLDS else math.inf
         # The change of what a spring stores has the round-off of all that it stores, and of its length.
-        error = CLOSES * scale + SPRING_ROUND_OFF * stored(self.space)
+        error = noise + CLOSES * scale + SPRING_ROUND_OFF * stored(self.space)
         taken = 0.0 if self.space.constraints else max(0.0, -ledger.external)  # joints may brake: of them, only gains
         if max(ledger.external, taken) > most + error:
             most = outside.most(report, self.dt, False)
         if max(ledger.external, taken) > most + error:
             raise Broken(f"step {k}: {ledger.external / scale:.1e} from outside, {most / scale:.1e} at most")
-        if not self.gains and change > CLOSES * scale:
+        if not self.gains and change > noise + CLOSES * scale:
             raise Broken(f"step {k}: energy rises by {change / scale:.1e}")
         energies.append(now.energy)
         for body, size in zip(self.bodies, self.sizes, strict=True):
