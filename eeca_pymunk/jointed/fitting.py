@@ -16,6 +16,7 @@ from ..model.scene import Scene
 from ..rows.bounded import room_for_rows
 from ..rows.build import normal_rate
 from ..rows.inplace import add
+from ..rows.lifting import keep_walls
 from .advance import Interval, apart, find_hit, join_points
 from .columns import fill_free, fill_group, make_columns, weigh
 from .component import fit_speeds, ready
@@ -115,7 +116,10 @@ def stop_closing(
     for i in range(pushing):
         RATES[i] = normal_rate(KEEP[i], motion.V)
     D, before = np.zeros_like(motion.V), kinetic_energy(motion.V, isle.IM, isle.II, n)
-    MU, _ = raise_gaps(JointedProblem(KEEP, C, room_for_rows(0, 0), pushing), RATES, D, fine)
+    problem = JointedProblem(KEEP, C, room_for_rows(0, 0), pushing)
+    MU, worst = raise_gaps(problem, RATES, D, fine)
+    if worst > fine:
+        keep_walls(problem, n, RATES, MU, D)
     HELD, loss = np.zeros(m), 0.0
     for i in range(pushing):
         HELD[PUSHING[i]] = MU[i]
