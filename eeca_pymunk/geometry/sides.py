@@ -6,8 +6,9 @@ step, the shortest way apart may be the wrong one. So each pair of them remember
 SIDE. It is valid
 
 * for cores that touch, up to the depth that an interval always allows, and
-* for contacts that forces hold (`deep` > 0) as far as they may move relative to each other in an interval: a normal n
-  with n . m < 0 is the wrong one up to that distance (length), and the gap is negative.
+* for contacts that forces hold, and pairs that a correction displaces (`deep` > 0), as far as they may move relative to
+  each other in an interval: a normal n with n . m < 0 is the wrong one up to that distance (length), and the gap is
+  negative.
 
 Pairs that are farther apart have their side from the geometry, and the prediction of their next impact notes it.
 

@@ -8,7 +8,7 @@ from ..arrays import IntArray
 from ..compiled import nonallocating
 from ..contacts.single import move_to
 from ..geometry.gap import gap_at
-from ..islands.accounting import account_contact, apply_correction
+from ..islands.accounting import account_contact, apply_correction, hold_sides
 from ..islands.at_rest import report_at_rest, store_rest
 from ..model.bodies import AT_REST
 from ..model.scene import Scene
@@ -33,7 +33,10 @@ def close(A: Scene, WALK: IntArray) -> None:
     gx, gy = PAR.gravity_x, PAR.gravity_y
     for i in range(BODY.shape[0] - 1):
         move_to(BODY, i, end)
-        if not even and A.STATE[i].island == i:
+    for i in range(BODY.shape[0] - 1 if len(A.SIDE) > 0 and not even else 0):
+        hold_sides(A, i, end)
+    for i in range(BODY.shape[0] - 1 if not even else 0):
+        if A.STATE[i].island == i:
             apply_correction(A, i, end)
     for i in range(BODY.shape[0] - 1):
         fx, fy, twist = A.PULL[i, 0] - gx, A.PULL[i, 1] - gy, A.PULL[i, 2]

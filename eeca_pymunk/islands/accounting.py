@@ -9,10 +9,13 @@ from __future__ import annotations
 
 from ..compiled import Table, nonallocating
 from ..contacts.single import move_to
+from ..geometry.flight import norm
+from ..geometry.gap import gap
+from ..geometry.sides import note_side, remembers
 from ..model.bodies import AT_REST, CHANGED
 from ..model.contacts import ENDED, LASTED
 from ..model.scene import Scene, scene_of
-from ..pairs.lists import mark_pair
+from ..pairs.lists import far_apart, mark_pair
 from ..rows.energy import offset_gain
 from .at_rest import log_contact, mark_changed, wake_supported
 from .membership import unite
@@ -163,6 +166,29 @@ def move_to_end(A: Scene, i: int, end: float) -> None:
     body.angle += rest.lift_angle
     body.vx, body.vy, body.spin = rest.lift_vx, rest.lift_vy, rest.lift_spin
     rest.lift_x, rest.lift_y, rest.lift_angle = 0.0, 0.0, 0.0
+
+
+@nonallocating
+def lift_way(A: Scene, i: int) -> float:
+    """Length by which points of body i move at most by the correction at the end of its interval."""
+    rest = A.RESTING[i]
+    return norm(rest.lift_x, rest.lift_y) + abs(rest.lift_angle) * A.BODY[i].extent if A.STATE[i].island >= 0 else 0.0
+
+
+@nonallocating
+def hold_sides(A: Scene, i: int, end: float) -> None:
+    """Let the thin shapes of body i that its correction may move into others stay on the sides where they are. The
+    contacts of the interval do not have all of these pairs, and no impact is predicted on a displacement."""
+    own = lift_way(A, i)
+    for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes if own > 0.0 else 0):
+        for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number if A.CORNER[4 * s].thin > 0 else 0):
+            o = int(A.POOL[w])
+            reach = own + lift_way(A, A.LINK[o].owner)
+            if not remembers(A, s, o) or (o < A.LIST.shape[0] and far_apart(A, s, o, end, reach)):
+                continue
+            g, nx, ny, _, _ = gap(A, s, o, end)
+            if g <= reach:
+                note_side(A, s, o, nx, ny, True)
 
 
 @nonallocating

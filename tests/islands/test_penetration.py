@@ -119,3 +119,25 @@ def test_no_point_of_a_body_moves_farther_than_a_quarter_of_its_size_as_overlaps
         assert book.residual == 0.0
         way = (rod.position - place).length + abs(rod.angle - angle) * math.hypot(1.0, 0.1) * unit
         assert way <= CORRECTION_STEP * math.hypot(1.0, 0.1) * unit * (1.0 + 1e-9)
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0])
+@pytest.mark.parametrize("elasticity", [0.0, 1.0])
+@pytest.mark.parametrize("deep", [0.01, 0.05, 0.2])
+def test_a_correction_leads_no_thin_shape_through_a_wall(deep: float, elasticity: float, unit: float) -> None:
+    """A heavy disk, put into a light one, displaces it and the rod below it beyond a floor that the rod does not touch
+    yet: its contact is in no interval, and no impact is predicted on a displacement."""
+    space, radius, gap = pymunk.Space(), 0.5 * unit, 0.01 * unit
+    space.gravity = 0.0, -9.81 * unit
+    floor = pymunk.Segment(space.static_body, (-50.0 * unit, 0.0), (50.0 * unit, 0.0), 0.0)
+    rod = pymunk.Body(1.0, unit * unit / 3.0)
+    rod.position = 0.0, gap
+    line = pymunk.Segment(rod, (-unit, 0.0), (unit, 0.0), 0.0)
+    floor.elasticity = line.elasticity = elasticity
+    space.add(floor, rod, line)
+    disk(space, Vec2d(0.0, gap + radius), radius, Vec2d.zero())
+    disk(space, Vec2d(0.0, gap + 3.0 * radius - deep * unit), radius, Vec2d.zero(), 1000.0)
+    stepper = ep.EECA(space)
+    for _ in range(60):
+        stepper.step(DT)
+        assert rod.position.y > -CORRECTION_STEP * radius
