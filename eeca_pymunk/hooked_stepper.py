@@ -73,7 +73,7 @@ class HookedStepper(PackedSpace):
         finally:
             BUSY.discard(self.space)
         if world.collisions:
-            self._sync.finish_rehearsal(dt, world.rehearsal.left_out)
+            self._sync.finish_rehearsal(world.rehearsal.left_out)
         elif self.sync or (world.joints is not None and world.joints.calling):
             self._sync.call_back()
         sleep = self._sleep

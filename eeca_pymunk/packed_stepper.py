@@ -155,7 +155,7 @@ class PackedStepper(HookedStepper):
             self._undo(world, world.state)
             return self._hooked_step(self._update_world(anew=True), dt)
         report = self._finish(world, dt, status, outcome)
-        self._sync.finish_rehearsal(dt, left_out)
+        self._sync.finish_rehearsal(left_out)
         return report
 
     def _step(self, world: World, dt: float) -> StepReport:

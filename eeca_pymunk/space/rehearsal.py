@@ -163,7 +163,7 @@ class Rehearsal:
     def _step_without_calls(self, dt: float, sync: Sync) -> None:
         """A silent step: leave pymunk's step out, REINDEXINGS times in a row at most, as `sync.py` then reindexes. Take
         it if arbiters were read since the last step, since they will probably be read again."""
-        self.left_out = not sync.were_read() and self._left_out_steps < private_shapes.REINDEXINGS
+        self.left_out = not sync.were_read and self._left_out_steps < private_shapes.REINDEXINGS
         if self.left_out:
             self._left_out_steps += 1
             return

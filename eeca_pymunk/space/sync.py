@@ -3,11 +3,17 @@
 There are two ways. A *rest step*, pymunk's own step with all velocities 0, moves nothing; it renews broad phase and
 arbiters, forgets old contacts, and stores dt. *Reindexing* moves the shapes of one body after the other and changes
 nothing else; it costs less for a few bodies, above all if they touch or are jointed. In a spatial hash it leaves unused
-handles, which a rest step clears: there is a rest step after `REINDEXINGS` steps. Post-step callbacks are called
-afterwards, when bodies have their velocities.
+handles, which a rest step clears: there is one after `REINDEXINGS` steps. In spaces with collision handlers a rehearsal
+(`rehearsal.py`) is taken or left out instead. Post-step callbacks are called afterwards, when bodies have their
+velocities. After an EECA step pymunk is in one of these states:
 
-If arbiters are read after a step that has reindexed, a rest step is taken first (`Sync.renew`); after one whose
-rehearsal was left out, that rehearsal.
+| state | entered by | arbiters are | before they are read |
+|---|---|---|---|
+| `MADE` | a rest step, or a rehearsal | those of the step | nothing is done |
+| `NO_REST_STEP` | reindexing | older | a rest step is taken: `MADE` |
+| `NO_REHEARSAL` | a step whose rehearsal was left out | older | it is taken: `MADE` |
+
+A step of pymunk's own is found by its counter of steps (`Sync.is_ours`); the next EECA step ends with a rest step.
 """
 
 from __future__ import annotations
@@ -38,6 +44,8 @@ if TYPE_CHECKING:
 # Measured: reindexing costs less than a rest step up to 30 shapes in a tree and 6 in a spatial hash without contacts,
 # up to 70 and 8 with contacts. With joints it costs a fifth in a tree; in a hash less up to 16 shapes, twice for many.
 MOST_FREE, MOST_TOUCHING = 12, 32
+
+MADE, NO_REST_STEP, NO_REHEARSAL = 0, 1, 2
 
 # Returns those of given constraints whose bodies are all awake.
 Awake: TypeAlias = Callable[[Sequence[pymunk.Constraint]], list[pymunk.Constraint]]
@@ -94,7 +102,9 @@ class Sync:
     Attributes:
         renews: whether reading arbiters calls `renew` first.
         waits: function that returns whether post-step callbacks, additions or removals wait for the end of a step.
+        state: of pymunk after the last EECA step: `MADE`, `NO_REST_STEP` or `NO_REHEARSAL`.
         stamp: number of steps that pymunk had taken after the last EECA step, -1 before the first.
+        were_read: whether arbiters were read since they were made; the next step then makes them, to be read again.
     """
 
     def __init__(self, world: World, past: Sync | None = None) -> None:
@@ -103,17 +113,15 @@ class Sync:
         self._asleep = bodies.reached is not None
         sleepers = [bodies.items[i] for i in bodies.asleep.nonzero()[0]] if self._asleep else []
         self._stop_woken = private_sleep.stop_woken(sleepers)
-        self._world = world
-        self._timestamp: Callable[[], int] = private.timestamp(self.space)
+        self._world, self._timestamp = world, private.timestamp(self.space)
         self.waits = partial(private.waits, self.space)
-        self._rested, self._dt, self._reindexings = -1, 0.0, 0
-        self._touched = self._stale = self._were_read = False
+        self.renews, self.were_read, self.state, self.stamp = False, False, MADE, -1
+        # The last rest step: number of pymunk's steps after it, dt, how many reindexings may still follow, and whether
+        # shapes touched. `_first`: none in this reading; new bodies and joints may have corrections and impulses.
+        self._rested, self._dt, self._reindexings, self._touched, self._first = -1, 0.0, 0, False, True
         if past is not None and not (self._asleep or past._asleep):
             self._rested, self._dt, self._reindexings = past._rested, past._dt, past._reindexings
-            self._touched, self._stale, self._were_read = past._touched, past._stale, past._were_read
-        self._first = True  # no rest step yet: new bodies and joints may have corrections and impulses of pymunk
-        self.renews = False
-        self.stamp = -1
+            self._touched, self.were_read = past._touched, past.were_read
         self._past_stamp = past.stamp if past is not None and world.undecided else -1
 
     def reindexes(self, dt: float, status: int) -> bool:
@@ -125,41 +133,32 @@ class Sync:
         * the number of moving shapes is at most MOST_TOUCHING; with neither contacts nor joints at most MOST_FREE; with
           joints and `renews` there is no limit.
         """
-        if self.were_read() or self._reindexings == 0 or dt != self._dt:
+        if self.were_read or self._reindexings == 0 or dt != self._dt:
             return False
         touches, jointed = status & EVENTS or self._touched, self._world.joints is not None
         if touches and not self.renews:
             return False
         few = self._world.moving_shapes <= (MOST_TOUCHING if touches or jointed else MOST_FREE)
-        if not (few or (jointed and self.renews)):
-            return False
-        return self._timestamp() == self._rested
-
-    def were_read(self) -> bool:
-        """Whether arbiters were read since the last call."""
-        were_read, self._were_read = self._were_read, False
-        return were_read
+        return (few or (jointed and self.renews)) and self._timestamp() == self._rested
 
     def reindex(self) -> None:
-        """Move the shapes to the poses of their bodies."""
+        """Move the shapes to the poses of their bodies, for a step that `reindexes`."""
         self._reindexings -= 1
-        self._stale = True
+        self.state, self.stamp = NO_REST_STEP, self._rested
         private_shapes.reindex(self.space, self._world.movers)
 
     def renew(self, drawn: bool = False) -> None:
-        """Make the arbiters by a rest step, or by the rehearsal that was left out, if the last step was an EECA step
-        that made none. `drawn`: they are read only for a picture. That costs more than making them, so the next step
-        need not make them in advance, unless bodies may sleep."""
-        world = self._world
-        self._were_read |= not (drawn and self.renews)
-        if not self._stale or self.space in BUSY or not self.is_ours():
-            return
-        if world.collisions:
-            world.rehearsal.take_left_out_step()
-            self.stamp, self._stale = self._timestamp(), False
-        else:
-            with private_rest.stopped(self.space):
-                self.rest(self._dt)
+        """Make the arbiters of the last EECA step, before they are read. `drawn`: only for a picture. That costs more
+        than making them, so the next step need not make them, unless bodies may sleep."""
+        if self.state != MADE and self.space not in BUSY and self.is_ours():
+            if self.state == NO_REHEARSAL:
+                self._world.rehearsal.take_left_out_step()
+                self.state, self.stamp = MADE, self._timestamp()
+            else:
+                with private_rest.stopped(self.space):
+                    self.rest(self._dt)
+        if not (drawn and self.renews):
+            self.were_read = True
 
     def call_back(self) -> None:
         """Do waiting additions and removals, and call post-step callbacks."""
@@ -169,13 +168,15 @@ class Sync:
         """Count the steps that pymunk has taken until now as parts of EECA steps."""
         self.stamp = self._timestamp()
 
-    def finish_rehearsal(self, dt: float, left_out: bool) -> None:
+    def finish_rehearsal(self, left_out: bool) -> None:
         """The end of a step with handlers, whose rehearsal was taken or `left_out`: move shapes to their bodies, then
         `call_back`."""
-        self.stamp, self._dt, self._stale = self._timestamp(), dt, left_out
+        self.stamp = self._timestamp()
         if left_out:
+            self.state = NO_REHEARSAL
             private_shapes.reindex(self.space, self._world.movers)
         else:
+            self.state, self.were_read = MADE, False
             private_shapes.reindex_anew(self.space, self._world.movers)
         self.call_back()
 
@@ -191,7 +192,6 @@ class Sync:
         """Take a rest step that calls no functions of bodies. All bodies must have velocity 0; jointed ones may end
         with velocities of round-off."""
         world, stored = self._world, self._first or self._timestamp() != self._rested
-        self._first = False
         if stored:
             private_shapes.forget_corrections(world.movers)
             for arbiter in private.raw_arbiters(self.space):
@@ -206,8 +206,7 @@ class Sync:
         if slept and not world.bodies.in_order():
             self._stop_woken()  # gravity has accelerated the bodies that pymunk has woken
         self._rested, self._dt, self._reindexings = self._timestamp(), dt, private_shapes.REINDEXINGS
-        self.stamp = self._rested
-        self._stale = False
+        self.state, self.stamp, self.were_read, self._first = MADE, self._rested, False, False
         if not self.renews and self._world.moving_shapes <= MOST_FREE:
             self._touched = bool(private.raw_arbiters(self.space))
 

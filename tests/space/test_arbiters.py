@@ -144,3 +144,17 @@ def test_looking_changes_nothing_and_native_steps_have_their_own() -> None:
     pymunk.Body.each_arbiter(bodies[0], lambda a: native.append(a.total_impulse.y))
     assert native
     assert native != [0.0]
+
+
+def test_a_body_that_was_just_added_has_its_contacts() -> None:
+    """Also where the step after the addition only reindexes (`Sync.reindex`)."""
+    space, bodies = scene(e=0.0, height=0.5)
+    stepper = ep.EECA(space)
+    for _ in range(3):
+        stepper.step(DT)
+    new = pymunk.Body(2.0, 2.0 / 6.0)
+    new.position = -4.0, 0.5
+    space.add(new, pymunk.Poly.create_box(new, (1.0, 1.0)))
+    stepper.step(DT)
+    for body in (*bodies, new):
+        assert sum(impulse.y for impulse, *_ in seen(body)) == pytest.approx(2.0 * G * DT, rel=1e-9)
