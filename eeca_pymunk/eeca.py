@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Protocol
 from weakref import ref
 
 from .closures.time_of_impact import TimeOfImpact
-from .packed_space import Method
 from .runs import RunningStepper
-from .saved import Saved, sides_of
+from .saved import Saved, Sides, sides_of
 from .space.arbiters import Touches, show_contacts, touches
 from .space.world import World
+from .stepper import Method
 
 if TYPE_CHECKING:
     import pymunk
@@ -57,21 +57,35 @@ class EECA(RunningStepper):
         super().refresh()
         self._saved = None
 
-    def prepare(self, world: World, past: World | None) -> None:
-        reference = ref(self)  # weak, see `show_contacts`
-        show_contacts(self.space, lambda drawn: None if (stepper := reference()) is None else stepper._touches(drawn))
-        self._sync.renews = self._sleep is None  # groups of sleeping bodies are found from arbiters
+    def make_method(self, world: World) -> Method:
+        return self.closure.prepare(world)
+
+    def start(self, world: World) -> None:
+        self._show_contacts()
         saved, self._saved = self._saved, None
         if saved is not None and saved.resume(world, self.decisions):
             self._use(saved.method)
-            return
-        loop = None if past is None else self.event_loop
-        sides = None if past is None or loop is None else sides_of(past, loop)
-        if world is past:
-            if loop is not None:
-                loop.release()
-            world.load()
-        self._use(self.closure.prepare(world))
+        else:
+            self._use_new_method(world, None)
+
+    def restart(self, world: World, past: World) -> None:
+        self._show_contacts()
+        self._use_new_method(world, self._sides(past))
+
+    def rebuild(self, world: World) -> None:
+        sides = self._sides(world)
+        if (loop := self.event_loop) is not None:
+            loop.release()
+        world.load()
+        self._use_new_method(world, sides)
+
+    def _sides(self, world: World) -> Sides | None:
+        """The sides of the thin shapes of a world, by the present method."""
+        return None if (loop := self.event_loop) is None else sides_of(world, loop)
+
+    def _use_new_method(self, world: World, sides: Sides | None) -> None:
+        """Step this world by a new method, whose thin shapes are on these sides of each other."""
+        self._use(self.make_method(world))
         loop = self.event_loop
         if self._patches and world.joints is None and loop is not None:
             loop.keep_fresh()
@@ -81,6 +95,12 @@ class EECA(RunningStepper):
             world.joints.planned()
             world.find_parted()
             self._method.rule(world.laws())
+
+    def _show_contacts(self) -> None:
+        """Let pymunk's arbiters have the contacts of steps, in a space that was just read."""
+        reference = ref(self)  # weak, see `show_contacts`
+        show_contacts(self.space, lambda drawn: None if (stepper := reference()) is None else stepper._touches(drawn))
+        self._sync.renews = self._sleep is None  # groups of sleeping bodies are found from arbiters
 
     def _touches(self, drawn: bool) -> Touches | None:
         """Pairs that touched in the last step, for pymunk's arbiters; None if pymunk has taken a step since."""

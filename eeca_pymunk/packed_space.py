@@ -5,18 +5,16 @@ from __future__ import annotations
 import math
 import warnings
 from abc import abstractmethod
-from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypeVar
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 import numpy as np
 
 from .arrays import FloatArray, IntArray
-from .compiled import Table
 from .energy.ledger import AFTER
 from .errors import NotFiniteError
 from .impacts.run import ENERGY
 from .impacts.scene import EventLoop
-from .report import Details, Outcome
 from .space.checks import check_ignored
 from .space.decisions import Decisions, Rules
 from .space.describe import describe
@@ -24,34 +22,13 @@ from .space.sleep_groups import put_to_sleep, sleeping_groups, wake_neighbours
 from .space.sleeping import Sleep
 from .space.sync import Sync
 from .space.world import World
-from .stepper import Stepper
+from .stepper import Method, Stepper
 from .transfer import NOT_FINITE, OVERFLOW
 
 if TYPE_CHECKING:
     import pymunk
 
 TOO_FAR = "the step would overflow; take a smaller dt, or stop this run"  # remedy, at the end of messages
-
-
-class Method(Protocol):
-    """Steps the arrays of one world: an `EventLoop`, or `closures.motion.Disks`. It keeps results of earlier steps,
-    such as contact forces, as long as the world is used."""
-
-    def step(self, reading: Table, dt: float, gx: float, gy: float, half_damping: float) -> int:
-        """Move the bodies from STATES[NOW] to STATES[LEFT] and ENDS (`layout.py`), by the gravity (gx, gy) and the
-        factor of half a step's damping. Returns status bits or a negative code of `transfer.py`."""
-
-    def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
-        """Set the laws of pairs of rows of SHAPE (a < b) that differ from those of their shapes, by collision handlers
-        or joints, from the next step on: elasticity (negative: no collision), friction, and surface velocity (2) of b
-        relative to a."""
-
-    def details(self, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray) -> Details | Callable[[], Details]:
-        """The arrays of the report of the last step, or a function that makes them; `owner` (k,): index in `bodies` of
-        the body of each shape."""
-
-    def outcome(self) -> Outcome:
-        """How the last step was solved; before the first step, that of a step without contacts."""
 
 
 Own = TypeVar("Own", bound="PackedSpace")
@@ -123,9 +100,21 @@ class PackedSpace(Stepper):
         self.decisions.forget(self.space)
 
     @abstractmethod
-    def prepare(self, world: World, past: World | None) -> None:
-        """Make the method for a world that was just read, and call `_use`. `past`: the world before, if any; `world`
-        itself if only its joints or rows have changed."""
+    def make_method(self, world: World) -> Method:
+        """A method for a world, without results of earlier steps."""
+
+    def start(self, world: World) -> None:
+        """Choose the method of a world that was read for the first time, or after `refresh`."""
+        self._use(self.make_method(world))
+
+    def restart(self, world: World, past: World) -> None:
+        """Choose the method of a world that was read again. `past`: the world before, whose method is the present
+        one."""
+        self._use(self.make_method(world))
+
+    def rebuild(self, world: World) -> None:
+        """Choose another method for the present world, whose joints or rows have changed."""
+        self._use(self.make_method(world))
 
     def _use(self, method: Method) -> None:
         """Step the present world by this method, which has no rules yet."""
@@ -179,8 +168,10 @@ class PackedSpace(Stepper):
         slept, self._slept = self._slept, None
         if self._sleep is not None and slept is not None:
             self._sleep.recall(dict(zip(slept[0], slept[1].tolist(), strict=True)), slept[3])
-        self.prepare(world, past)
-        if past is not None:
+        if past is None:
+            self.start(world)
+        else:
+            self.restart(world, past)
             past.end()
         if self._sleep is not None and (book := self._method.outcome()[0]) is not None:
             self._idle_book = [0.0] * len(book)
@@ -199,8 +190,9 @@ class PackedSpace(Stepper):
         world.read_settings()
         if self._sleep is None and self.space.sleep_time_threshold < math.inf:
             self._sleep = Sleep(world, None)
+            self._sync.renews = False  # see `EECA._show_contacts`
         if world.joints is not joints:
-            self.prepare(world, world)
+            self.rebuild(world)
             self.patches += 1
         return self._adopt(world)
 

@@ -36,7 +36,7 @@ Own = TypeVar("Own", bound="PackedStepper")
 
 
 class PackedStepper(HookedStepper):
-    """A stepper whose physics is a `Method` on the arrays of a `World`; subclasses make it in `prepare`.
+    """A stepper whose physics is a `Method` on the arrays of a `World`; subclasses make it in `make_method`.
 
     Args:
         space: any pymunk space.

@@ -129,10 +129,10 @@ class RunningStepper(PackedStepper):
         loop, surfaces = self.event_loop, self._sleep is not None
         if world.joints is not None:
             if found := world.patch(surfaces):
-                self.prepare(world, world)
+                self.rebuild(world)
             return found is not None
         if loop is None or not hasattr(loop, "fresh"):
-            # From now on `prepare` keeps a copy of the new scene, from which patches start. This edit is not patched.
+            # From now on each new loop keeps a copy of its scene, from which patches start. This edit is not patched.
             self._patches = True
             return False
         sides, found = sides_of(world, loop), world.patch(surfaces)

@@ -1,17 +1,20 @@
-"""Stepper: the interface of all steppers."""
+"""Stepper: the interface of all steppers. Method: what steps the arrays of one world."""
 
 from __future__ import annotations
 
 import math
 import operator
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from tqdm import tqdm
 
+from .arrays import IntArray
+from .compiled import Table
 from .energy.ledger import Ledger, entries
-from .report import RunReport, StepReport
+from .report import Details, Outcome, RunReport, StepReport
 
 if TYPE_CHECKING:
     import pymunk
@@ -88,3 +91,24 @@ class Stepper(ABC):
 
         Needed after edits that bypass pymunk's setters, and for a reset: from the same positions and velocities the
         space then follows bitwise the same path, whatever was run before."""
+
+
+class Method(Protocol):
+    """Steps the arrays of one world: an `EventLoop`, or `closures.motion.Disks`. It keeps results of earlier steps,
+    such as contact forces, as long as the world is used."""
+
+    def step(self, reading: Table, dt: float, gx: float, gy: float, half_damping: float) -> int:
+        """Move the bodies from STATES[NOW] to STATES[LEFT] and ENDS (`layout.py`), by the gravity (gx, gy) and the
+        factor of half a step's damping. Returns status bits or a negative code of `transfer.py`."""
+
+    def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
+        """Set the laws of pairs of rows of SHAPE (a < b) that differ from those of their shapes, by collision handlers
+        or joints, from the next step on: elasticity (negative: no collision), friction, and surface velocity (2) of b
+        relative to a."""
+
+    def details(self, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray) -> Details | Callable[[], Details]:
+        """The arrays of the report of the last step, or a function that makes them; `owner` (k,): index in `bodies` of
+        the body of each shape."""
+
+    def outcome(self) -> Outcome:
+        """How the last step was solved; before the first step, that of a step without contacts."""

@@ -38,8 +38,8 @@ class FreeFlight(PackedStepper):
 
     told: Rows[Impulse] | None = None
 
-    def prepare(self, world: World, past: World | None) -> None:
-        self._use(Flight(self, world))
+    def make_method(self, world: World) -> Flight:
+        return Flight(self, world)
 
 
 class Flight:

@@ -34,9 +34,9 @@ class PenaltyStepper(PackedStepper):
         self.stiffness = float(stiffness)
         super().__init__(space, sync=sync)
 
-    def prepare(self, world: World, past: World | None) -> None:
+    def make_method(self, world: World) -> Disks:
         world.load()
-        self._use(Disks(world, type(self).__name__, self._move))
+        return Disks(world, type(self).__name__, self._move)
 
     def _move(self, disks: Disks, start: Start) -> Motion:
         velocity = start.free_velocity
