@@ -123,7 +123,7 @@ class HookedStepper(PackedSpace):
                     world = self._reread_awoken(world)
                 world.rules = world.rehearsal.rules(self.decisions)
                 hooks = world.hooks
-                called = hooks.some or not world.rehearsal.left_out
+                called = hooks.any_body or not world.rehearsal.left_out
             bits = status = self.advance(world, dt, half_damping)
             if status < 0:
                 self._raise_failure(world, dt, status)
@@ -140,7 +140,7 @@ class HookedStepper(PackedSpace):
             elif called:
                 bits = world.write_whole()
             # If nothing was called, bodies and their forces in the space are still those that were read.
-            if alters or status & FORCES or (called and (hooks.some or world.joints is not None)):
+            if alters or status & FORCES or (called and (hooks.any_body or world.joints is not None)):
                 world.reset_forces()
             status = status & EVENTS | bits
             self._write_hooked_end(world, dt, status)

@@ -129,7 +129,7 @@ class PackedStepper(HookedStepper):
     def _is_silent(self, world: World, dt: float, half_damping: float) -> bool:
         """Whether a step of a world that has `only_handlers` calls none of them. If so, its states were read, and its
         rehearsal was done or left out."""
-        if self._sleep is not None or self.decisions.laws or world.rules.some:
+        if self._sleep is not None or self.decisions.laws or world.rules.any_pair:
             return False
         if world.joints is not None and world.joints.calls_back():
             return False

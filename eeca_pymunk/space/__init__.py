@@ -12,7 +12,7 @@ the same class for an earlier reading of the space, of which everything that has
 |---|---|
 | reading bodies and shapes | `bodies.py` (also energy and momenta), `outlines.py` (also for pictures), `packing.py` |
 | reading joints | `joints.py`, `constraints.py`, `listing.py`, `partners.py`, `spring_functions.py` |
-| states in and out | `crossing.py` |
+| states in and out | `body_states.py` |
 | edits by the program | `edits.py` (shapes, bodies), `joint_edits.py`, `patching.py` (rows after edits in place) |
 | functions of the program | `hooks.py`; of handlers `rehearsal.py`, `handled_pairs.py`, `watched.py`, `decisions.py` |
 | pymunk's own state after a step | `sync.py` (shapes), `arbiters.py` (contacts), `constraint_impulses.py` |

@@ -45,8 +45,8 @@ class Rules:
     changed: Mapping[Pair, Law] = field(default_factory=dict)
 
     @property
-    def some(self) -> bool:
-        """Whether there are any."""
+    def any_pair(self) -> bool:
+        """Whether they are about any pair."""
         return bool(self.ignored or self.changed)
 
     @classmethod

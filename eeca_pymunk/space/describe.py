@@ -40,7 +40,7 @@ def describe(world: World) -> str:
         parts.append(f"{asleep} of {asleep + int(np.count_nonzero(bodies.dynamic))} bodies asleep")
     if world.damping != 1.0:
         parts.append("damping")
-    if world.hooks.some:
+    if world.hooks.any_body:
         parts.append("functions of bodies")
     if world.joints is not None and world.joints.calls_back():
         parts.append("functions of constraints")

@@ -33,19 +33,19 @@ class Hooks:
         steered, moved: how many bodies have a velocity function, and a position function.
 
     Attributes:
-        some: whether any body has such a function.  late: calls of handlers' `post_solve` that `after` makes.
+        any_body: whether any body has such a function.  late: calls of handlers' `post_solve` that `after` makes.
     """
 
     def __init__(self, space: pymunk.Space, bodies: Bodies, joints: JointRows | None, steered: int, moved: int) -> None:
         self.space, self.bodies, self.joints = space, bodies, joints
-        self.steered, self.moved, self.some = steered, moved, steered + moved > 0
+        self.steered, self.moved, self.any_body = steered, moved, steered + moved > 0
         self.late: list[Callable[[], None]] = []
 
     def none_within_steps(self) -> bool:
         """Whether steps of pymunk would call no function of a body or constraint, and could change no velocity of a
         body outside the space."""
         joints = self.joints
-        return not self.some and (joints is None or not (joints.partners.outside or joints.calling or joints.own))
+        return not self.any_body and (joints is None or not (joints.partners.outside or joints.calling or joints.own))
 
     def before(self, dt: float) -> None:
         """Call `pre_solve` of the constraints: of all if there is no rehearsal, else of those whose first body is

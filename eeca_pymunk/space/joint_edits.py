@@ -20,31 +20,31 @@ class Edits:
     """The edits of the constraints of one listing.
 
     Attributes:
-        some: rows of the constraints of which an attribute was set since the last `take`.
+        rows: those of the constraints of which an attribute was set since the last `take`.
     """
 
     def __init__(self, row: dict[pymunk.Constraint, int]) -> None:
         """`row`: the row of each constraint."""
         self._row = row
-        self.some: set[int] = set()
+        self.rows: set[int] = set()
         _watching.add(self)
         if pymunk.Constraint.__setattr__ is not _set:
             pymunk.Constraint.__setattr__ = _set  # type: ignore[method-assign, assignment]
 
     def take(self) -> set[int]:
         """Return the rows, and clear them."""
-        edited, self.some = self.some, set()
+        edited, self.rows = self.rows, set()
         return edited
 
     def forget(self, row: int) -> None:
         """Remove a row, of which this package has just set an attribute itself."""
-        self.some.discard(int(row))
+        self.rows.discard(int(row))
 
     def record(self, constraint: pymunk.Constraint) -> None:
         """Record that an attribute of a constraint was set."""
         row = self._row.get(constraint)
         if row is not None:
-            self.some.add(row)
+            self.rows.add(row)
 
 
 def _set(self: pymunk.Constraint, name: str, value: Any) -> None:

@@ -91,13 +91,13 @@ class JointRows(Listing):
 
     def refresh(self) -> bool:
         """Read edited constraints again; returns whether a new plan of components is needed."""
-        if not self._edits.some:
+        if not self._edits.rows:
             return self.replan
         edited = self._edits.take()
         try:
             found = {j: read(self.items[j]) for j in sorted(edited)}
         except ValueError:
-            self._edits.some.update(edited)
+            self._edits.rows.update(edited)
             raise
         regroup = False  # whether `find_functions` and `_find_pushing` may find other constraints
         for j, values in found.items():
@@ -162,18 +162,18 @@ class JointRows(Listing):
 
     def calls_back(self) -> bool:
         """Whether a constraint has a function that is called once a step."""
-        if self._edits.some:
+        if self._edits.rows:
             self.refresh()
         return len(self.calling) > 0
 
     @property
     def edited(self) -> bool:
         """Whether there are edited constraints that were not read since."""
-        return len(self._edits.some) > 0
+        return len(self._edits.rows) > 0
 
     def idle(self) -> bool:
         """Whether `update` has nothing to do."""
-        return not (self._edits.some or self.functions or self.partners.outside)
+        return not (self._edits.rows or self.functions or self.partners.outside)
 
     def update(self, state: FloatArray, place: Mapping[pymunk.Body, int], dt: float) -> None:
         """Update what the step needs: edited constraints, poses of partners, laws of springs with functions.

@@ -23,8 +23,8 @@ from ..model.shapes import Link, Shape
 from ..model.values import CORNERS, STATIC, TOTALS, Reading
 from ..world_rows import read_space, write_rows
 from .bodies import Bodies
+from .body_states import BodyStates
 from .checks import check_shape, shape_body
-from .crossing import Crossing
 from .outlines import local_outline
 from .private import shapes as private_shapes
 
@@ -134,7 +134,7 @@ class Packed:
     """Rows of a space's bodies and solid shapes.
 
     Args:
-        bodies: in the states of `crossing`.  records: of all shapes of the space, in pymunk's order, None for sensors.
+        bodies: in the order of `states`.  records: of all shapes of the space, in pymunk's order, None for sensors.
         past: the rows before, which are lost.
 
     Attributes:
@@ -145,7 +145,7 @@ class Packed:
 
     _layout: Layout[Reading]
 
-    def __init__(self, bodies: Bodies, crossing: Crossing, records: Records, past: Packed | None) -> None:
+    def __init__(self, bodies: Bodies, states: BodyStates, records: Records, past: Packed | None) -> None:
         solid = [shape for shape, record in records.items() if record is not None]
         known = [record for record in records.values() if record is not None]
         k, N = len(solid), len(bodies)
@@ -159,10 +159,10 @@ class Packed:
         counts = {
             "TOTALS": TOTALS, "MEASURED": 1, "BODY": moving + 1, "SHAPE": k, "LINK": k, "VERTEX": v, "ORDER": k + N + 2,
             "BODIES": N, "SHAPES": k, "OWNER": k, "POINT": v, "STATES": N, "WALK": N, "EXTRA": N,
-            "ENDS": len(crossing.ENDS), "HELD": N,
+            "ENDS": len(states.ENDS), "HELD": N,
         }  # fmt: skip
         self.table = layout.lay(
-            counts, bodies.VALUES, crossing.STATES, crossing.WALK, crossing.EXTRA, crossing.ENDS, crossing.HELD
+            counts, bodies.VALUES, states.STATES, states.WALK, states.EXTRA, states.ENDS, states.HELD
         )
         layout.write("SHAPES", b"".join([record.packed for record in known]))
         layout.write("OWNER", array("q", owner).tobytes())

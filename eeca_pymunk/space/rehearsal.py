@@ -243,7 +243,7 @@ class Rehearsal:
         if self.decided:
             self._decision_steps = self.space.collision_persistence + 1
         if self._decision_steps <= 0 and not self._ignoring and not earlier.laws:
-            return Rules() if self.world.rules.some else self.world.rules
+            return Rules() if self.world.rules.any_pair else self.world.rules
         self._decision_steps -= 1
         rules = earlier.rules(self.world)
         self._ignoring = bool(rules.ignored)

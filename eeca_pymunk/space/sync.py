@@ -198,7 +198,7 @@ class Sync:
                 private_arbiters.set_impulse(arbiter, None)
         slept = self._asleep and world.bodies.in_order()
         arguments = self.space, dt, world.joints, stored, self._awake() if self._asleep else None
-        if world.hooks.some:
+        if world.hooks.any_body:
             with world.hooks.silent:
                 rest_step(*arguments)
         else:
@@ -214,7 +214,7 @@ class Sync:
         """See `rest_step`. Which joints have sleeping bodies is known from the start of the step, unless functions of
         the program may have woken bodies."""
         joints = self._world.joints
-        if joints is None or self._world.hooks.some or joints.calling or joints.own:
+        if joints is None or self._world.hooks.any_body or joints.calling or joints.own:
             return private_joints.awake
         return joints.awake
 

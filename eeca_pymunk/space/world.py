@@ -14,8 +14,8 @@ from ..impacts.scene_memory import SceneMemory
 from ..layout import BODY_ROW, KNOWN
 from ..report import Details, nothing
 from .bodies import Bodies
+from .body_states import BodyStates
 from .checks import has_friction, settings
-from .crossing import Crossing
 from .decisions import Rules
 from .edits import Counts, clock, counts, edited_since
 from .hooks import Hooks
@@ -26,7 +26,7 @@ from .private import spaces as private
 from .rehearsal import Rehearsal
 
 
-class World(Crossing):
+class World(BodyStates):
     """The bodies and solid shapes of one space; ValueError or UnsupportedFeature if it cannot be stepped.
 
     Masses, shapes and functions of bodies are read once. `current()` returns, within half a microsecond, whether
@@ -112,17 +112,17 @@ class World(Crossing):
             self.rehearsal.forget_old_handlers()
         self._forget_rules()
         self.hooks = Hooks(self.space, self.bodies, self.joints, *self._functions)
-        self.hooked = self.collisions or self.hooks.some or self.damping == 0.0
-        self.only_handlers = self.collisions and not self.hooks.some and self.damping != 0.0
+        self.hooked = self.collisions or self.hooks.any_body or self.damping == 0.0
+        self.only_handlers = self.collisions and not self.hooks.any_body and self.damping != 0.0
         self.plain = not self.hooked and self.joints is None
         self.current = private.watch(self.space, self._edits, self._seen)
 
     def is_silent(self) -> bool:
         """Whether collision handlers were not called in the last steps, and no decision of theirs applies."""
-        return "rehearsal" in self.__dict__ and not self.rules.some and self.rehearsal.is_silent()
+        return "rehearsal" in self.__dict__ and not self.rules.any_pair and self.rehearsal.is_silent()
 
     def _forget_rules(self) -> None:
-        if self.rules.some:
+        if self.rules.any_pair:
             self.rules = Rules()
 
     def _read_joints(self, anew: bool) -> None:

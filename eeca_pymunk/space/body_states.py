@@ -1,4 +1,4 @@
-"""Crossing: reads and writes the states of a space's bodies, in one batch call each per step."""
+"""BodyStates: reads and writes the states of a space's bodies, in one batch call each per step."""
 
 from __future__ import annotations
 
@@ -61,19 +61,19 @@ class _Writers(dict[int, Callable[[], None]]):
     """Functions that write the tables of ENDS, by the keys of _TABLES; made at the first use. Those of `past` are
     changed for this and can no longer be used."""
 
-    def __init__(self, of: Crossing, past: _Writers | None) -> None:
-        self._of = weakref.proxy(of)
+    def __init__(self, states: BodyStates, past: _Writers | None) -> None:
+        self._states = weakref.proxy(states)
         self._past: dict[int, Callable[[], None]] = {} if past is None else {**past._past, **past}
 
     def __missing__(self, place: int) -> Callable[[], None]:
-        of, (start, fields) = self._of, _TABLES[place]
-        ends = of.ENDS[start * len(of.bodies) :]
-        write = private_batch.writer(of.space, fields, ends, of.bodies.reached, self._past.get(place))
+        states, (start, fields) = self._states, _TABLES[place]
+        ends = states.ENDS[start * len(states.bodies) :]
+        write = private_batch.writer(states.space, fields, ends, states.bodies.reached, self._past.get(place))
         self[place] = write
         return write
 
 
-class Crossing:
+class BodyStates:
     """The states of the bodies of a space, read and written.
 
     Attributes:
@@ -94,7 +94,7 @@ class Crossing:
     check_start: Callable[[], int]
     write_ends: Callable[[int], int]
 
-    def __init__(self, space: pymunk.Space, past: Crossing | None) -> None:
+    def __init__(self, space: pymunk.Space, past: BodyStates | None) -> None:
         """Make the arrays for the bodies of a space, and read their state into STATES[NOW]. `past`: of the same space
         before. These arrays use its memory: it keeps copies of STATES and WALK, and can no longer read and write."""
         self.space = space
@@ -204,7 +204,7 @@ class Crossing:
         state[moving, :6], state[moving, 6:] = self.STATES[LEFT, moving, :6], 0.0
         return state
 
-    def recall(self, before: Crossing) -> None:
+    def recall(self, before: BodyStates) -> None:
         """Copy STATES[LEFT] from the world before, of bodies whose mass, moment and centre of gravity are the same: the
         next step counts them as unedited unless their state differs from it."""
         old, known = before.bodies.row, before.bodies.inertia
