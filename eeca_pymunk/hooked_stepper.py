@@ -8,7 +8,7 @@ from math import isfinite
 
 from .energy.ledger import AFTER, DAMPED
 from .impacts.run import ENERGY
-from .layout import LEFT
+from .layout import WRITTEN
 from .packed_space import TOO_FAR, PackedSpace
 from .reentry import BUSY
 from .report import Details, Outcome, StepReport
@@ -90,11 +90,11 @@ class HookedStepper(PackedSpace):
         """Read and check the state of all bodies; returns their world, a new one if bodies were exchanged or static
         bodies moved."""
         world.gather()
-        status = world.check_start()
+        status = world.copy_start()
         if status in (OTHER_BODIES, MOVED_STATIC):
             world = self._update_world(anew=True)
             world.gather()
-            status = world.check_start()
+            status = world.copy_start()
         if status < 0:
             world.bodies.check_finite(world.state)
         return world
@@ -134,7 +134,7 @@ class HookedStepper(PackedSpace):
                 if bits < 0:
                     self._raise_failure(world, dt, bits)
                 if hooks.moved:
-                    hooks.positions(world.state, world.STATES[LEFT], dt)
+                    hooks.positions(world.state, world.STATES[WRITTEN], dt)
                     world.bodies.check_finite(world.ended(), TOO_FAR)
                     bits = world.write_whole()
             elif called:
@@ -159,12 +159,12 @@ class HookedStepper(PackedSpace):
             if slept and not body.is_sleeping:
                 body.velocity, body.angular_velocity = (0.0, 0.0), 0.0
         world.bodies.scatter(world.state)
-        world.HELD, world.EXTRA, rehearsal = world.HELD.copy(), world.EXTRA.copy(), world.rehearsal
+        world.HOOKED, world.EXTRA, rehearsal = world.HOOKED.copy(), world.EXTRA.copy(), world.rehearsal
         now = self._update_world(anew=True)
         now.gather()
-        now.check_start()
+        now.copy_start()
         rows = [world.bodies.row[body] for body in now.bodies.items]
-        now.EXTRA[:], now.HELD[:] = world.EXTRA[rows], world.HELD[:, rows]
+        now.EXTRA[:], now.HOOKED[:] = world.EXTRA[rows], world.HOOKED[:, rows]
         now.rehearsal.continue_from(rehearsal)
         now.hooks.late = world.hooks.late
         return now

@@ -24,7 +24,7 @@ from typing import TypeVar
 from .arrays import AnyArray
 from .compiled.records import as_integers
 from .hooked_stepper import HookedStepper
-from .layout import LEFT
+from .layout import WRITTEN
 from .reentry import BUSY, refuse_within
 from .report import Details, StepReport
 from .space.sleeping import Sleep
@@ -87,7 +87,7 @@ class PackedStepper(HookedStepper):
     def rewound(self, world: World) -> list[AnyArray]:
         """The arrays that a step changes and that must be restored before it is repeated."""
         loop = self.event_loop
-        left = world.STATES[LEFT]
+        left = world.STATES[WRITTEN]
         return [left] if loop is None or not loop.thin else [left, as_integers(loop.scene.SIDE)]
 
     def _rewound_copy(self, world: World) -> list[AnyArray]:

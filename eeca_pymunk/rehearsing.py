@@ -9,25 +9,25 @@ from .arrays import FloatArray, IntArray
 from .compiled import Table, kernel, nonallocating
 from .compiled.records import Rows
 from .layout import (
-    ANEW,
+    BEFORE_CALL,
     BODY_ROW,
+    CHANGES_AFTER,
+    CHANGES_BEFORE,
     COG_X,
     COG_Y,
-    EARLY,
     ECCENTRIC,
     END,
     END_COLUMNS,
-    FOUND,
-    KNOWN,
-    LATE,
-    LEFT,
-    NOW,
-    REHEARSED,
-    SEEN,
-    SPECIAL,
+    FLAGS,
+    KNOWN_ID,
+    PLACED,
+    READ,
+    READ_ID,
+    REHEARSAL_START,
     START,
     STEERED,
     UNALTERED,
+    WRITTEN,
 )  # fmt: skip
 from .model.bodies import Body
 from .model.values import reading_of
@@ -44,9 +44,9 @@ from .transfer import (
     to_centre,
 )  # fmt: skip
 
-HEARD_COLUMNS = 7
-AHEAD = 2.0  # ways of a step for which pairs that approach are near before they meet
-PRESS = 1e-7  # part of its height by which a body is moved towards its support in a rehearsal
+HANDLED_COLUMNS = 7
+NEAR_WAYS = 2.0  # ways of a step for which pairs that approach are near before they meet
+SUPPORT_SHIFT = 1e-7  # part of its height by which a body is moved towards its support in a rehearsal
 
 
 @nonallocating
@@ -54,27 +54,27 @@ def void_predictions(BODY: Rows[Body]) -> None:
     """Void all predictions: functions may change anything, so that all bodies count as placed by the program. Steps
     that call none do so as well: no path depends on which they are."""
     for i in range(BODY.shape[0]):
-        BODY[i].due = min(BODY[i].due, ANEW)
+        BODY[i].due = min(BODY[i].due, PLACED)
 
 
 @kernel
 def copy_start(table: Table) -> int:
-    """Copy the state that was read to HELD[START], and `void_predictions`; 0, or OTHER_BODIES, MOVED_STATIC or
+    """Copy the state that was read to HOOKED[START], and `void_predictions`; 0, or OTHER_BODIES, MOVED_STATIC or
     NOT_FINITE if the bodies are others, a static one was moved, or a number is not finite."""
     R = reading_of(table)
-    WALK, BODY, start = R.WALK, R.BODY, R.HELD[START]
-    now, left = R.STATES[NOW], R.STATES[LEFT]
+    IDS, BODY, start = R.IDS, R.BODY, R.HOOKED[START]
+    now, before = R.STATES[READ], R.STATES[WRITTEN]
     status = 0
     void_predictions(BODY)
-    for i in range(WALK.shape[1]):
-        if WALK[FOUND, i] != WALK[KNOWN, i]:
+    for i in range(IDS.shape[1]):
+        if IDS[READ_ID, i] != IDS[KNOWN_ID, i]:
             return OTHER_BODIES
         if not finite(now[i, 0], now[i, 1], now[i, 2], now[i, 3], now[i, 4], now[i, 5]):
             status = NOT_FINITE
         if not finite(now[i, 6], now[i, 7], now[i, 8], 0.0, 0.0, 0.0):
             status = NOT_FINITE
-        if WALK[BODY_ROW, i] < 0:
-            if now[i, 0] != left[i, 0] or now[i, 1] != left[i, 1] or now[i, 2] != left[i, 2]:
+        if IDS[BODY_ROW, i] < 0:
+            if now[i, 0] != before[i, 0] or now[i, 1] != before[i, 1] or now[i, 2] != before[i, 2]:
                 return MOVED_STATIC
         for c in range(9):
             start[i, c] = now[i, c]
@@ -83,8 +83,8 @@ def copy_start(table: Table) -> int:
 
 @kernel
 def alter_end(table: Table, stops: int) -> int:
-    """At the end of a step: set all velocities to 0 if `stops` (damping 0); copy the result to HELD[UNALTERED]; add
-    HELD[LATE], the changes by functions, and clear it; write all to ENDS.
+    """At the end of a step: set all velocities to 0 if `stops` (damping 0); copy the result to HOOKED[UNALTERED]; add
+    HOOKED[CHANGES_AFTER], the changes by functions, and clear it; write all to ENDS.
 
     Within the step bodies keep their velocities, as under pymunk, which moves bodies before it damps them. The
     energy lost by damping 0 is the last number of ENDS. Forces are reset.
@@ -93,109 +93,110 @@ def alter_end(table: Table, stops: int) -> int:
         the bits of `put_ends`, or OVERFLOW if a number is not finite.
     """
     R = reading_of(table)
-    WALK, BODY, late, kept = R.WALK, R.BODY, R.HELD[LATE], R.HELD[UNALTERED]
-    now, left = R.STATES[NOW], R.STATES[LEFT]
+    IDS, BODY, changes, unaltered = R.IDS, R.BODY, R.HOOKED[CHANGES_AFTER], R.HOOKED[UNALTERED]
+    now, end = R.STATES[READ], R.STATES[WRITTEN]
     status, straight, turning = FORCES | TURNS, 0.0, 0.0
-    for i in range(WALK.shape[1]):
-        row = WALK[BODY_ROW, i]
+    for i in range(IDS.shape[1]):
+        row = IDS[BODY_ROW, i]
         for c in range(9):
-            kept[i, c] = left[i, c]
+            unaltered[i, c] = end[i, c]
         if row < 0:
             for c in range(9):
-                left[i, c] = now[i, c]
+                end[i, c] = now[i, c]
             if stops:
-                kept[i, 3], kept[i, 4], kept[i, 5] = now[i, 3], now[i, 4], now[i, 5]
+                unaltered[i, 3], unaltered[i, 4], unaltered[i, 5] = now[i, 3], now[i, 4], now[i, 5]
         else:
-            left[i, 6], left[i, 7], left[i, 8] = 0.0, 0.0, 0.0
-            if stops and BODY[row].inv_mass > 0.0 and not WALK[SPECIAL, i] & STEERED:
-                straight += (left[i, 3] * left[i, 3] + left[i, 4] * left[i, 4]) / BODY[row].inv_mass
+            end[i, 6], end[i, 7], end[i, 8] = 0.0, 0.0, 0.0
+            if stops and BODY[row].inv_mass > 0.0 and not IDS[FLAGS, i] & STEERED:
+                straight += (end[i, 3] * end[i, 3] + end[i, 4] * end[i, 4]) / BODY[row].inv_mass
                 if BODY[row].inv_inertia > 0.0:
-                    turning += left[i, 5] * left[i, 5] / BODY[row].inv_inertia
+                    turning += end[i, 5] * end[i, 5] / BODY[row].inv_inertia
                 for c in range(3, 6):
-                    left[i, c], kept[i, c] = 0.0, 0.0
+                    end[i, c], unaltered[i, c] = 0.0, 0.0
         for c in range(9):
-            left[i, c] += late[i, c]
-            late[i, c] = 0.0
-        if row >= 0 and not finite(left[i, 0], left[i, 1], left[i, 2], left[i, 3], left[i, 4], left[i, 5]):
+            end[i, c] += changes[i, c]
+            changes[i, c] = 0.0
+        if row >= 0 and not finite(end[i, 0], end[i, 1], end[i, 2], end[i, 3], end[i, 4], end[i, 5]):
             status = OVERFLOW
-    R.ENDS[END_COLUMNS * WALK.shape[1]] = 0.5 * (straight + turning)
+    R.ENDS[END_COLUMNS * IDS.shape[1]] = 0.5 * (straight + turning)
     if status == OVERFLOW:
         return OVERFLOW
-    return put_ends(R.STATES, WALK, R.ENDS, status)
+    return put_ends(R.STATES, IDS, R.ENDS, status)
 
 
 @kernel
-def as_read(table: Table) -> None:
-    """Accept positions that differ from STATES[LEFT] by round-off as unedited: pymunk rounds the positions of bodies
+def accept_rounding(table: Table) -> None:
+    """Accept positions that differ from STATES[WRITTEN] by round-off as unedited: pymunk rounds the positions of bodies
     whose centre of mass is not their origin."""
     R = reading_of(table)
-    now, left, EXTRA = R.STATES[NOW], R.STATES[LEFT], R.EXTRA
+    now, end, EXTRA = R.STATES[READ], R.STATES[WRITTEN], R.EXTRA
     for i in range(now.shape[0]):
         size = max(abs(now[i, 0]), abs(now[i, 1])) + max(abs(EXTRA[i, COG_X]), abs(EXTRA[i, COG_Y]))
-        if max(abs(now[i, 0] - left[i, 0]), abs(now[i, 1] - left[i, 1])) <= 1e-14 * size:
-            left[i, 0], left[i, 1] = now[i, 0], now[i, 1]
+        if max(abs(now[i, 0] - end[i, 0]), abs(now[i, 1] - end[i, 1])) <= 1e-14 * size:
+            end[i, 0], end[i, 1] = now[i, 0], now[i, 1]
 
 
 @kernel
-def nears(STATES: FloatArray, ENDS: FloatArray, HEARD: FloatArray, PAIRS: IntArray, dt: float, ahead: float) -> int:
-    """Whether any of the PAIRS (p, 2) of rows of HEARD comes near in a step of length dt that `approach` has begun: at
-    the end of free flight, each body within `ahead` times its way there.
+def any_near(STATES: FloatArray, ENDS: FloatArray, HANDLED: FloatArray, PAIRS: IntArray, dt: float, ways: float) -> int:
+    """Whether any of the PAIRS (p, 2) of rows of HANDLED comes near in a step of length dt, for which ENDS was written
+    by `place_for_rehearsal`: at the end of free flight, each body within `ways` times its way there.
 
-    HEARD (m, HEARD_COLUMNS): row of the body, -1 for static shapes; centre (2), half sides (2) and rounding of a box
-    that contains the shape; its radius at rest. Of shapes that move the box is a circle about the origin of the body,
-    whose centre and radius are written.
+    HANDLED (m, HANDLED_COLUMNS): row of the body, -1 for static shapes; centre (2), half sides (2) and rounding of a
+    box that contains the shape; its radius at rest. Of shapes that move the box is a circle about the origin of the
+    body, whose centre and radius are written.
     """
-    now, N = STATES[NOW], STATES.shape[1]
+    now, N = STATES[READ], STATES.shape[1]
     end = ENDS[END * N :]
-    for k in range(HEARD.shape[0]):
-        i = int(HEARD[k, 0])
+    for k in range(HANDLED.shape[0]):
+        i = int(HANDLED[k, 0])
         if i >= 0:
             x, y = end[6 * i] + dt * now[i, 3], end[6 * i + 1] + dt * now[i, 4]
             way = math.hypot(x - now[i, 0], y - now[i, 1])
-            HEARD[k, 1], HEARD[k, 2], HEARD[k, 5] = x, y, HEARD[k, 6] + ahead * way
+            HANDLED[k, 1], HANDLED[k, 2], HANDLED[k, 5] = x, y, HANDLED[k, 6] + ways * way
     for p in range(PAIRS.shape[0]):
         a, b = PAIRS[p, 0], PAIRS[p, 1]
-        x = max(abs(HEARD[a, 1] - HEARD[b, 1]) - HEARD[a, 3] - HEARD[b, 3], 0.0)
-        y = max(abs(HEARD[a, 2] - HEARD[b, 2]) - HEARD[a, 4] - HEARD[b, 4], 0.0)
-        reach = HEARD[a, 5] + HEARD[b, 5]
+        x = max(abs(HANDLED[a, 1] - HANDLED[b, 1]) - HANDLED[a, 3] - HANDLED[b, 3], 0.0)
+        y = max(abs(HANDLED[a, 2] - HANDLED[b, 2]) - HANDLED[a, 4] - HANDLED[b, 4], 0.0)
+        reach = HANDLED[a, 5] + HANDLED[b, 5]
         if x * x + y * y <= reach * reach:
             return 1
     return 0
 
 
 @kernel
-def approach(
-    table: Table, HEARD: FloatArray, PAIRS: IntArray, dt: float, gx: float, gy: float, half_damping: float
+def place_for_rehearsal(
+    table: Table, HANDLED: FloatArray, PAIRS: IntArray, dt: float, gx: float, gy: float, half_damping: float
 ) -> int:
-    """Copy the present state to HELD[REHEARSED], and `void_predictions`. Write to ENDS, to the table END with angles
-    and spins, the poses from which a step of pymunk leads to the end of free flight. pymunk moves bodies before it
-    accelerates them, so that they start at
+    """Copy the present state to HOOKED[REHEARSAL_START], and `void_predictions`. Write to ENDS, to the table END with
+    angles and spins, the poses from which a step of pymunk leads to the end of free flight. pymunk moves bodies before
+    it accelerates them, so that they start at
 
         q_free - dt v,   q_free = q + dt (d v + dt a / 2),   d = `half_damping`, the factor of half a step's damping.
 
     a is that of forces and gravity, v the velocity.
 
     Bodies at rest on each other have a gap of 0 up to round-off; pymunk, in whose steps they overlap, would begin and
-    end such contacts at random. Therefore each body is moved along gravity by PRESS times its height above the lowest
-    one.
+    end such contacts at random. Therefore each body is moved along gravity by SUPPORT_SHIFT times its height above the
+    lowest one.
 
     Returns:
-        1 if one of PAIRS comes near (`nears`), else 0; a negative code of `copy_start`, or OVERFLOW if a number at the
-        end is not finite.
+        1 if one of PAIRS comes near (`any_near`), else 0; a negative code of `copy_start`, or OVERFLOW if a number at
+        the end is not finite.
     """
     R = reading_of(table)
-    WALK, EXTRA, BODY, kept, now, left = R.WALK, R.EXTRA, R.BODY, R.HELD[REHEARSED], R.STATES[NOW], R.STATES[LEFT]
-    N = WALK.shape[1]
+    IDS, EXTRA, BODY, kept = R.IDS, R.EXTRA, R.BODY, R.HOOKED[REHEARSAL_START]
+    now, before = R.STATES[READ], R.STATES[WRITTEN]
+    N = IDS.shape[1]
     void_predictions(BODY)
     pull = math.sqrt(gx * gx + gy * gy)
     down_x, down_y, deepest = 0.0, 0.0, -math.inf
     if pull > 0.0:
         down_x, down_y = gx / pull, gy / pull
     for i in range(N):
-        if WALK[FOUND, i] != WALK[KNOWN, i]:
+        if IDS[READ_ID, i] != IDS[KNOWN_ID, i]:
             return OTHER_BODIES
-        row = WALK[BODY_ROW, i]
-        if row < 0 and (now[i, 0] != left[i, 0] or now[i, 1] != left[i, 1] or now[i, 2] != left[i, 2]):
+        row = IDS[BODY_ROW, i]
+        if row < 0 and (now[i, 0] != before[i, 0] or now[i, 1] != before[i, 1] or now[i, 2] != before[i, 2]):
             return MOVED_STATIC
         if row >= 0 and BODY[row].inv_mass > 0.0:
             deepest = max(deepest, now[i, 0] * down_x + now[i, 1] * down_y)
@@ -204,11 +205,11 @@ def approach(
         x, y, angle, vx, vy, spin = now[i, 0], now[i, 1], now[i, 2], now[i, 3], now[i, 4], now[i, 5]
         for k in range(9):
             kept[i, k] = now[i, k]
-        row = WALK[BODY_ROW, i]
+        row = IDS[BODY_ROW, i]
         if row >= 0:
             if not finite(x, y, angle, vx, vy, spin):
                 return NOT_FINITE
-            special, moves = WALK[SPECIAL, i], BODY[row].inv_mass > 0.0
+            special, moves = IDS[FLAGS, i], BODY[row].inv_mass > 0.0
             ax, ay, twist, damped = acceleration(now, i, BODY[row], special, EXTRA, gx, gy, half_damping)
             px, py = x, y
             if special & ECCENTRIC:
@@ -219,31 +220,32 @@ def approach(
             turned = angle + dt * (damped * spin + 0.5 * dt * twist)
             if not finite(px, py, turned, 0.0, 0.0, 0.0):
                 return OVERFLOW
-            way = PRESS * (deepest - (x * down_x + y * down_y)) if moves and pull > 0.0 else 0.0
+            way = SUPPORT_SHIFT * (deepest - (x * down_x + y * down_y)) if moves and pull > 0.0 else 0.0
             x, y, angle = px - dt * vx + way * down_x, py - dt * vy + way * down_y, turned - dt * spin
             if special & ECCENTRIC:
                 dx, dy = to_centre(EXTRA, i, angle)
                 x, y = x - dx, y - dy
         end[6 * i], end[6 * i + 1], end[6 * i + 2] = x, y, angle
         end[6 * i + 3], end[6 * i + 4], end[6 * i + 5] = vx, vy, spin
-    return nears(R.STATES, R.ENDS, HEARD, PAIRS, dt, AHEAD)
+    return any_near(R.STATES, R.ENDS, HANDLED, PAIRS, dt, NEAR_WAYS)
 
 
 @kernel
-def changed(table: Table, late: int) -> int:
-    """Add the differences of STATES from HELD[SEEN], which is updated, to HELD[EARLY], or if `late` to HELD[LATE]; 1 if
-    there are any.
+def record_changes(table: Table, late: int) -> int:
+    """Add the differences of STATES[READ] from HOOKED[BEFORE_CALL], which is updated, to HOOKED[CHANGES_BEFORE], or if
+    `late` to HOOKED[CHANGES_AFTER]; 1 if there are any.
 
     pymunk sets spins of bodies of infinite moment that gears hold to nan: nan counts as unchanged.
     """
     R = reading_of(table)
-    now, seen, changes, found = R.STATES[NOW], R.HELD[SEEN], R.HELD[LATE if late > 0 else EARLY], 0
+    now, last, found = R.STATES[READ], R.HOOKED[BEFORE_CALL], 0
+    changes = R.HOOKED[CHANGES_AFTER if late > 0 else CHANGES_BEFORE]
     for i in range(now.shape[0]):
         for c in range(9):
-            before = seen[i, c]
+            before = last[i, c]
             if now[i, c] != before:
                 if before == before:
                     changes[i, c] += now[i, c] - before
                     found = 1
-                seen[i, c] = now[i, c]
+                last[i, c] = now[i, c]
     return found

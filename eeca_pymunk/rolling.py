@@ -54,13 +54,13 @@ class Copy:
         self.loop = copy.deepcopy(loop)
         self._reading = table_of(
             reading_of(world.reading)._replace(
-                STATES=world.STATES.copy(), WALK=world.WALK.copy(), EXTRA=world.EXTRA.copy(),
+                STATES=world.STATES.copy(), IDS=world.IDS.copy(), EXTRA=world.EXTRA.copy(),
                 ENDS=np.zeros_like(world.ENDS),
             )
         )  # fmt: skip
         self._place = np.full(len(world.bodies), -1, np.intp)
         self._place[rows] = np.arange(len(rows))
-        self._at = world.WALK[BODY_ROW, rows]
+        self._at = world.IDS[BODY_ROW, rows]
         self.loop.keep_fresh()
 
     def roll(self, job: Job, first: int, last: int) -> list[Events]:

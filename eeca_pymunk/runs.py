@@ -12,7 +12,7 @@ from tqdm import tqdm
 
 from .arrays import FloatArray, IntArray
 from .impacts.run_buffers import RunBuffers
-from .layout import BODY_ROW, LEFT, NOW
+from .layout import BODY_ROW, READ, WRITTEN
 from .model.run import BETWEEN
 from .packed_stepper import PackedStepper
 from .reentry import refuse_within
@@ -120,10 +120,10 @@ class RunningStepper(PackedStepper):
             if (loop := self.event_loop) is not None:
                 loop.keep_fresh()
         else:
-            rows = world.WALK[BODY_ROW]
+            rows = world.IDS[BODY_ROW]
             self.decisions.forget(self.space)
             loop.start_anew(rows[rows >= 0], state[rows >= 0, :6])
-            world.STATES[LEFT, rows >= 0] = np.nan
+            world.STATES[WRITTEN, rows >= 0] = np.nan
 
     def patch(self, world: World) -> bool:
         loop, surfaces = self.event_loop, self._sleep is not None
@@ -175,7 +175,7 @@ class RunningStepper(PackedStepper):
         moments = 1 + steps // every if every else 0
         buffers = RunBuffers(dt, world.gravity, world.half_damping(dt), self.time, rows, moments, every, events)
         if every:
-            buffers.frames[0] = world.STATES[NOW, rows, :6]
+            buffers.frames[0] = world.STATES[READ, rows, :6]
             buffers.progress.frame = 1
         status = 0
         try:
@@ -204,10 +204,10 @@ class RunningStepper(PackedStepper):
     def _write_run_end(self, world: World, buffers: RunBuffers, dt: float, status: int) -> None:
         """Write the end of the last complete step to the space."""
         RUN = buffers.progress
-        if status < 0 or RUN.stage != BETWEEN:  # the last step is not complete: NOW has its start
+        if status < 0 or RUN.stage != BETWEEN:  # the last step is not complete: READ has its start
             self._world = None
-            moves = world.WALK[BODY_ROW] >= 0
-            world.STATES[LEFT, moves, :6] = world.STATES[NOW, moves, :6]
+            moves = world.IDS[BODY_ROW] >= 0
+            world.STATES[WRITTEN, moves, :6] = world.STATES[READ, moves, :6]
         if RUN.done == 0:
             return
         bits = int(RUN.all_bits)

@@ -13,7 +13,7 @@ from .compiled.records import Rows, columns, rows
 from .compiled.sources import sources_hash
 from .geometry.sides import keep_sides
 from .impacts.scene import EventLoop
-from .layout import ANEW, BODY_ROW, LEFT, NUDGED
+from .layout import BODY_ROW, PLACED, SHIFTED, WRITTEN
 from .model.joints import OF_STEPS, RATCHET, Joint
 from .model.parameters.intervals import INTERVAL_DEPTH_LEAST
 from .model.shapes import Link, Side
@@ -36,7 +36,7 @@ class Saved:
     def __init__(self, world: World, method: EventLoop, decisions: Decisions) -> None:
         self._decided = decisions.state(world)
         self.method, self.items, self.shapes, self.parted = method, world.bodies.items, world.shapes, world.parted
-        self._left, self._extra, self._rows = world.STATES[LEFT], world.EXTRA, world.WALK[BODY_ROW]
+        self._left, self._extra, self._rows = world.STATES[WRITTEN], world.EXTRA, world.IDS[BODY_ROW]
         joints = world.joints
         self._joints = [] if joints is None else joints.items
         self._rates = {} if joints is None else joints.rates
@@ -55,7 +55,7 @@ class Saved:
             return False
         at = np.array([row[body] for body in self.items], np.int64)  # pymunk may have another order of bodies
         same = (
-            (world.WALK[BODY_ROW, at], self._rows),
+            (world.IDS[BODY_ROW, at], self._rows),
             (columns(world.BODY, *_FIXED), columns(scene.BODY, *_FIXED)),
             (columns(world.BODY, "inv_mass", "inv_inertia"), self.method.mobility),
             (world.SHAPE, scene.SHAPE),
@@ -79,7 +79,7 @@ class Saved:
         world.BODY[:], world.VERTEX[:] = scene.BODY, scene.VERTEX
         self.method.scene = scene._replace(BODY=world.BODY)
         moves = ~world.bodies.static[at]
-        world.STATES[LEFT, at[moves]], world.EXTRA[at] = self._left[moves], self._extra
+        world.STATES[WRITTEN, at[moves]], world.EXTRA[at] = self._left[moves], self._extra
         decisions.recall(world.space, self._decided)
         return True
 
@@ -109,16 +109,16 @@ class Saved:
 class Sides:
     """The remembered sides of thin shapes of a world, to be kept when the space is patched or read again.
 
-    Kept are those of shapes that have not changed and are near where the last step left them (see `transfer.take`),
-    whatever their new rows are. Kinematic bodies that have only such shapes count as unmoved, with or without thin
-    shapes, so that bodies that overlap them are not corrected as if they were just placed there.
+    Kept are those of shapes that have not changed and are near where the last step left them (see
+    `transfer.read_states`), whatever their new rows are. Kinematic bodies that have only such shapes count as unmoved,
+    with or without thin shapes, so that bodies that overlap them are not corrected as if they were just placed there.
     """
 
     def __init__(self, world: World, known: Rows[Side] | None) -> None:
         """`known`: the sides; None if only kinematic bodies matter."""
         sided = known is not None
         self._sided, self._known = sided, _NO_SIDES if known is None else known.copy()
-        row, records = world.WALK[BODY_ROW].tolist(), world.records
+        row, records = world.IDS[BODY_ROW].tolist(), world.records
         shapes = enumerate(zip(world.shapes, world.owner.tolist(), strict=True))
         # Row, shape, row of the body and record of each shape that matters. Kinematic bodies have the rows of BODY
         # after those of dynamic ones.
@@ -126,12 +126,12 @@ class Sides:
             (k, shape, i, records[shape]) for k, (shape, i) in shapes if sided or row[i] >= world.dynamic
         ]  # fmt: skip
         self._count, self._bodies = len(world.shapes), world.bodies.items
-        self._left: list[list[float]] = world.STATES[LEFT, :, :3].tolist()
+        self._left: list[list[float]] = world.STATES[WRITTEN, :, :3].tolist()
 
     def _moves(self, world: World) -> dict[int, tuple[int, float]]:
         """Of each body (old row) that is near where the last step left it: its row now, and how far its points were
         moved since, at most (length)."""
-        moves, row, rows = {}, world.bodies.row, world.WALK[BODY_ROW].tolist()
+        moves, row, rows = {}, world.bodies.row, world.IDS[BODY_ROW].tolist()
         state, extent = world.state[:, :3].tolist(), world.BODY["extent"].tolist()
         for i in {i for _, _, i, _ in self._shapes}:
             at = row.get(self._bodies[i], -1)
@@ -154,16 +154,16 @@ class Sides:
             now = records[shape]
             if now is before or _outline(now) == _outline(before):
                 new_rows[k] = place
-        same, rows = set(new_rows), world.WALK[BODY_ROW].tolist()
+        same, rows = set(new_rows), world.IDS[BODY_ROW].tolist()
         kept = {owner[place] for place in same if place >= 0}
         changed = {i for place, i in enumerate(owner) if place not in same} if kept else kept
         at = [i for i in kept if rows[i] >= 0 and (i not in changed if rows[i] >= world.dynamic else self._sided)]
         if at:
             nudged = {i for i, move in moves.values() if move > 0.0}
-            left, present, due = world.STATES[LEFT], world.state, world.BODY["due"]
+            left, present, due = world.STATES[WRITTEN], world.state, world.BODY["due"]
             for i in at:  # one by one: for few bodies numpy's indices take several times as long
                 left[i, :3] = present[i, :3]
-                due[rows[i]] = NUDGED if i in nudged else ANEW
+                due[rows[i]] = SHIFTED if i in nudged else PLACED
         if self._sided and loop.thin:
             keep_sides(loop.table, self._known, np.array(new_rows, np.int64))
 

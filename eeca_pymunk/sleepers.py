@@ -7,7 +7,7 @@ import math
 from .arrays import FloatArray, IntArray
 from .compiled import kernel
 from .compiled.records import Rows
-from .layout import BODY_ROW, LEFT, NOW
+from .layout import BODY_ROW, READ, WRITTEN
 from .model.contacts import Impulse
 
 ROUND = 1e-14  # of coordinates, and of the largest speed
@@ -16,7 +16,7 @@ _LESS = 1e-9  # of lengths, by which bodies are looked for farther away
 
 @kernel
 def rests(
-    STATES: FloatArray, WALK: IntArray, DYNAMIC: IntArray, SIZE: FloatArray, RESTED: FloatArray, READY: IntArray,
+    STATES: FloatArray, IDS: IntArray, DYNAMIC: IntArray, SIZE: FloatArray, RESTED: FloatArray, READY: IntArray,
     slow: float, dt: float, need: float,
 ) -> int:  # fmt: skip
     """Add up for how long bodies have been at rest: at both ends of the step
@@ -30,14 +30,14 @@ def rests(
     Returns:
         1 if any body may sleep, else 0.
     """
-    before, after = STATES[NOW], STATES[LEFT]
-    N, fastest, some = WALK.shape[1], 0.0, 0
+    before, after = STATES[READ], STATES[WRITTEN]
+    N, fastest, some = IDS.shape[1], 0.0, 0
     for i in range(N):
         vx, vy = after[i, 3], after[i, 4]
         fastest = max(fastest, math.sqrt(vx * vx + vy * vy))
     limit = slow + ROUND * fastest
     for i in range(N):
-        still = WALK[BODY_ROW, i] >= 0 and DYNAMIC[i] > 0
+        still = IDS[BODY_ROW, i] >= 0 and DYNAMIC[i] > 0
         if still:
             size = SIZE[i]
             for c in range(3):
@@ -86,7 +86,7 @@ def approaches(
     Returns:
         the number of entries of NEAR.
     """
-    now, count = STATES[NOW], 0
+    now, count = STATES[READ], 0
     for k in range(MOVES.shape[0]):
         i = MOVES[k]
         x, y, vx, vy, fx, fy = now[i, 0], now[i, 1], now[i, 3], now[i, 4], now[i, 6], now[i, 7]

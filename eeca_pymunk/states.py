@@ -17,7 +17,7 @@ import numpy as np
 from .arrays import AnyArray, FloatArray, IntArray
 from .compiled.records import KINDS, numbers
 from .impacts.scene import EventLoop
-from .layout import LEFT, STATE_COLUMNS
+from .layout import STATE_COLUMNS, WRITTEN
 from .model.joints import OF_STEPS, RATCHET
 from .space.bodies import moving
 from .space.decisions import DECISION_COLUMNS
@@ -39,7 +39,7 @@ def get_state(stepper: RunningStepper) -> IntArray:
     decided = stepper.decisions.state(world)
     parts += [np.array([len(decided)]), decided]
     if loop is not None and not world.bodies.asleep.any():
-        parts += [world.STATES[LEFT, at], world.EXTRA[at], *loop.remembered()]
+        parts += [world.STATES[WRITTEN, at], world.EXTRA[at], *loop.remembered()]
         if world.joints is not None:
             joints = world.joints
             rates = np.array([joints.rates.get(item, (np.nan, np.nan)) for item in joints.items])
@@ -116,7 +116,7 @@ def _remember(stepper: RunningStepper, world: World, parts: _Parts, at: IntArray
     loop, joints = stepper.event_loop, world.joints
     assert loop is not None
     moves = ~world.bodies.static
-    left = np.empty_like(world.STATES[LEFT])
+    left = np.empty_like(world.STATES[WRITTEN])
     left[at] = parts.take(np.float64, left.shape)
     world.EXTRA[at] = parts.take(np.float64, world.EXTRA.shape)
     loop.recall(parts.take)
@@ -134,11 +134,11 @@ def _remember(stepper: RunningStepper, world: World, parts: _Parts, at: IntArray
         known = zip(joints.items, rates.tolist(), strict=True)
         joints.rates = {item: (r, h) for item, (r, h) in known if r == r}  # NaN stands for no rate
         joints.write()
-    world.STATES[LEFT, moves] = left[moves]
+    world.STATES[WRITTEN, moves] = left[moves]
     if world.eccentric:
         # pymunk has rounded the positions of such bodies when they were written: they count as unedited.
         world.gather()
-        world.left_as_read()
+        world.accept_rounding()
 
 
 class _Parts:

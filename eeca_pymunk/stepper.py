@@ -98,7 +98,7 @@ class Method(Protocol):
     such as contact forces, as long as the world is used."""
 
     def step(self, reading: Table, dt: float, gx: float, gy: float, half_damping: float) -> int:
-        """Move the bodies from STATES[NOW] to STATES[LEFT] and ENDS (`layout.py`), by the gravity (gx, gy) and the
+        """Move the bodies from STATES[READ] to STATES[WRITTEN] and ENDS (`layout.py`), by the gravity (gx, gy) and the
         factor of half a step's damping. Returns status bits or a negative code of `transfer.py`."""
 
     def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:

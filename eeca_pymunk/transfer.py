@@ -1,8 +1,8 @@
 """Transfer: from the states that pymunk holds to the rows of BODY and back (`layout.py`, `model.bodies`).
 
-`take` reads the state into the rows of BODY, a step moves them, `give` writes the state at its end. Damping d acts as a
-factor d^(dt/2) on velocities before and after the motion, which is second order. Centre of mass c and position x of a
-body at angle phi:
+`read_states` writes the states that were read into the rows of BODY, a step moves them, `write_states` writes the
+states at its end. Damping d acts as a factor d^(dt/2) on velocities before and after the motion, which is second order.
+Centre of mass c and position x of a body at angle phi:
 
     c = x + R(phi) k,     k its centre of gravity in its own coordinates, 0 for most bodies.
 """
@@ -15,30 +15,30 @@ from .arrays import FloatArray, IntArray
 from .compiled import Table, kernel, nonallocating
 from .compiled.records import Rows
 from .layout import (
+    ACCELERATION_X,
+    ACCELERATION_Y,
+    ANGULAR_ACCELERATION,
     BODY_ROW,
     COG_X,
     COG_Y,
     ECCENTRIC,
     END,
-    FOUND,
-    KNOWN,
-    LEFT,
-    NOW,
-    NUDGED,
-    PULL,
-    PUSH_TWIST,
-    PUSH_X,
-    PUSH_Y,
-    SPECIAL,
-    SPEED,
+    FLAGS,
+    KNOWN_ID,
+    READ,
+    READ_ID,
+    RESET_FORCES,
+    SHIFTED,
     STEERED,
-    STILL,
+    STOPPED,
+    VELOCITIES,
+    WRITTEN,
 )  # fmt: skip
 from .model.bodies import Body
 from .model.values import reading_of
 
-# Status of `take`, `give` and a step: bits (there are impulses; forces have to be reset; angles or spins have to be
-# written), or a negative code.
+# Status of `read_states`, `write_states` and a step: bits (there are impulses; forces have to be reset; angles or spins
+# have to be written), or a negative code.
 EVENTS, FORCES, TURNS = 1, 2, 4
 OTHER_BODIES, MOVED_STATIC, NOT_FINITE, OVERFLOW = -1, -2, -3, -4
 
@@ -68,7 +68,7 @@ def acceleration(
     """Acceleration (2) and angular acceleration of body i without contacts, by its force and torque in `now` (N, 9) and
     gravity, or those that its velocity function has set; and the factor of half a step's damping on its velocities."""
     if special & STEERED:
-        return EXTRA[i, PUSH_X], EXTRA[i, PUSH_Y], EXTRA[i, PUSH_TWIST], 1.0
+        return EXTRA[i, ACCELERATION_X], EXTRA[i, ACCELERATION_Y], EXTRA[i, ANGULAR_ACCELERATION], 1.0
     im = body.inv_mass
     if im > 0.0:
         return now[i, 6] * im + gx, now[i, 7] * im + gy, now[i, 8] * body.inv_inertia, half_damping
@@ -76,27 +76,27 @@ def acceleration(
 
 
 @kernel
-def take(
-    STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, BODY: Rows[Body], gx: float, gy: float, half_damping: float
+def read_states(
+    STATES: FloatArray, IDS: IntArray, EXTRA: FloatArray, BODY: Rows[Body], gx: float, gy: float, half_damping: float
 ) -> int:
     """Write the states read from pymunk into BODY: all paths begin at the start of the step, `since` = 0.
 
     `Body.due` becomes negative if the prediction of the last step is void: the velocity was edited or damped, or the
-    acceleration has changed; if the pose was edited, NUDGED less the way of its points, in parts of the body's extent,
+    acceleration has changed; if the pose was edited, SHIFTED less the way of its points, in parts of the body's extent,
     and -inf if that is not known. With damping all predictions are void.
 
     Args:
-        STATES (2, N, 9), WALK (4, N), EXTRA (N, 5), BODY (n,): see `layout.py`.
+        STATES (2, N, 9), IDS (4, N), EXTRA (N, 5), BODY (n,): see `layout.py`.
         gx, gy: gravity, length/time².  half_damping: d^(dt/2), the factor of half a step's damping.
 
     Returns:
         FORCES if any body has a force or torque, else 0. A negative code, with BODY invalid, if the bodies are others,
         a static one was moved, or a number is not finite.
     """
-    now, before = STATES[NOW], STATES[LEFT]
+    now, before = STATES[READ], STATES[WRITTEN]
     status = 0
-    for i in range(WALK.shape[1]):
-        if WALK[FOUND, i] != WALK[KNOWN, i]:
+    for i in range(IDS.shape[1]):
+        if IDS[READ_ID, i] != IDS[KNOWN_ID, i]:
             return OTHER_BODIES
         x, y, angle, vx, vy, spin = now[i, 0], now[i, 1], now[i, 2], now[i, 3], now[i, 4], now[i, 5]
         fx, fy, torque = now[i, 6], now[i, 7], now[i, 8]
@@ -110,12 +110,12 @@ def take(
             status |= FORCES
             if not finite(fx, fy, torque, 0.0, 0.0, 0.0):
                 return NOT_FINITE
-        row = WALK[BODY_ROW, i]
+        row = IDS[BODY_ROW, i]
         if row < 0:
             if moved:
                 return MOVED_STATIC
             continue
-        special = WALK[SPECIAL, i]
+        special = IDS[FLAGS, i]
         ax, ay, twist, damped = acceleration(now, i, BODY[row], special, EXTRA, gx, gy, half_damping)
         if special & ECCENTRIC:
             dx, dy = to_centre(EXTRA, i, angle)
@@ -123,7 +123,7 @@ def take(
         if moved:
             way = (abs(now[i, 0] - before[i, 0]) + abs(now[i, 1] - before[i, 1])) / max(BODY[row].extent, 1e-300)
             way += abs(angle - before[i, 2])
-            BODY[row].due = min(BODY[row].due, NUDGED - way) if way >= 0.0 else -math.inf
+            BODY[row].due = min(BODY[row].due, SHIFTED - way) if way >= 0.0 else -math.inf
         elif edited or damped != 1.0 or ax != BODY[row].ax or ay != BODY[row].ay or twist != BODY[row].angular:
             BODY[row].due = min(BODY[row].due, -1.0)
         BODY[row].x, BODY[row].y, BODY[row].angle = x, y, angle
@@ -134,37 +134,37 @@ def take(
 
 
 @kernel
-def place_anew(table: Table) -> None:
-    """Let all bodies count as placed by the program where they were read, as before the first step: STATES[LEFT] is
+def forget_last_end(table: Table) -> None:
+    """Let all bodies count as placed by the program where they were read, as before the first step: STATES[WRITTEN] is
     what was read of bodies without a row, and unknown, nan, of others; functions have given no accelerations."""
     R = reading_of(table)
-    STATES, WALK, EXTRA = R.STATES, R.WALK, R.EXTRA
-    for i in range(WALK.shape[1]):
+    STATES, IDS, EXTRA = R.STATES, R.IDS, R.EXTRA
+    for i in range(IDS.shape[1]):
         for c in range(9):
-            STATES[LEFT, i, c] = STATES[NOW, i, c] if WALK[BODY_ROW, i] < 0 else math.nan
-        EXTRA[i, PUSH_X], EXTRA[i, PUSH_Y], EXTRA[i, PUSH_TWIST] = 0.0, 0.0, 0.0
+            STATES[WRITTEN, i, c] = STATES[READ, i, c] if IDS[BODY_ROW, i] < 0 else math.nan
+        EXTRA[i, ACCELERATION_X], EXTRA[i, ACCELERATION_Y], EXTRA[i, ANGULAR_ACCELERATION] = 0.0, 0.0, 0.0
 
 
 @kernel
-def give(
-    STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, BODY: Rows[Body], ENDS: FloatArray, dt: float,
+def write_states(
+    STATES: FloatArray, IDS: IntArray, EXTRA: FloatArray, BODY: Rows[Body], ENDS: FloatArray, dt: float,
     half_damping: float, status: int,
 ) -> int:  # fmt: skip
-    """Write the ends of BODY's paths to STATES[LEFT], and to ENDS for pymunk.
+    """Write the ends of BODY's paths to STATES[WRITTEN], and to ENDS for pymunk.
 
     Args:
-        dt: time.  half_damping: see `take`.  status: the bits of the step so far.
+        dt: time.  half_damping: see `read_states`.  status: the bits of the step so far.
 
     Returns:
         `status` with the bits of `put_ends`; OVERFLOW, with STATES written, if a number is not finite.
     """
-    after = STATES[LEFT]
-    for i in range(WALK.shape[1]):
-        row = WALK[BODY_ROW, i]
+    after = STATES[WRITTEN]
+    for i in range(IDS.shape[1]):
+        row = IDS[BODY_ROW, i]
         if row < 0:
             continue
         s = dt - BODY[row].since
-        special = WALK[SPECIAL, i]
+        special = IDS[FLAGS, i]
         damped = half_damping if BODY[row].inv_mass > 0.0 and not special & STEERED else 1.0
         ax, ay, twist = BODY[row].ax, BODY[row].ay, BODY[row].angular
         vx, vy, spin = BODY[row].vx, BODY[row].vy, BODY[row].spin
@@ -180,23 +180,23 @@ def give(
         after[i, 3], after[i, 4], after[i, 5] = vx, vy, spin
     if status == OVERFLOW:
         return OVERFLOW
-    return put_ends(STATES, WALK, ENDS, status)
+    return put_ends(STATES, IDS, ENDS, status)
 
 
 @kernel
-def put_ends(STATES: FloatArray, WALK: IntArray, ENDS: FloatArray, status: int) -> int:
-    """Write STATES[LEFT] to ENDS, to the tables END and PULL.
+def put_ends(STATES: FloatArray, IDS: IntArray, ENDS: FloatArray, status: int) -> int:
+    """Write STATES[WRITTEN] to ENDS, to the tables END and RESET_FORCES.
 
     Returns:
         `status`, with TURNS if the angle or spin of any body differs from pymunk's, or any body spins (contacts in a
         step of pymunk would change its spin). Otherwise END has no columns for angles and spins, which take pymunk as
         long to write as all others.
     """
-    N = WALK.shape[1]
-    now, after = STATES[NOW], STATES[LEFT]
-    end, pull = ENDS[END * N :], ENDS[PULL * N :]
+    N = IDS.shape[1]
+    now, after = STATES[READ], STATES[WRITTEN]
+    end, forces = ENDS[END * N :], ENDS[RESET_FORCES * N :]
     for i in range(N):
-        if WALK[BODY_ROW, i] < 0:
+        if IDS[BODY_ROW, i] < 0:
             after[i, 3], after[i, 4], after[i, 5] = now[i, 3], now[i, 4], now[i, 5]
         elif after[i, 2] != now[i, 2] or after[i, 5] != now[i, 5] or after[i, 5] != 0.0:
             status |= TURNS
@@ -205,14 +205,14 @@ def put_ends(STATES: FloatArray, WALK: IntArray, ENDS: FloatArray, status: int) 
         end[4 * i + 2], end[4 * i + 3] = after[i, 3], after[i, 4]
     if status & TURNS:
         for i in range(N):
-            if WALK[BODY_ROW, i] < 0:
+            if IDS[BODY_ROW, i] < 0:
                 after[i, 3], after[i, 4], after[i, 5] = now[i, 3], now[i, 4], now[i, 5]
             for k in range(6):
                 end[6 * i + k] = after[i, k]
     if status & FORCES:
         for i in range(N):
             for k in range(3):
-                pull[3 * i + k] = 0.0 if WALK[BODY_ROW, i] >= 0 else now[i, 6 + k]
+                forces[3 * i + k] = 0.0 if IDS[BODY_ROW, i] >= 0 else now[i, 6 + k]
     return status
 
 
@@ -220,22 +220,22 @@ def put_ends(STATES: FloatArray, WALK: IntArray, ENDS: FloatArray, status: int) 
 def write_ends(table: Table, status: int) -> int:
     """See `put_ends`."""
     R = reading_of(table)
-    return put_ends(R.STATES, R.WALK, R.ENDS, status)
+    return put_ends(R.STATES, R.IDS, R.ENDS, status)
 
 
 @kernel
-def write_still_ends(table: Table, status: int) -> None:
-    """Write the end of the step to the tables STILL (poses, with velocity 0) and SPEED (velocities), for a rest step.
-    They have the columns of END."""
+def write_stopped_ends(table: Table, status: int) -> None:
+    """Write the end of the step to the tables STOPPED (poses, with velocity 0) and VELOCITIES, for a rest step. They
+    have the columns of END."""
     R = reading_of(table)
     ENDS, N = R.ENDS, R.STATES.shape[1]
-    after = R.STATES[LEFT]
-    still, speed = ENDS[STILL * N :], ENDS[SPEED * N :]
+    after = R.STATES[WRITTEN]
+    stopped, velocities = ENDS[STOPPED * N :], ENDS[VELOCITIES * N :]
     if status & TURNS:
         for i in range(N):
             for k in range(3):
-                still[6 * i + k], still[6 * i + 3 + k], speed[3 * i + k] = after[i, k], 0.0, after[i, 3 + k]
+                stopped[6 * i + k], stopped[6 * i + 3 + k], velocities[3 * i + k] = after[i, k], 0.0, after[i, 3 + k]
     else:
         for i in range(N):
             for k in range(2):
-                still[4 * i + k], still[4 * i + 2 + k], speed[2 * i + k] = after[i, k], 0.0, after[i, 3 + k]
+                stopped[4 * i + k], stopped[4 * i + 2 + k], velocities[2 * i + k] = after[i, k], 0.0, after[i, 3 + k]

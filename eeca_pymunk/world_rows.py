@@ -8,20 +8,20 @@ from .arrays import FloatArray, IntArray
 from .compiled import Table, nonallocating
 from .compiled.records import Rows
 from .layout import (
+    ACCELERATION_X,
+    ACCELERATION_Y,
+    ANGULAR_ACCELERATION,
     BODY_ROW,
+    CHANGES_AFTER,
+    CHANGES_BEFORE,
     COG_X,
     COG_Y,
-    EARLY,
     ECCENTRIC,
-    LATE,
-    LEFT,
-    NOW,
-    PUSH_TWIST,
-    PUSH_X,
-    PUSH_Y,
-    SPECIAL,
+    FLAGS,
+    READ,
     STATE_COLUMNS,
     STEERED,
+    WRITTEN,
 )  # fmt: skip
 from .model.shapes import Link, Shape
 from .model.values import (
@@ -39,7 +39,7 @@ from .model.values import (
     ShapeValues,
     reading_of,
 )
-from .transfer import NOT_FINITE, take
+from .transfer import NOT_FINITE, read_states
 
 
 @nonallocating
@@ -139,7 +139,7 @@ def write_rows(table: Table) -> None:
     R = reading_of(table)
     BODIES, SHAPES, BODY, LINK, ORDER = R.BODIES, R.SHAPES, R.BODY, R.LINK, R.ORDER
     for i in range(BODIES.shape[0]):
-        BODIES[i].x, BODIES[i].y, BODIES[i].angle = R.STATES[NOW, i, 0], R.STATES[NOW, i, 1], R.STATES[NOW, i, 2]
+        BODIES[i].x, BODIES[i].y, BODIES[i].angle = R.STATES[READ, i, 0], R.STATES[READ, i, 1], R.STATES[READ, i, 2]
     for s in range(SHAPES.shape[0]):
         SHAPES[s].owner = R.OWNER[s]
     place_points(BODIES, SHAPES, R.POINT)
@@ -172,19 +172,19 @@ def write_rows(table: Table) -> None:
 
 @nonallocating
 def begin_walk(R: Reading) -> None:
-    """Write what is known of the bodies to WALK, EXTRA and STATES[LEFT]: where steps have left them, only of static
+    """Write what is known of the bodies to IDS, EXTRA and STATES[WRITTEN]: where steps have left them, only of static
     ones; functions have changed nothing."""
     R.TOTALS[DYNAMICS] = R.TOTALS[ECCENTRICS] = R.TOTALS[STEERERS] = R.TOTALS[MOVERS] = 0
     for i in range(R.BODIES.shape[0]):
         body = R.BODIES[i]
         eccentric = 1 if body.centre_x != 0.0 or body.centre_y != 0.0 else 0
-        R.WALK[BODY_ROW, i] = body.row
-        R.WALK[SPECIAL, i] = ECCENTRIC * eccentric + STEERED * body.steered
+        R.IDS[BODY_ROW, i] = body.row
+        R.IDS[FLAGS, i] = ECCENTRIC * eccentric + STEERED * body.steered
         R.EXTRA[i, COG_X], R.EXTRA[i, COG_Y] = body.centre_x, body.centre_y
-        R.EXTRA[i, PUSH_X], R.EXTRA[i, PUSH_Y], R.EXTRA[i, PUSH_TWIST] = 0.0, 0.0, 0.0
+        R.EXTRA[i, ACCELERATION_X], R.EXTRA[i, ACCELERATION_Y], R.EXTRA[i, ANGULAR_ACCELERATION] = 0.0, 0.0, 0.0
         for c in range(STATE_COLUMNS):
-            R.HELD[EARLY, i, c], R.HELD[LATE, i, c] = 0.0, 0.0
-            R.STATES[LEFT, i, c] = R.STATES[NOW, i, c] if body.kind == STATIC else math.nan
+            R.HOOKED[CHANGES_BEFORE, i, c], R.HOOKED[CHANGES_AFTER, i, c] = 0.0, 0.0
+            R.STATES[WRITTEN, i, c] = R.STATES[READ, i, c] if body.kind == STATIC else math.nan
         R.TOTALS[DYNAMICS] += 1 if body.kind == DYNAMIC else 0
         R.TOTALS[ECCENTRICS] += eccentric
         R.TOTALS[STEERERS] += body.steered
@@ -193,22 +193,22 @@ def begin_walk(R: Reading) -> None:
 
 @nonallocating
 def read_space(table: Table, arranged: int) -> int:
-    """Write all rows of a space that is read anew, with the poses and velocities of STATES[NOW].
+    """Write all rows of a space that is read anew, with the poses and velocities of STATES[READ].
 
     Args:
         arranged: 1 if rows are given out in pymunk's order, else in the order of `BodyValues.place`.
 
     Returns:
-        the status of `transfer.take`; NOT_FINITE also for bodies that are not taken.
+        the status of `transfer.read_states`; NOT_FINITE also for bodies that are not taken.
     """
     R = reading_of(table)
     for i in range(R.STATES.shape[1]):
         for c in range(STATE_COLUMNS):
-            if not abs(R.STATES[NOW, i, c]) < math.inf:
+            if not abs(R.STATES[READ, i, c]) < math.inf:
                 return NOT_FINITE
     if arranged != 0:
         for i in range(R.BODIES.shape[0]):
             R.BODIES[i].place = i
     write_rows(table)
     begin_walk(R)
-    return take(R.STATES, R.WALK, R.EXTRA, R.BODY, 0.0, 0.0, 1.0)
+    return read_states(R.STATES, R.IDS, R.EXTRA, R.BODY, 0.0, 0.0, 1.0)

@@ -39,10 +39,10 @@ def the_body(world: World) -> pymunk.Body:
 def flown(world: World, dt: float, left: float) -> int:
     """A step of bodies that meet nothing: exact parabolas, constant spin or torque."""
     gx, gy = world.gravity
-    status = transfer.take(world.STATES, world.WALK, world.EXTRA, world.BODY, gx, gy, left)
+    status = transfer.read_states(world.STATES, world.IDS, world.EXTRA, world.BODY, gx, gy, left)
     if status < 0:
         return status
-    return transfer.give(world.STATES, world.WALK, world.EXTRA, world.BODY, world.ENDS, dt, left, status)
+    return transfer.write_states(world.STATES, world.IDS, world.EXTRA, world.BODY, world.ENDS, dt, left, status)
 
 
 def fly(world: World, dt: float = DT, left: float = 1.0) -> int:
@@ -150,7 +150,7 @@ def test_only_what_was_edited_is_forecast_anew(edit: object, gravity: tuple[floa
     # The force is gone, which is another edit.
     void(world)
     assert not void(world)
-    world.STATES[at.LEFT, ~world.bodies.static] = np.nan
+    world.STATES[at.WRITTEN, ~world.bodies.static] = np.nan
     assert void(world)
 
 
@@ -164,7 +164,7 @@ def test_angles_are_written_only_where_some_body_turns() -> None:
     assert (body.angle, body.angular_velocity) == (angle, 0.0)
     # A spin that the step itself gives is written too.
     world.gather()
-    world.STATES[at.LEFT, 0, 5] = 3.0
+    world.STATES[at.WRITTEN, 0, 5] = 3.0
     assert world.write_whole() & transfer.TURNS
     world.scatter(transfer.TURNS)
     assert body.angular_velocity == 3.0
@@ -180,10 +180,10 @@ def test_tables_of_rest_and_of_speed_make_up_the_end(turns: bool) -> None:
         world.gather()
         status = flown(world, DT, 1.0)
         if parts:
-            world.scatter_still(status)
+            world.scatter_stopped(status)
             world.gather()
-            assert not world.state[world.WALK[at.BODY_ROW] >= 0, 3:5].any()
-            world.scatter_speed(status)
+            assert not world.state[world.IDS[at.BODY_ROW] >= 0, 3:5].any()
+            world.scatter_velocities(status)
         else:
             world.scatter(status)
         world.gather()
@@ -197,8 +197,8 @@ def test_numbers_that_are_not_finite_are_told(value: float, column: int) -> None
     world = make()
     fly(world)
     world.gather()
-    world.STATES[at.NOW, 0, column] = value
-    status = transfer.take(world.STATES, world.WALK, world.EXTRA, world.BODY, 0.0, 0.0, 1.0)
+    world.STATES[at.READ, 0, column] = value
+    status = transfer.read_states(world.STATES, world.IDS, world.EXTRA, world.BODY, 0.0, 0.0, 1.0)
     assert status == transfer.NOT_FINITE
 
 
@@ -210,5 +210,5 @@ def test_overflow_other_bodies_and_moved_walls_are_told() -> None:
     next(b for b in world.space.bodies if b.body_type == pymunk.Body.STATIC).angle = 1.0
     assert fly(world) == transfer.MOVED_STATIC
     world = make()
-    world.WALK[at.KNOWN, 0] += 1
+    world.IDS[at.KNOWN_ID, 0] += 1
     assert fly(world) == transfer.OTHER_BODIES

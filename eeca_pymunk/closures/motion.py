@@ -23,7 +23,7 @@ from ..model.values import reading_of
 from ..pairs.candidates import candidates
 from ..pairs.setup import near_lists, with_more_room
 from ..report import Contacts, Details, Outcome
-from ..transfer import EVENTS, OVERFLOW, give, take
+from ..transfer import EVENTS, OVERFLOW, read_states, write_states
 from .refusals import check_disks
 
 if TYPE_CHECKING:
@@ -182,15 +182,15 @@ class Disks:
         """From the states read to those to be written, see `transfer.py`; contacts do not change spins. `half_damping`:
         factor of half a step's damping."""
         R, BODY = reading_of(reading), self.world.BODY
-        STATES, WALK, EXTRA, ENDS = R.STATES, R.WALK, R.EXTRA, R.ENDS
-        status = take(STATES, WALK, EXTRA, BODY, gx, gy, half_damping)
+        STATES, IDS, EXTRA, ENDS = R.STATES, R.IDS, R.EXTRA, R.ENDS
+        status = read_states(STATES, IDS, EXTRA, BODY, gx, gy, half_damping)
         if status < 0:
             return status
         start = Start(
             dt, columns(BODY, "x", "y"), columns(BODY, "vx", "vy"), columns(BODY, "ax", "ay"), BODY["inv_mass"].copy()
         )  # fmt: skip
         if not np.isfinite(start.free_displacement).all():
-            give(STATES, WALK, EXTRA, BODY, ENDS, dt, half_damping, status)
+            write_states(STATES, IDS, EXTRA, BODY, ENDS, dt, half_damping, status)
             return OVERFLOW
         self.motion = motion = self.move(self, start)
         put(BODY, columns(BODY, "x", "y") + motion.displacement, "x", "y")
@@ -200,7 +200,7 @@ class Disks:
         BODY["since"] = dt
         if motion.details is not None:
             status |= EVENTS
-        return give(STATES, WALK, EXTRA, BODY, ENDS, dt, half_damping, status)
+        return write_states(STATES, IDS, EXTRA, BODY, ENDS, dt, half_damping, status)
 
     def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
         """Set the elasticity of pairs of shapes (a < b) for the following steps, negative if they do not collide."""

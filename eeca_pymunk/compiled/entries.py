@@ -34,8 +34,8 @@ TABLES = {
         SIDE:Side[1] CORNER:Corner[1] PINNED:Pinned[1] MISSED:Missed[1] PAR:Step COUNT:Count
     """,
     "Reading": """
-        TOTALS:i8[1] BODIES:BodyValues[1] SHAPES:ShapeValues[1] OWNER:i8[1] POINT:f8[2] STATES:f8[3] WALK:i8[2]
-        EXTRA:f8[2] ENDS:f8[1] HELD:f8[3] BODY:Body[1] SHAPE:Shape[1] LINK:Link[1] VERTEX:f8[2] ORDER:i8[1]
+        TOTALS:i8[1] BODIES:BodyValues[1] SHAPES:ShapeValues[1] OWNER:i8[1] POINT:f8[2] STATES:f8[3] IDS:i8[2]
+        EXTRA:f8[2] ENDS:f8[1] HOOKED:f8[3] BODY:Body[1] SHAPE:Shape[1] LINK:Link[1] VERTEX:f8[2] ORDER:i8[1]
         MEASURED:Measures
     """,
     "Joints": """
@@ -66,21 +66,21 @@ ENTRIES = {
     "pairs.candidates:candidates": "{Scene} f8[1] i8[2] f8[2]",
     "geometry.corners:find_corners": "Link[1] f8[2] Corner[1]",
     "geometry.sides:keep_sides": "{Scene} Side[1] i8[1]",
-    "transfer:take": "f8[3] i8[2] f8[2] Body[1] f8 f8 f8",
-    "transfer:give": "f8[3] i8[2] f8[2] Body[1] f8[1] f8 f8 i8",
-    "transfer:place_anew": "{Reading}",
+    "transfer:read_states": "f8[3] i8[2] f8[2] Body[1] f8 f8 f8",
+    "transfer:write_states": "f8[3] i8[2] f8[2] Body[1] f8[1] f8 f8 i8",
+    "transfer:forget_last_end": "{Reading}",
     "transfer:write_ends": "{Reading} i8",
-    "transfer:write_still_ends": "{Reading} i8",
-    "rehearsing:approach": "{Reading} f8[2] i8[2] f8 f8 f8 f8",
+    "transfer:write_stopped_ends": "{Reading} i8",
+    "rehearsing:place_for_rehearsal": "{Reading} f8[2] i8[2] f8 f8 f8 f8",
     "rehearsing:copy_start": "{Reading}",
-    "rehearsing:as_read": "{Reading}",
+    "rehearsing:accept_rounding": "{Reading}",
     "rehearsing:alter_end": "{Reading} i8",
     "sleepers:rests": "f8[3] i8[2] i8[1] f8[1] f8[1] i8[1] f8 f8 f8",
     "sleepers:approaches": "f8[3] i8[1] f8[1] f8[1] f8[2] i8[1] f8 f8",
     "sleepers:touches": "Impulse[1] i8[1] i8[1] i8[1] i8",
     "world_rows:write_rows": "{Reading}",
     "world_rows:read_space": "{Reading} i8",
-    "rehearsing:changed": "{Reading} i8",
+    "rehearsing:record_changes": "{Reading} i8",
     "impacts.new_scene:measure_scene": "{Reading}",
     "impacts.new_scene:begin_scene": "{Scene} i8 i8 i8 i8 i8",
     "impacts.new_scene:tie_components": "{Scene} {Joints}",

@@ -8,7 +8,7 @@ a step at once; `run.py` takes many steps in one call.
 
 `scene.py` owns the arrays, `memory.py` and `remembering.py` store what a state of a run consists of.
 
-Names of arguments: A is the scene, J its joints (`..model.joints`); STATES, WALK, EXTRA, ENDS the arrays exchanged with
+Names of arguments: A is the scene, J its joints (`..model.joints`); STATES, IDS, EXTRA, ENDS the arrays exchanged with
 pymunk (`..layout`); F the arrays of a run (`..model.run`).
 Bits and negative codes are the status of a step, see `transfer.py`. A block is the set of bodies and contacts of a
 simultaneous impact, in A.BLOCK.

@@ -10,7 +10,7 @@ from ..contacts.single import kinetic
 from ..geometry.sides import forget_sides
 from ..islands.accounting import flag_pairs
 from ..islands.at_rest import stays_at_rest, unchanged
-from ..layout import ANEW, BODY_ROW, NUDGED, SPECIAL, STEERED
+from ..layout import BODY_ROW, FLAGS, PLACED, SHIFTED, STEERED
 from ..model.bodies import AT_REST, AWAKE, CHANGED, MOVED, UNMOVED
 from ..model.parameters.events import BUSY_STEPS
 from ..model.scene import Scene
@@ -28,19 +28,19 @@ def total(A: Scene) -> float:
 
 
 @nonallocating
-def unsteered(A: Scene, WALK: IntArray) -> float:
+def unsteered(A: Scene, IDS: IntArray) -> float:
     """Kinetic energy of the bodies that the space's damping acts on: those without a velocity function of the
     program."""
     whole = 0.0
-    for k in range(WALK.shape[1]):
-        i = WALK[BODY_ROW, k]
-        if i >= 0 and not WALK[SPECIAL, k] & STEERED:
+    for k in range(IDS.shape[1]):
+        i = IDS[BODY_ROW, k]
+        if i >= 0 and not IDS[FLAGS, k] & STEERED:
             whole += kinetic(A.BODY, i)
     return whole
 
 
 @nonallocating
-def begin(A: Scene, WALK: IntArray) -> None:
+def begin(A: Scene, IDS: IntArray) -> None:
     """Reset counters and ledger for a new step, and count `Body.due` from its start; compute the energy there, and the
     flags of the step (`even`, `closing`, `may_support`). Edited bodies begin a new path version, and the islands at
     rest for which something has changed are set CHANGED."""
@@ -59,8 +59,8 @@ def begin(A: Scene, WALK: IntArray) -> None:
     PAR.before = total(A)
     half_damping = PAR.half_damping
     if half_damping != 1.0:
-        # `take` has damped velocities by half a step already.
-        PAR.damped = unsteered(A, WALK) * (1.0 / (half_damping * half_damping) - 1.0)
+        # `read_states` has damped velocities by half a step already.
+        PAR.damped = unsteered(A, IDS) * (1.0 / (half_damping * half_damping) - 1.0)
         PAR.before += PAR.damped
     PAR.stamp += 1.0
     COUNT.waiting, COUNT.phase = 0, 0
@@ -90,11 +90,11 @@ def begin(A: Scene, WALK: IntArray) -> None:
         A.BEGAN[i, 0], A.BEGAN[i, 1], A.BEGAN[i, 2] = BODY[i].x, BODY[i].y, BODY[i].angle
         if BODY[i].due < 0.0:
             STATE[i].version += 1
-            if BODY[i].due < NUDGED:
-                forget_sides(A, i, (NUDGED - BODY[i].due) * BODY[i].extent)
-            if BODY[i].due <= NUDGED:
+            if BODY[i].due < SHIFTED:
+                forget_sides(A, i, (SHIFTED - BODY[i].due) * BODY[i].extent)
+            if BODY[i].due <= SHIFTED:
                 A.MEMBER[i].placed, COUNT.any_placed = MOVED, 1
-            elif BODY[i].due <= ANEW:
+            elif BODY[i].due <= PLACED:
                 A.MEMBER[i].placed, COUNT.any_placed = max(A.MEMBER[i].placed, UNMOVED), 1
         else:
             BODY[i].due = max(BODY[i].due - last, 0.0)

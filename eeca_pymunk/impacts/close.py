@@ -17,7 +17,7 @@ from .begin import total, unsteered
 
 
 @nonallocating
-def close(A: Scene, WALK: IntArray) -> None:
+def close(A: Scene, IDS: IntArray) -> None:
     """Move all bodies to the end of the step, end islands' intervals, enter the work of forces and the energy in the
     ledger, and compute the gaps at the start of the step of logged impulses."""
     BODY, PAR, LOG, BEGAN, COUNT = A.BODY, A.PAR, A.LOG, A.BEGAN, A.COUNT
@@ -49,7 +49,7 @@ def close(A: Scene, WALK: IntArray) -> None:
     PAR.after = total(A) + PAR.stored
     half_damping = PAR.half_damping
     if half_damping != 1.0:
-        lost = unsteered(A, WALK) * (1.0 - half_damping * half_damping)
+        lost = unsteered(A, IDS) * (1.0 - half_damping * half_damping)
         PAR.damped += lost
         PAR.after -= lost
     PAR.last = end

@@ -8,8 +8,7 @@ from __future__ import annotations
 import math
 
 from ..compiled import Table, kernel, nonallocating
-from ..layout import BODY_ROW, LEFT
-from ..layout import NOW as READ
+from ..layout import BODY_ROW, READ, WRITTEN
 from ..model.joints import joints_of
 from ..model.run import AFTER, BETWEEN, WITHIN, RunArrays, run_arrays_of
 from ..model.scene import Scene, scene_of
@@ -23,9 +22,9 @@ ENERGY = -5  # and of one whose energy overflows
 @nonallocating
 def carry_on(R: Reading) -> None:
     """Let the next step begin with the poses and velocities at the end of the last one, without forces."""
-    now, after = R.STATES[READ], R.STATES[LEFT]
-    for i in range(R.WALK.shape[1]):
-        if R.WALK[BODY_ROW, i] >= 0:
+    now, after = R.STATES[READ], R.STATES[WRITTEN]
+    for i in range(R.IDS.shape[1]):
+        if R.IDS[BODY_ROW, i] >= 0:
             for c in range(6):
                 now[i, c] = after[i, c]
             for c in range(6, 9):
@@ -35,15 +34,15 @@ def carry_on(R: Reading) -> None:
 @nonallocating
 def set_back(A: Scene, F: RunArrays, R: Reading) -> None:
     """Begin a rollout: clear the results of earlier steps, and set bodies to INITIAL."""
-    now, after = R.STATES[READ], R.STATES[LEFT]
+    now, after = R.STATES[READ], R.STATES[WRITTEN]
     if A.COUNT.remembered > 0:
         for q in range(A.KEYS.shape[0]):
             A.KEYS[q] = -1
     for q in range(F.OWN.shape[0]):
         F.OWN[q] = F.FRESH[q]
-    # With the end of the last step unknown (NaN), `take` regards all bodies as edited.
-    for i in range(R.WALK.shape[1]):
-        if R.WALK[BODY_ROW, i] >= 0:
+    # With the end of the last step unknown (NaN), `read_states` regards all bodies as edited.
+    for i in range(R.IDS.shape[1]):
+        if R.IDS[BODY_ROW, i] >= 0:
             for c in range(6):
                 after[i, c] = math.nan
             for c in range(6, 9):
@@ -107,7 +106,7 @@ def after_step(A: Scene, F: RunArrays, R: Reading) -> int:
     T[4] += PAR.damped
     T[5] += change - (PAR.external - PAR.restitution - PAR.frictional - PAR.damped)
     if RUN.every > 0 and RUN.done % RUN.every == 0:
-        after, b = R.STATES[LEFT], F.KEPT.shape[0]
+        after, b = R.STATES[WRITTEN], F.KEPT.shape[0]
         for q in range(b):
             for c in range(6):
                 F.FRAMES[RUN.frame * b + q, c] = after[F.KEPT[q], c]

@@ -15,7 +15,7 @@ from ..compiled.records import R, Rows, columns, from_bytes, put, rows
 from ..contacts.memory import forget
 from ..islands.accounting import flag_pairs
 from ..joints.pinned import NO_PINNED, pinned_bodies
-from ..layout import NOW as READ
+from ..layout import READ
 from ..model.bodies import CHECK, Body
 from ..model.contacts import Force, Impulse
 from ..model.joints import Joint, Pinned

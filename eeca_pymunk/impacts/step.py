@@ -13,7 +13,7 @@ from ..model.step import DONE, LOG_FULL, POOL_FULL, PUSHES_FULL
 from ..model.values import Reading, reading_of
 from ..prediction.scheduling import predict_due
 from ..transfer import EVENTS as SOME
-from ..transfer import give, take
+from ..transfer import read_states, write_states
 from .begin import begin
 from .close import close
 from .intervals import start_islands
@@ -28,14 +28,14 @@ ROOM_FOR_LISTS, ROOM_FOR_EVENTS, ROOM_FOR_CONTACTS = -10, -11, -12
 def start(A: Scene, J: Joints, R: Reading, dt: float, gx: float, gy: float, half_damping: float) -> int:
     """Take the states read from pymunk, and begin a step of length dt; returns the bits so far, or a negative code."""
     if len(J.JOINT) > 0:
-        start_joints(A, J, R.STATES, R.WALK, dt)
-    status = take(R.STATES, R.WALK, R.EXTRA, A.BODY, gx, gy, half_damping)
+        start_joints(A, J, R.STATES, R.IDS, dt)
+    status = read_states(R.STATES, R.IDS, R.EXTRA, A.BODY, gx, gy, half_damping)
     if status >= 0:
         lost = put_pinned(A.PINNED, A.BODY)
         A.PAR.planned = dt
         A.PAR.dt, A.PAR.gravity_x, A.PAR.gravity_y, A.PAR.half_damping = dt, gx, gy, half_damping
         A.PAR.instant = MEET_INSTANT * dt
-        begin(A, R.WALK)
+        begin(A, R.IDS)
         # The kinetic energy that `put_pinned` has taken from held bodies is a loss of this step.
         A.PAR.before += lost
         A.PAR.restitution += lost
@@ -46,12 +46,12 @@ def start(A: Scene, J: Joints, R: Reading, dt: float, gx: float, gy: float, half
 def finish(A: Scene, J: Joints, R: Reading, status: int) -> int:
     """Close the step, and write the states at its end; returns the bits of the step, or a negative code."""
     account_joints(A, J)
-    close(A, R.WALK)
+    close(A, R.IDS)
     if len(A.PINNED) > 0:
-        load_welds(A, J, R.STATES, R.WALK)
+        load_welds(A, J, R.STATES, R.IDS)
     if A.COUNT.logged > 0 or A.COUNT.unmet > 0:
         status |= SOME
-    return give(R.STATES, R.WALK, R.EXTRA, A.BODY, R.ENDS, A.PAR.dt, A.PAR.half_damping, status)
+    return write_states(R.STATES, R.IDS, R.EXTRA, A.BODY, R.ENDS, A.PAR.dt, A.PAR.half_damping, status)
 
 
 @kernel

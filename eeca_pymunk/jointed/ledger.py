@@ -9,8 +9,7 @@ from ..compiled import nonallocating
 from ..contacts.counts import note_unmet
 from ..joints.ledger import clear_interval
 from ..joints.welds import pass_on, pinned_row, push_weld
-from ..layout import BODY_ROW, LEFT
-from ..layout import NOW as READ
+from ..layout import BODY_ROW, READ, WRITTEN
 from ..model.joint_steps import ELASTIC
 from ..model.joints import EDITED, WELDED, Joints
 from ..model.parameters.joints import STEP_WORK, STEP_WORK_BODY
@@ -20,12 +19,12 @@ from ..prediction.work import growth, most_work
 
 
 @nonallocating
-def mark_edited(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray) -> None:
+def mark_edited(A: Scene, J: Joints, STATES: FloatArray, IDS: IntArray) -> None:
     """Mark the joints of bodies that were edited since the last step: their velocities may not fit. How long
     intervals of these bodies may be is not known either."""
-    now, before = STATES[READ], STATES[LEFT]
-    for k in range(WALK.shape[1]):
-        i = WALK[BODY_ROW, k]
+    now, before = STATES[READ], STATES[WRITTEN]
+    for k in range(IDS.shape[1]):
+        i = IDS[BODY_ROW, k]
         if i < 0:
             continue
         same = True
@@ -47,9 +46,9 @@ def mark_edited(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray) -> None
 
 
 @nonallocating
-def start_joints(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray, dt: float) -> None:
+def start_joints(A: Scene, J: Joints, STATES: FloatArray, IDS: IntArray, dt: float) -> None:
     """Begin a step of length dt of a scene with joints, before its states are taken."""
-    mark_edited(A, J, STATES, WALK)
+    mark_edited(A, J, STATES, IDS)
     J.TALLY.worst = 0
     J.PROGRESS.effort = 0.0
     J.PROGRESS.budget = (STEP_WORK + STEP_WORK_BODY * A.BODY.shape[0]) * growth(dt)
@@ -110,7 +109,7 @@ def account_joints(A: Scene, J: Joints) -> None:
 
 
 @nonallocating
-def load_welds(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray) -> None:
+def load_welds(A: Scene, J: Joints, STATES: FloatArray, IDS: IntArray) -> None:
     """At the end of a step, leave the impulses of welded bodies' joints in their rows."""
     PINNED, BODY, dt, links = A.PINNED, A.BODY, A.PAR.dt, 0
     for k in range(len(PINNED)):
@@ -120,8 +119,8 @@ def load_welds(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray) -> None:
             joint.impulse[0], joint.impulse[1], joint.last_step = 0.0, 0.0, A.PAR.planned
         push_weld(J, pinned, pinned.x, pinned.y, pull * A.PAR.gravity_x, pull * A.PAR.gravity_y, 0.0)
         links = max(links, pinned.link)
-    for i in range(WALK.shape[1] if links > 0 else 0):
-        row = WALK[BODY_ROW, i]
+    for i in range(IDS.shape[1] if links > 0 else 0):
+        row = IDS[BODY_ROW, i]
         k = pinned_row(PINNED, row) if row >= 0 and BODY[row].inv_mass == 0.0 else -1
         if k >= 0:
             fx, fy, torque = STATES[READ, i, 6], STATES[READ, i, 7], STATES[READ, i, 8]

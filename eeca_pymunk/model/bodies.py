@@ -31,8 +31,8 @@ class Body(Record):
     elasticity: float  # of a single disk
     friction: float  # of a single disk
     # Time of the body's next event after the start of the step. Negative at the start of a step: the event has to be
-    # predicted again. -1 after a new velocity or acceleration, `..layout.ANEW` if the body counts as placed by the
-    # program, `..layout.NUDGED` less the way, over its extent, if it was placed elsewhere.
+    # predicted again. -1 after a new velocity or acceleration, `..layout.PLACED` if the body counts as placed by the
+    # program, `..layout.SHIFTED` less the way, over its extent, if it was placed elsewhere.
     due: float
 
 

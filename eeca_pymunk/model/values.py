@@ -63,7 +63,7 @@ class Reading(NamedTuple):
     """A space as pymunk has it, and the rows that are made of it.
 
     BODIES (N,), SHAPES (k,): values, in pymunk's order; OWNER (k,): `owner` of the shapes; POINT (v, 2): the vertices
-    of all shapes, overwritten. STATES, WALK, EXTRA, ENDS, HELD: see `..layout`. Out: BODY (moving bodies + 1,), SHAPE,
+    of all shapes, overwritten. STATES, IDS, EXTRA, ENDS, HOOKED: see `..layout`. Out: BODY (moving bodies + 1,), SHAPE,
     LINK (k,), VERTEX (v, 4), whose rows in use come first; ORDER (k + N + 2,), the index in SHAPES of every row of
     SHAPE, and scratch; TOTALS: counts of what was read. MEASURED: by `..impacts.new_scene.measure_scene`.
     """
@@ -74,10 +74,10 @@ class Reading(NamedTuple):
     OWNER: IntArray
     POINT: FloatArray
     STATES: FloatArray
-    WALK: IntArray
+    IDS: IntArray
     EXTRA: FloatArray
     ENDS: FloatArray
-    HELD: FloatArray
+    HOOKED: FloatArray
     BODY: Rows[Body]
     SHAPE: Rows[Shape]
     LINK: Rows[Link]

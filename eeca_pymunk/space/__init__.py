@@ -5,7 +5,7 @@ features. Back: the arrays of the end of a step, written into the space.
 
 Open first `world.py`, the space as packed arrays, and `checks.py`, the unsupported features. Three words are used
 throughout: an array row `i` of a body is its place in pymunk's order (`bodies.items`), while its row in BODY is the one
-that kernels use (`WALK[BODY_ROW]`); a *function* is one of the program, which pymunk calls; *past* is the object of
+that kernels use (`IDS[BODY_ROW]`); a *function* is one of the program, which pymunk calls; *past* is the object of
 the same class for an earlier reading of the space, of which everything that has not changed is used again.
 
 | subject | files |

@@ -15,29 +15,29 @@ from ..arrays import FloatArray, IntArray, Memory
 from ..compiled import Table
 from ..compiled.records import Rows
 from ..layout import (
-    ANEW,
-    EARLY,
+    ACCELERATION_X,
+    CHANGES_AFTER,
+    CHANGES_BEFORE,
     END,
     END_COLUMNS,
     EXTRA_COLUMNS,
-    FOUND,
-    HELD,
-    KNOWN,
-    LATE,
-    LEFT,
-    NOW,
-    PULL,
-    PUSH_X,
-    SPEED,
+    HOOKED_TABLES,
+    KNOWN_ID,
+    PLACED,
+    READ,
+    READ_ID,
+    RESET_FORCES,
     START,
     STATE_COLUMNS,
-    STILL,
+    STOPPED,
     UNALTERED,
+    VELOCITIES,
+    WRITTEN,
 )  # fmt: skip
 from ..model.bodies import Body
 from ..model.values import STATIC
-from ..rehearsing import alter_end, as_read, copy_start
-from ..transfer import FORCES, TURNS, place_anew, take, write_ends, write_still_ends
+from ..rehearsing import accept_rounding, alter_end, copy_start
+from ..transfer import FORCES, TURNS, forget_last_end, read_states, write_ends, write_stopped_ends
 from .bodies import STATE_FIELDS, Bodies
 from .private import batch as private_batch
 
@@ -49,12 +49,12 @@ _FORCES = {0: _F.FORCE | _F.TORQUE}
 # angles and spins.
 _TABLES = {
     start + turns: (start, fields)
-    for start, both in ((END, _WHOLE), (STILL, _WHOLE), (SPEED, _SPEEDS), (PULL, _FORCES))
+    for start, both in ((END, _WHOLE), (STOPPED, _WHOLE), (VELOCITIES, _SPEEDS), (RESET_FORCES, _FORCES))
     for turns, fields in both.items()
 }
-# Where WALK, EXTRA and HELD begin in the memory, whose first array is STATES: in words of 8 bytes, over N.
-_WALK, _EXTRA, _HELD = 2 * STATE_COLUMNS, 2 * STATE_COLUMNS + 4, 2 * STATE_COLUMNS + 4 + EXTRA_COLUMNS
-_KERNELS = copy_start, write_ends, write_still_ends, alter_end, as_read, place_anew
+# Where IDS, EXTRA and HOOKED begin in the memory, whose first array is STATES: in words of 8 bytes, over N.
+_IDS, _EXTRA, _HOOKED = 2 * STATE_COLUMNS, 2 * STATE_COLUMNS + 4, 2 * STATE_COLUMNS + 4 + EXTRA_COLUMNS
+_KERNELS = copy_start, write_ends, write_stopped_ends, alter_end, accept_rounding, forget_last_end
 
 
 class _Writers(dict[int, Callable[[], None]]):
@@ -78,11 +78,11 @@ class BodyStates:
 
     Attributes:
         bodies: in pymunk's order, N with the static ones.
-        BODY: (n,).  STATES, WALK, EXTRA, ENDS, HELD: the arrays exchanged with pymunk, see `layout.py`.
+        BODY: (n,).  STATES, IDS, EXTRA, ENDS, HOOKED: the arrays exchanged with pymunk, see `layout.py`.
         reading: their table.  bound: kernels bound to it, see `Layout`.
-        check_start, write_ends, left_as_read, start_afresh: functions, see `rehearsing.copy_start`,
-            `transfer.write_ends`, `rehearsing.as_read` and `transfer.place_anew`.
-        gather: reads the state of all bodies into STATES[NOW].
+        copy_start, write_ends, accept_rounding, forget_last_end: functions, see `rehearsing.copy_start`,
+            `transfer.write_ends`, `rehearsing.accept_rounding` and `transfer.forget_last_end`.
+        gather: reads the state of all bodies into STATES[READ].
         eccentric: whether the centre of mass of any body is not its origin. pymunk places such a body by its present
             angle: its pose is written a second time, by the new angle.
     """
@@ -91,39 +91,39 @@ class BodyStates:
     BODY: Rows[Body]
     eccentric: bool
     gather: Callable[[], None]
-    check_start: Callable[[], int]
+    copy_start: Callable[[], int]
     write_ends: Callable[[int], int]
 
     def __init__(self, space: pymunk.Space, past: BodyStates | None) -> None:
-        """Make the arrays for the bodies of a space, and read their state into STATES[NOW]. `past`: of the same space
-        before. These arrays use its memory: it keeps copies of STATES and WALK, and can no longer read and write."""
+        """Make the arrays for the bodies of a space, and read their state into STATES[READ]. `past`: of the same space
+        before. These arrays use its memory: it keeps copies of STATES and IDS, and can no longer read and write."""
         self.space = space
         N = len((*space.bodies, space.static_body))  # the latter is created at its first access
         memory = Memory() if past is None else past._memory
         if past is not None:
-            past.STATES, past.WALK = past.STATES.copy(), past.WALK.copy()
+            past.STATES, past.IDS = past.STATES.copy(), past.IDS.copy()
         self._memory: Memory = memory
         ends, row = END_COLUMNS * N + 1, 8 * N
-        walk, extra, held = _WALK * row, _EXTRA * row, _HELD * row
-        memory.provide(0, held + HELD * STATE_COLUMNS * row + 8 * ends)
-        # STATES and WALK have more rows than a call fills, so that there is room for one body more: pymunk replaces
+        ids, extra, hooked = _IDS * row, _EXTRA * row, _HOOKED * row
+        memory.provide(0, hooked + HOOKED_TABLES * STATE_COLUMNS * row + 8 * ends)
+        # STATES and IDS have more rows than a call fills, so that there is room for one body more: pymunk replaces
         # memory that is too small by its own. After additions the ids differ at once, and other arrays are made.
         self.STATES: FloatArray = memory.array((2, N, STATE_COLUMNS), float, 0)
-        self.WALK: IntArray = memory.array((4, N), np.int64, walk)
+        self.IDS: IntArray = memory.array((4, N), np.int64, ids)
         self.EXTRA: FloatArray = memory.array((N, EXTRA_COLUMNS), float, extra)
-        self.HELD: FloatArray = memory.array((HELD, N, STATE_COLUMNS), float, held)
-        self.ENDS: FloatArray = memory.array((ends,), float, held + HELD * STATE_COLUMNS * row)
+        self.HOOKED: FloatArray = memory.array((HOOKED_TABLES, N, STATE_COLUMNS), float, hooked)
+        self.ENDS: FloatArray = memory.array((ends,), float, hooked + HOOKED_TABLES * STATE_COLUMNS * row)
         last = None if past is None else past.gather
-        self.gather = private_batch.reader(space, STATE_FIELDS, self.STATES, self.WALK, last)
+        self.gather = private_batch.reader(space, STATE_FIELDS, self.STATES, self.IDS, last)
         self.gather()
-        self.WALK[KNOWN] = self.WALK[FOUND]
+        self.IDS[KNOWN_ID] = self.IDS[READ_ID]
         self._write: _Writers = _Writers(self, None if past is None else past._write)
 
     def bind(self, reading: Table, bound: Callable[..., list[Callable[..., Any]]]) -> None:
         """Set `reading` and `bound`, and make the functions that use kernels on these arrays."""
         self.reading, self.bound = reading, bound
-        self.check_start, self.write_ends, self._write_still_ends, self._alter_end, *more = bound(*_KERNELS)
-        self.left_as_read, self.start_afresh = more
+        self.copy_start, self.write_ends, self._write_stopped_ends, self._alter_end, *more = bound(*_KERNELS)
+        self.accept_rounding, self.forget_last_end = more
 
     def load(self) -> None:
         """Read the present states into BODY."""
@@ -132,30 +132,30 @@ class BodyStates:
 
     @cached_property
     def _take(self) -> Callable[[float, float, float], int]:
-        return take.bind(self.STATES, self.WALK, self.EXTRA, self.BODY)
+        return read_states.bind(self.STATES, self.IDS, self.EXTRA, self.BODY)
 
     def reset_forces(self) -> None:
-        """Write the forces and torques at the end of the step (table PULL), reset as pymunk does."""
-        self._write[PULL]()
+        """Write the forces and torques at the end of the step (table RESET_FORCES), reset as pymunk does."""
+        self._write[RESET_FORCES]()
 
     @property
     def start(self) -> FloatArray:
-        """(N, 9) the state at the start of a step that calls functions, copied by `check_start`."""
-        state: FloatArray = self.HELD[START]
+        """(N, 9) the state at the start of a step that calls functions, copied by `copy_start`."""
+        state: FloatArray = self.HOOKED[START]
         return state
 
     def forget_changes(self) -> None:
-        """Forget the changes by functions within a step, HELD[EARLY] and HELD[LATE]."""
-        self.HELD[EARLY] = self.HELD[LATE] = 0.0
+        """Forget the changes by functions within a step, HOOKED[CHANGES_BEFORE] and HOOKED[CHANGES_AFTER]."""
+        self.HOOKED[CHANGES_BEFORE] = self.HOOKED[CHANGES_AFTER] = 0.0
 
     def alter_end(self, stops: bool) -> tuple[int, float]:
         """See `rehearsing.alter_end`; returns its status, and the energy lost by damping 0."""
         return self._alter_end(int(stops)), float(self.ENDS[-1])
 
     def keep_unaltered(self) -> None:
-        """Set STATES[LEFT] to the end of the step without HELD[LATE], so that bodies that functions have changed in the
-        step count as edited in the next one."""
-        self.STATES[LEFT] = self.HELD[UNALTERED]
+        """Set STATES[WRITTEN] to the end of the step without HOOKED[CHANGES_AFTER], so that bodies that functions have
+        changed in the step count as edited in the next one."""
+        self.STATES[WRITTEN] = self.HOOKED[UNALTERED]
 
     def is_current(self) -> bool:
         """Whether `gather` has read these bodies, and no static one was moved."""
@@ -163,17 +163,17 @@ class BodyStates:
 
     def same_bodies(self) -> bool:
         """Whether `gather` has read these bodies and no others."""
-        return np.array_equal(self.WALK[FOUND], self.WALK[KNOWN])
+        return np.array_equal(self.IDS[READ_ID], self.IDS[KNOWN_ID])
 
     def moved_static(self) -> bool:
         """Whether a static body was moved since the rows were made, by the states that `gather` has read."""
         still = self.bodies.static
-        return not np.array_equal(self.STATES[NOW, still, :3], self.STATES[LEFT, still, :3])
+        return not np.array_equal(self.STATES[READ, still, :3], self.STATES[WRITTEN, still, :3])
 
     @property
     def state(self) -> FloatArray:
         """(N, 9) position, angle, velocity, spin, force and torque of `bodies`, as `gather` has read them."""
-        now: FloatArray = self.STATES[NOW]
+        now: FloatArray = self.STATES[READ]
         return now
 
     def set_accelerations(self, change: Sequence[tuple[float, float, float]], dt: float) -> None:
@@ -191,34 +191,34 @@ class BodyStates:
     @cached_property
     def _pushed(self) -> list[int]:
         """Where the accelerations of the bodies with velocity functions begin in `_extra`."""
-        return [row * EXTRA_COLUMNS + PUSH_X for row in self.bodies.velocity_hooks.tolist()]
+        return [row * EXTRA_COLUMNS + ACCELERATION_X for row in self.bodies.velocity_hooks.tolist()]
 
     def write_whole(self) -> int:
         """Write the end of the step to ENDS, always with forces and angles; returns the status bits."""
         return self.write_ends(FORCES | TURNS)
 
     def ended(self) -> FloatArray:
-        """(N, 9) the end of the step, by STATES[LEFT]; forces of moving bodies are 0, as after a step of pymunk."""
+        """(N, 9) the end of the step, by STATES[WRITTEN]; forces of moving bodies are 0, as after a step of pymunk."""
         state = self.state.copy()
         moving = ~self.bodies.static
-        state[moving, :6], state[moving, 6:] = self.STATES[LEFT, moving, :6], 0.0
+        state[moving, :6], state[moving, 6:] = self.STATES[WRITTEN, moving, :6], 0.0
         return state
 
     def recall(self, before: BodyStates) -> None:
-        """Copy STATES[LEFT] from the world before, of bodies whose mass, moment and centre of gravity are the same: the
-        next step counts them as unedited unless their state differs from it."""
+        """Copy STATES[WRITTEN] from the world before, of bodies whose mass, moment and centre of gravity are the same:
+        the next step counts them as unedited unless their state differs from it."""
         old, known = before.bodies.row, before.bodies.inertia
         at = [(i, old.get(body, -1)) for i, body in enumerate(self.bodies.items)]
         kinds, inertia = self.bodies.VALUES["kind"].tolist(), self.bodies.inertia
         same = [(i, j) for i, j in at if j >= 0 and kinds[i] != STATIC and inertia[i] == known[j]]
         if same:
             to, of = zip(*same, strict=True)
-            self.STATES[LEFT, to] = before.STATES[LEFT, of]
+            self.STATES[WRITTEN, to] = before.STATES[WRITTEN, of]
 
     def void_predictions(self) -> None:
-        """Void all predictions: in the next step all bodies count as placed by the program (ANEW in `layout.py`)."""
+        """Void all predictions: in the next step all bodies count as placed by the program (PLACED in `layout.py`)."""
         due = self.BODY["due"]
-        np.minimum(due, ANEW, out=due)
+        np.minimum(due, PLACED, out=due)
 
     def scatter(self, status: int) -> None:
         """Write poses and velocities at the end of the step to the space, angles and spins if the bit TURNS is set."""
@@ -226,13 +226,13 @@ class BodyStates:
         if self.eccentric:
             self._write[END + (status & TURNS)]()
 
-    def scatter_still(self, status: int) -> None:
-        """Write the poses, and velocity 0; `scatter_speed` must follow."""
-        self._write_still_ends(status)
-        self._write[STILL + (status & TURNS)]()
+    def scatter_stopped(self, status: int) -> None:
+        """Write the poses, and velocity 0; `scatter_velocities` must follow."""
+        self._write_stopped_ends(status)
+        self._write[STOPPED + (status & TURNS)]()
         if self.eccentric:
-            self._write[STILL + (status & TURNS)]()
+            self._write[STOPPED + (status & TURNS)]()
 
-    def scatter_speed(self, status: int) -> None:
+    def scatter_velocities(self, status: int) -> None:
         """Write the velocities."""
-        self._write[SPEED + (status & TURNS)]()
+        self._write[VELOCITIES + (status & TURNS)]()

@@ -1,4 +1,4 @@
-"""HandledPairs: pairs of shapes that have collision handlers, as rows for the kernel `rehearsing.nears`.
+"""HandledPairs: pairs of shapes that have collision handlers, as rows for the kernel `rehearsing.any_near`.
 
 pymunk calls handlers of pairs that overlap at the end of free flight, or whose arbiters it keeps from earlier steps. If
 there are neither, a rehearsal would call no handler.
@@ -15,7 +15,7 @@ import pymunk
 
 from ..arrays import FloatArray, IntArray
 from ..layout import BODY_ROW
-from ..rehearsing import HEARD_COLUMNS
+from ..rehearsing import HANDLED_COLUMNS
 from .edits import type_changes
 from .private import arbiters as private_arbiters
 from .private import shapes as private_shapes
@@ -34,8 +34,8 @@ class HandledPairs:
 
     Attributes:
         type_changes: `edits.type_changes` when the pairs were found.  handled: pairs of types with handlers then.
-        arrays: HEARD (m, 7) and PAIRS (p, 2) of `rehearsing.nears`; None if there are more than `_MOST` pairs, or a
-            body is not in the space.
+        arrays: HANDLED (m, 7) and PAIRS (p, 2) of `rehearsing.any_near`; None if there are more than `_MOST` pairs, or
+            a body is not in the space.
     """
 
     def __init__(self, world: World) -> None:
@@ -43,14 +43,14 @@ class HandledPairs:
         self.handled = private_versions.handled(world.space)
         pairs = self._pairs(list(world.records))
         place = {shape: k for k, shape in enumerate(dict.fromkeys(shape for pair in pairs or () for shape in pair))}
-        rows = [_heard_row(world, shape) for shape in place]
+        rows = [_handled_row(world, shape) for shape in place]
         self.arrays: tuple[FloatArray, IntArray] | None = None
         if pairs is not None and None not in rows:
-            HEARD: FloatArray = np.array(rows, float).reshape(-1, HEARD_COLUMNS)
+            HANDLED: FloatArray = np.array(rows, float).reshape(-1, HANDLED_COLUMNS)
             # Static shapes do not meet each other, nor do those of one body.
             body = [-1.0 if row is None else row[0] for row in rows]
             found = [(place[a], place[b]) for a, b in pairs if body[place[a]] != body[place[b]]]
-            self.arrays = HEARD, np.array(found, np.int64).reshape(-1, 2)
+            self.arrays = HANDLED, np.array(found, np.int64).reshape(-1, 2)
 
     def _pairs(self, shapes: list[pymunk.Shape]) -> list[tuple[pymunk.Shape, pymunk.Shape]] | None:
         """All pairs of shapes whose types have handlers; None if there are more than `_MOST`."""
@@ -72,8 +72,8 @@ class HandledPairs:
         return any(one in (None, a) and two in (None, b) for a, b in found | swapped for one, two in self.handled)
 
 
-def _heard_row(world: World, shape: Any) -> tuple[float, ...] | None:
-    """The row of HEARD of a shape, see `rehearsing.nears`; None if its body is not in the space, or its kind is
+def _handled_row(world: World, shape: Any) -> tuple[float, ...] | None:
+    """The row of HANDLED of a shape, see `rehearsing.any_near`; None if its body is not in the space, or its kind is
     unknown."""
     record = world.records[shape]
     if record is None or record.outside:
@@ -84,7 +84,7 @@ def _heard_row(world: World, shape: Any) -> tuple[float, ...] | None:
     if row is None or points is None:
         return None
     radius = _WIDER * rounding
-    if world.WALK[BODY_ROW, row] >= 0:
+    if world.IDS[BODY_ROW, row] >= 0:
         return row, 0.0, 0.0, 0.0, 0.0, 0.0, _WIDER * max([math.hypot(x, y) for x, y in points]) + radius
     at, angle = body.position, body.angle
     c, s = math.cos(angle), math.sin(angle)

@@ -17,7 +17,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled.layouts import COUNT, Layout, Plan
 from ..compiled.records import Rows
 from ..impacts.new_scene import measure_scene
-from ..layout import EXTRA_COLUMNS, HELD, STATE_COLUMNS
+from ..layout import EXTRA_COLUMNS, HOOKED_TABLES, STATE_COLUMNS
 from ..model.bodies import Body
 from ..model.shapes import Link, Shape
 from ..model.values import CORNERS, STATIC, TOTALS, Reading
@@ -122,10 +122,10 @@ def shape_counts(bodies: Bodies, records: Records) -> dict[Any, int]:
 def _arrays() -> Plan[Reading]:
     return Plan(
         Reading, ("TOTALS", "BODY", "SHAPE", "LINK", "VERTEX", "ORDER", "SHAPES", "OWNER", "POINT", "MEASURED"), 6,
-        ("BODIES", "STATES", "WALK", "EXTRA", "ENDS", "HELD"), {},
+        ("BODIES", "STATES", "IDS", "EXTRA", "ENDS", "HOOKED"), {},
         {
-            "VERTEX": (COUNT, 4), "POINT": (COUNT, 2), "STATES": (2, COUNT, STATE_COLUMNS), "WALK": (4, COUNT),
-            "EXTRA": (COUNT, EXTRA_COLUMNS), "HELD": (HELD, COUNT, STATE_COLUMNS),
+            "VERTEX": (COUNT, 4), "POINT": (COUNT, 2), "STATES": (2, COUNT, STATE_COLUMNS), "IDS": (4, COUNT),
+            "EXTRA": (COUNT, EXTRA_COLUMNS), "HOOKED": (HOOKED_TABLES, COUNT, STATE_COLUMNS),
         },
     )  # fmt: skip
 
@@ -158,11 +158,11 @@ class Packed:
         self._layout = layout = Layout(_arrays()) if past is None else past._layout
         counts = {
             "TOTALS": TOTALS, "MEASURED": 1, "BODY": moving + 1, "SHAPE": k, "LINK": k, "VERTEX": v, "ORDER": k + N + 2,
-            "BODIES": N, "SHAPES": k, "OWNER": k, "POINT": v, "STATES": N, "WALK": N, "EXTRA": N,
-            "ENDS": len(states.ENDS), "HELD": N,
+            "BODIES": N, "SHAPES": k, "OWNER": k, "POINT": v, "STATES": N, "IDS": N, "EXTRA": N,
+            "ENDS": len(states.ENDS), "HOOKED": N,
         }  # fmt: skip
         self.table = layout.lay(
-            counts, bodies.VALUES, states.STATES, states.WALK, states.EXTRA, states.ENDS, states.HELD
+            counts, bodies.VALUES, states.STATES, states.IDS, states.EXTRA, states.ENDS, states.HOOKED
         )
         layout.write("SHAPES", b"".join([record.packed for record in known]))
         layout.write("OWNER", array("q", owner).tobytes())

@@ -72,7 +72,7 @@ def patch(world: World, surfaces: bool) -> Patched | None:
         if values is not None:
             masses[i] = values
     world.gather()
-    status = world.check_start()
+    status = world.copy_start()
     moved = status == MOVED_STATIC
     if status == OTHER_BODIES or not (stale or moved) or (surfaces and (masses or moved)):
         return None
@@ -84,7 +84,7 @@ def patch(world: World, surfaces: bool) -> Patched | None:
         return None
     world.read_at, world.objects_read = now, world.objects_read + len(records) + len(masses)
     if joints is None:
-        world.start_afresh()
+        world.forget_last_end()
     else:
         joints.refresh()
     return Patched(elasticity, reach, moved)

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..layout import EARLY, NOW, REHEARSED, SEEN
-from ..rehearsing import HEARD_COLUMNS, approach, changed
+from ..layout import BEFORE_CALL, CHANGES_BEFORE, READ, REHEARSAL_START
+from ..rehearsing import HANDLED_COLUMNS, place_for_rehearsal, record_changes
 from ..transfer import TURNS
 from .decisions import Decisions, Rules
 from .edits import type_changes
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 _MEMORY = 4  # steps for which pymunk may keep arbiters of pairs that have touched; silence is not tested before
 _POST_SOLVE = private.PHASES[2]
-_NO_PAIRS: tuple[FloatArray, IntArray] = np.zeros((0, HEARD_COLUMNS)), np.zeros((0, 2), np.int64)
+_NO_PAIRS: tuple[FloatArray, IntArray] = np.zeros((0, HANDLED_COLUMNS)), np.zeros((0, 2), np.int64)
 
 
 class Rehearsal:
@@ -45,8 +45,8 @@ class Rehearsal:
 
     def __init__(self, world: World) -> None:
         self.world, self.space = world, world.space
-        self._approach = self._bound(None)
-        (self._find_changes,) = world.bound(changed)
+        self._place = self._bound(None)
+        (self._record_changes,) = world.bound(record_changes)
         self._settings = 0.0, 0.0, 0.0, 1.0  # dt, gravity (2), factor of half a step's damping
         # Whether begin or pre_solve have changed bodies, and whether post_solve or separate have; stage of the last
         # call (see `Watched`), -1 before the first.
@@ -86,7 +86,7 @@ class Rehearsal:
             return False
         self.world.gather()
         self._settings = dt, *self.world.gravity, half_damping
-        if self._approach(*self._settings) != 0 or not (sync.continues() and self._calls_none(near=False)):
+        if self._place(*self._settings) != 0 or not (sync.continues() and self._calls_none(near=False)):
             return False
         self._step_without_calls(dt, sync)
         return True
@@ -104,14 +104,14 @@ class Rehearsal:
         """Before a function is called: read the bodies, if pymunk has reached another stage."""
         if self._stage != stage:
             self.world.gather()
-            self.world.HELD[SEEN] = self.world.STATES[NOW]
+            self.world.HOOKED[BEFORE_CALL] = self.world.STATES[READ]
             self._stage = stage
 
     def after_call(self, stage: int) -> None:
-        """After a function was called: record its changes in HELD[EARLY] or HELD[LATE]."""
+        """After a function was called: record its changes in HOOKED[CHANGES_BEFORE] or HOOKED[CHANGES_AFTER]."""
         late = stage > 0
         self.world.gather()
-        if self._find_changes(late):
+        if self._record_changes(late):
             self._changed[late] = True
 
     def run(self, dt: float, half_damping: float, sync: Sync | None = None) -> int:
@@ -127,7 +127,7 @@ class Rehearsal:
         """
         world = self.world
         self._settings = dt, *world.gravity, half_damping
-        status = self._approach(*self._settings)
+        status = self._place(*self._settings)
         if status < 0:
             return status
         self.failure, self.decided, self._stage, self._sync = None, False, -1, sync
@@ -155,9 +155,9 @@ class Rehearsal:
         if self.failure is not None:
             raise self.failure
         if self._stage >= 0:  # else nothing was read meanwhile
-            world.STATES[NOW] = world.HELD[REHEARSED]
+            world.STATES[READ] = world.HOOKED[REHEARSAL_START]
         if self._changed[0]:
-            world.STATES[NOW] += world.HELD[EARLY]
+            world.STATES[READ] += world.HOOKED[CHANGES_BEFORE]
         return 0
 
     def _step_without_calls(self, dt: float, sync: Sync) -> None:
@@ -181,9 +181,9 @@ class Rehearsal:
                 private.step_without_end(self.space, dt)
 
     def _bound(self, pairs: HandledPairs | None) -> Callable[[float, float, float, float], int]:
-        """`rehearsing.approach`, for these pairs."""
+        """`rehearsing.place_for_rehearsal`, for these pairs."""
         arrays = None if pairs is None else pairs.arrays
-        return approach.bind(self.world.reading, *(arrays or _NO_PAIRS))
+        return place_for_rehearsal.bind(self.world.reading, *(arrays or _NO_PAIRS))
 
     def _calls_none(self, near: bool) -> bool:
         """Whether pymunk's step would call nothing. `near`: whether a pair may meet in it, or soon after."""
@@ -192,8 +192,8 @@ class Rehearsal:
             return False
         if self._pairs is None or self._pairs.type_changes != type_changes():
             self._pairs, self._silent = HandledPairs(self.world), False
-            self._approach = self._bound(self._pairs)
-            near = self._approach(*self._settings) > 0
+            self._place = self._bound(self._pairs)
+            near = self._place(*self._settings) > 0
         if near or self._pairs.arrays is None:
             return False
         return self._silent or not self._pairs.remembered()
@@ -203,8 +203,8 @@ class Rehearsal:
         world, present = self.world, self.world.bodies.gather()
         if present is None:
             return
-        world.STATES[NOW] = world.HELD[REHEARSED]
-        self._approach(*self._settings)
+        world.STATES[READ] = world.HOOKED[REHEARSAL_START]
+        self._place(*self._settings)
         world.scatter(TURNS)
         try:
             self._step(self._settings[0])

@@ -75,11 +75,11 @@ class Sleep:
                     self._rested[i] = past._rested[before[body]]
         self._steps, self._dt = self.space.collision_persistence + 2, 0.0  # see `step`
         self._ready: IntArray = np.zeros(len(bodies), np.int64)
-        row = world.WALK[BODY_ROW]
+        row = world.IDS[BODY_ROW]
         self._size: FloatArray = np.where(row >= 0, world.BODY["extent"][row], 0.0)
         self._far: FloatArray = self._size + np.hypot(*bodies.center_of_gravity.T)  # from the body's origin
         moved: IntArray = bodies.dynamic.astype(np.int64)
-        self._rests = rests.bind(world.STATES, world.WALK, moved, self._size, self._rested, self._ready)
+        self._rests = rests.bind(world.STATES, world.IDS, moved, self._size, self._rested, self._ready)
         self._still = bodies.asleep.astype(np.int64), bodies.static.astype(np.int64)
         self._touches: tuple[memoryview | None, Callable[[int], int]] = None, int  # bound to this log
         # Bodies that may wake others before the step, see `wake_ahead`; the index is `world.plain`.

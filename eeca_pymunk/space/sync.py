@@ -229,9 +229,9 @@ class Sync:
         if not status & TURNS and (world.joints is not None or world.sleeps):
             # In the rest step joints change spins by round-off, gravity (if bodies may sleep) by more: ENDS needs them.
             status = world.write_ends(status | TURNS)
-        world.scatter_still(status)
+        world.scatter_stopped(status)
         self.rest(dt)
-        world.scatter_speed(status)
+        world.scatter_velocities(status)
 
     def update(self, dt: float, status: int) -> None:
         """Update pymunk's shapes to the present state of the bodies: the end of a step that is already written, with

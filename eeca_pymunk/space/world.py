@@ -11,7 +11,7 @@ import pymunk
 
 from ..arrays import BoolArray
 from ..impacts.scene_memory import SceneMemory
-from ..layout import BODY_ROW, KNOWN
+from ..layout import BODY_ROW, KNOWN_ID
 from ..report import Details, nothing
 from .bodies import Bodies
 from .body_states import BodyStates
@@ -31,7 +31,7 @@ class World(BodyStates):
 
     Masses, shapes and functions of bodies are read once. `current()` returns, within half a microsecond, whether
     settings and contents of the space have not changed, and no shape or body was edited in place (`edits.py`). Moved
-    static bodies and exchanged bodies are found by `transfer.take` in the states that `gather` reads.
+    static bodies and exchanged bodies are found by `transfer.read_states` in the states that `gather` reads.
 
     Args:
         space: any pymunk space.  ignore: features to leave out, see `check_ignored`.
@@ -44,7 +44,7 @@ class World(BodyStates):
         owner: (k,) index in `bodies.items` of the body of each shape.
         BODY, SHAPE, LINK, VERTEX: see `..model`.  disks, dynamic: BODY[:disks] are single disks, BODY[disks:dynamic]
             other dynamic bodies; then come kinematic bodies, and last the ground, which has all static shapes.
-        STATES, WALK, EXTRA, ENDS, HELD: the arrays exchanged with pymunk, see `layout.py`.
+        STATES, IDS, EXTRA, ENDS, HOOKED: the arrays exchanged with pymunk, see `layout.py`.
         gravity: length/time².  damping: pymunk's, the factor on velocities in one second; 1 is none.
         hooks: functions of bodies and constraints.  collisions: whether the space has collision handlers.
         hooked: whether a step calls functions of bodies or handlers, or damping is 0.  only_handlers: whether collision
@@ -71,7 +71,7 @@ class World(BodyStates):
         known = None if stale is None else past
         self.read_at = clock()
         super().__init__(space, past)
-        bodies = Bodies(space, self.sleeps, None if known is None else known.bodies, stale or (), self.WALK[KNOWN])
+        bodies = Bodies(space, self.sleeps, None if known is None else known.bodies, stale or (), self.IDS[KNOWN_ID])
         self.bodies = bodies
         self.records: Records
         self.records, count = records_of(space, bodies, {} if known is None else known.records, stale or ())
@@ -130,7 +130,7 @@ class World(BodyStates):
         if not self.space.constraints:
             self.joints, self.parted = None, set()
         elif anew or past is None or past.items != list(self.space.constraints):
-            rows = {b: r for b, r in zip(self.bodies.items, self.WALK[BODY_ROW].tolist(), strict=True) if r >= 0}
+            rows = {b: r for b, r in zip(self.bodies.items, self.IDS[BODY_ROW].tolist(), strict=True) if r >= 0}
             self.joints = JointRows(self.space, rows, len(self.BODY), past)
             self.objects_read += len(self.joints.fresh)
 
@@ -210,7 +210,7 @@ class World(BodyStates):
             joints.write()
             if self.eccentric and self.current():
                 self.gather()
-                self.left_as_read()
+                self.accept_rounding()
 
     def find_parted(self) -> bool:
         """Find the pairs of shapes that do not collide because of joints of their bodies; returns whether they have

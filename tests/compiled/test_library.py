@@ -16,7 +16,7 @@ from eeca_pymunk.compiled.entries import ENTRIES
 from eeca_pymunk.compiled.library import Status, load
 from eeca_pymunk.compiled.records import rows
 from eeca_pymunk.model.bodies import Body
-from eeca_pymunk.transfer import give
+from eeca_pymunk.transfer import write_states
 
 compiler = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler to make libraries with")
 loaded = pytest.mark.skipif(sources.library_path() is None, reason="no library of these sources")
@@ -30,7 +30,7 @@ def made(folder: Path, text: str) -> Path:
 
 
 def given() -> list[Any]:
-    """Arguments of `give`, of three bodies at rest."""
+    """Arguments of `write_states`, of three bodies at rest."""
     return [
         np.zeros((2, 3, 9)), np.zeros((4, 3), np.int64), np.zeros((3, 5)), rows(Body, 1), np.zeros(54), 0.0, 1.0, 0
     ]  # fmt: skip
@@ -105,23 +105,23 @@ def test_libraries_of_read_only_packages_are_kept_in_the_cache_folder(
     ],
 )
 def test_entries_refuse_arrays_that_they_would_misread(change: dict[int, np.ndarray], told: str) -> None:
-    entry = load(sources.library_path())[1][give.name]
+    entry = load(sources.library_path())[1][write_states.name]
     arguments = given()
     assert entry(*arguments) == 0
     for place, value in change.items():
         arguments[place] = value
     with pytest.raises(TypeError, match=told):
         entry(*arguments)
-    with pytest.raises(TypeError, match="transfer:give takes 8 arguments, not 7"):
+    with pytest.raises(TypeError, match="transfer:write_states takes 8 arguments, not 7"):
         entry(*arguments[:7])
 
 
 @loaded
 def test_statuses_of_kernels_become_exceptions() -> None:
-    entry = library.Entry(give.name, 0)
+    entry = library.Entry(write_states.name, 0)
     for status, error in ((library.NO_MEMORY, MemoryError), (library.NO_SHAPE, ValueError)):
         entry.function = lambda *_, status=status: status  # type: ignore[misc]
-        with pytest.raises(error, match="transfer:give"):
+        with pytest.raises(error, match="transfer:write_states"):
             entry(*given())
 
 

@@ -56,7 +56,7 @@ def zoo() -> tuple[pymunk.Space, dict[str, pymunk.Body]]:
 
 
 def rows(world: World) -> dict[pymunk.Body, int]:
-    return {b: int(world.WALK[at.BODY_ROW, i]) for i, b in enumerate(world.bodies.items)}
+    return {b: int(world.IDS[at.BODY_ROW, i]) for i, b in enumerate(world.bodies.items)}
 
 
 def test_lone_disks_come_first_then_other_dynamic_bodies_then_kinematic_ones_and_the_ground_last() -> None:

@@ -13,7 +13,7 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk.layout import END
-from eeca_pymunk.rehearsing import nears
+from eeca_pymunk.rehearsing import any_near
 from eeca_pymunk.space.rehearsal import Rehearsal
 from scenes.scene import add_disk
 
@@ -274,4 +274,4 @@ def test_pairs_are_near_within_twice_their_way() -> None:
     ):
         states[0, 0, :2], states[0, 0, 3], states[0, 1, :2] = (x, y), speed, (math.sqrt(4.5), math.sqrt(4.5))
         end[:3], end[6:9] = (x, y, 0.0), (math.sqrt(4.5), math.sqrt(4.5), 0.0)
-        assert nears(states, ends, heard.copy(), np.array(pairs, np.int64).reshape(-1, 2), 1.0, 2.0) == near
+        assert any_near(states, ends, heard.copy(), np.array(pairs, np.int64).reshape(-1, 2), 1.0, 2.0) == near
