@@ -30,12 +30,13 @@ def import_kernels() -> None:
         importlib.import_module(f"eeca_pymunk.{name.partition(':')[0]}")
 
 
-_Answer = tuple[str, bytes, list[tuple[str, tuple[Any, ...]]], Any, float]
+def _compile(
+    name: str, args: tuple[Any, ...]
+) -> tuple[str, bytes, list[tuple[str, tuple[Any, ...]]], Any, float]:  # fmt: skip
+    """Compile a part, in a process of the pool. Returns its key and its content, with kernels by name.
 
-
-def _compile(name: str, args: tuple[Any, ...]) -> _Answer:
-    """Compile a part. Its key in this process is compared with that of the parent: they differ if the source was edited
-    in between."""
+    The parent compares the key with its own: they differ if the source was edited in between.
+    """
     call = kernels()[name], args
     part = part_of(call)
     calls = [(one.name, kinds) for one, kinds in part.calls]
@@ -85,7 +86,8 @@ def gather(first: Iterable[Call], workers: Workers, progress: Callable[[int, int
     running: dict[Future[Any], Call] = {}
     all_kernels = kernels()
 
-    def look(calls: Iterable[Call]) -> None:
+    def find(calls: Iterable[Call]) -> None:
+        """Read the parts of these calls, and of all that they call, from the store; list those that it lacks."""
         waiting = list(calls)
         while waiting:
             call = waiting.pop()
@@ -100,17 +102,18 @@ def gather(first: Iterable[Call], workers: Workers, progress: Callable[[int, int
                 waiting += part.calls
         progress(len(found), len(known))
 
-    def take(call: Call, part: Part) -> None:
+    def add(call: Call, part: Part) -> None:
+        """Store a compiled part, and find those that it calls."""
         store.write_part(call, part)
         found[call] = part
-        look(part.calls)
+        find(part.calls)
 
-    look(first)
+    find(first)
     compiled = 0
     while missing or running:
         if not workers.started and (workers.count < 2 or compiled + len(missing) < _FEW):
             call = missing.pop()
-            take(call, part_of(call))
+            add(call, part_of(call))
             compiled += 1
             continue
         for call in missing:
@@ -121,7 +124,7 @@ def gather(first: Iterable[Call], workers: Workers, progress: Callable[[int, int
             call = running.pop(done)
             if key != store.part_key(call):
                 raise RuntimeError(f"{call[0].name} was edited during the build: build again")
-            take(call, Part(bitcode, [(all_kernels[name], args) for name, args in called], returned, seconds))
+            add(call, Part(bitcode, [(all_kernels[name], args) for name, args in called], returned, seconds))
     return found
 
 

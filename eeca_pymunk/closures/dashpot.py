@@ -62,7 +62,7 @@ class Dashpot:
         while not converged and iteration < self.max_iterations:
             iteration += 1
             p_c = balance.extra_momentum(A, psi2, problem.external + A.impulse(lam))
-            q = restitution(A, problem) + 2.0 * (A.relative(p_c * A.inverse_mass[:, None]) - increment / dt)
+            q = constant_term(A, problem) + 2.0 * (A.relative(p_c * A.inverse_mass[:, None]) - increment / dt)
             impulses = solve(A, q, start=lam, tolerance=0.1 * self.tolerance, max_iterations=300)
             delta_p = problem.external + A.impulse(impulses.lam)
             w = balance.projected_product(A, delta_p, delta_p)
@@ -81,7 +81,7 @@ class Dashpot:
         return locked_motion(A, geometry, problem, lam, weights, iteration, converged)
 
 
-def restitution(A: Delassus, problem: ActiveContacts) -> FloatArray:
+def constant_term(A: Delassus, problem: ActiveContacts) -> FloatArray:
     """(m,) q = -b + u*, the constant term of the rigid limit: u* = u_n + dt a_n, with external forces only; -b of
     docs/method.md, section 3, is e u_n where the contact approaches, u_n where it opens: no impulse adds energy."""
     u_n = A.relative(problem.velocity)
@@ -100,7 +100,7 @@ def locked_motion(
 ) -> Solution:
     """Scale the impulses by the energy lock, and move: Eq. 10 with v_np1 and p_c of the scaled impulses."""
     dt, psi1, psi2, increment = problem.dt, weights.psi1, weights.psi2, weights.gap_increment
-    q = restitution(A, problem)
+    q = constant_term(A, problem)
     # Converged impulses get one common scale, which is 1 up to the tolerance.
     island = None if converged else islands(problem.row_a, problem.row_b, problem.inverse_mass)
     lock = balance.energy_lock(A, island, lam, q, psi2, problem.external)
@@ -111,7 +111,7 @@ def locked_motion(
         increment, converged = np.where(failed, 0.0, increment), False
         geometry = problem.geometry_at(balance.impulse_time(psi2, dt))
         A = problem.operator(geometry)
-        q = restitution(A, problem)
+        q = constant_term(A, problem)
         lam = np.where(failed, solve(A, q, tolerance=RIGID_TOLERANCE).lam, lam)
         lock = balance.energy_lock(A, island, lam, q, psi2, problem.external)
     # In the rigid limit the scale 0, no impulse, conserves energy as well; it is used where there is no positive one.

@@ -1,7 +1,7 @@
 """Steps of single disks on numpy arrays: their start, the near pairs, and the motion of the bodies.
 
-Shared by `Dashpot` and the penalty steppers. `Disks` is the method (`..eeca.Method`) that steps a world. All arrays of
-bodies have the rows of BODY; the last row is the ground, the body of all static shapes.
+Shared by `Dashpot` and the penalty steppers. `Disks` is the method (`..stepper.Method`) that steps a world. All arrays
+of bodies have the rows of BODY; the last row is the ground, the body of all static shapes.
 """
 
 from __future__ import annotations

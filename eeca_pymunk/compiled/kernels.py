@@ -59,6 +59,8 @@ class Kernel(Compilable, Generic[P, R]):
         python: the function in Python.
         name: "room.module:function", which `entries.py` lists if Python calls it.
         run: the code that a call executes; calling `run` directly saves half a microsecond.
+        counted: whether machine code counts references to arrays, see `nonallocating`.
+        inlined: whether machine code is inlined into callers.
     """
 
     def __init__(self, python: Callable[P, R], counted: bool = True, inlined: bool = False) -> None:
@@ -66,10 +68,10 @@ class Kernel(Compilable, Generic[P, R]):
         self.python = python
         self.counted, self.inlined = counted, inlined
         self.name = f"{python.__module__.partition('.')[2]}:{python.__name__}"
-        self.run: Callable[P, R] = self._first
+        self.run: Callable[P, R] = self._run_first
         _kernels.append(self)
 
-    def _first(self, *args: P.args, **kwargs: P.kwargs) -> R:
+    def _run_first(self, *args: P.args, **kwargs: P.kwargs) -> R:
         prepare()
         return self.run(*args, **kwargs)
 

@@ -1,7 +1,9 @@
 """Layouts: the arrays of a table side by side in one piece of memory, which the next ones overwrite.
 
-A kernel writes addresses and lengths, all that machine code needs. numpy's arrays, which take twenty times as long, are
-made when Python asks the table for them.
+A `Plan` says which arrays a table has, their dtypes, and which of their lengths vary; `Layout.lay` gives them so many
+rows each. It only writes the words of the table (address, size and lengths of each array, see `tables.py`), by a
+kernel: all that machine code needs. numpy's arrays, which take twenty times as long, are made when Python asks the
+table for them.
 """
 
 from __future__ import annotations
@@ -25,22 +27,22 @@ COUNT = -1
 
 
 @nonallocating
-def lay_out(PLAN: IntArray, NUMBERS: IntArray, TABLE: IntArray, address: int) -> int:
-    """Write the words of arrays.
+def lay_out(PLAN: IntArray, SIZES: IntArray, TABLE: IntArray, address: int) -> int:
+    """Write the words of a arrays, of which the last g are in other memory.
 
     Args:
         PLAN (a, 5): of each array, its first word; bytes and numbers of a row; two lengths, COUNT for the rows.
-        NUMBERS (a + g,): numbers of rows; then the addresses of the last g arrays.  TABLE: out, the words.
-        address: of the memory in which the others lie side by side.
+        SIZES (a + g,): how many rows each has; then the addresses of the last g arrays.  TABLE: out, the words.
+        address: of the memory in which the first a - g arrays lie side by side.
 
     Returns:
         the bytes of that memory.
     """
     arrays, at = PLAN.shape[0], 0
-    own = 2 * arrays - NUMBERS.shape[0]
+    own = 2 * arrays - SIZES.shape[0]  # a - g
     for a in range(arrays):
-        word, count = PLAN[a, 0], NUMBERS[a]
-        TABLE[word] = NUMBERS[arrays + a - own] if a >= own else address + at
+        word, count = PLAN[a, 0], SIZES[a]
+        TABLE[word] = SIZES[arrays + a - own] if a >= own else address + at
         TABLE[word + 1] = count * PLAN[a, 2]
         for k in range(2):
             TABLE[word + 2 + k] = count if PLAN[a, 3 + k] == COUNT else PLAN[a, 3 + k]
@@ -92,9 +94,9 @@ class Layout(Generic[T]):
     def __init__(self, plan: Plan[T]) -> None:
         self._plan, words = plan, plan.words.copy()
         self._table = words.data
-        self._numbers = np.zeros(len(plan.rows) + len(plan.elsewhere), np.int64)
-        self._put, self._into = struct.Struct(f"{len(self._numbers)}q").pack_into, self._numbers.data
-        self._write = lay_out.bind(plan.rows, self._numbers, words)
+        self._sizes = np.zeros(len(plan.rows) + len(plan.elsewhere), np.int64)
+        self._put, self._into = struct.Struct(f"{len(self._sizes)}q").pack_into, self._sizes.data
+        self._write = lay_out.bind(plan.rows, self._sizes, words)
         self._memory = Memory()
         self._pointers = Pointers(tuple, words) if start().entries else None
         self.table: Table = self._pointers

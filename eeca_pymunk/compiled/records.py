@@ -138,7 +138,7 @@ def as_integers(of: Rows[Any]) -> IntArray:
     return np.ndarray(of.nbytes // 8, np.int64, of)
 
 
-def moved(kind: type[R], memory: bytearray, rows: Iterable[int]) -> bytearray:
+def selected(kind: type[R], memory: bytearray, rows: Iterable[int]) -> bytearray:
     """The memory of these rows of the records in `memory`; of zeros for rows below 0."""
     size = kind.TYPE.itemsize
     zeros = bytes(size)

@@ -46,7 +46,7 @@ class Pointers:
         return self._arrays
 
 
-def _said(dtype: np.dtype[Any], dimensions: int) -> str:
+def _type_of(dtype: np.dtype[Any], dimensions: int) -> str:
     return f"{dtype.type.__name__}[{dimensions}]"
 
 
@@ -93,7 +93,7 @@ def _words(name: str, field: str, dtype: np.dtype[Any] | None, dimensions: int, 
     """The numbers of one array, which has to be of this dtype, if given, and of as many dimensions."""
     if dtype is not None and (a.dtype != dtype or a.ndim != dimensions):
         raise TypeError(
-            f"{name}.{field} is {_said(a.dtype, a.ndim)}; entries.TABLES declares {_said(dtype, dimensions)}"
+            f"{name}.{field} is {_type_of(a.dtype, a.ndim)}; entries.TABLES declares {_type_of(dtype, dimensions)}"
         )
     if not a.flags.c_contiguous:
         raise TypeError(f"{name}.{field} of shape {a.shape} has strides {a.strides}: it must be C-contiguous")

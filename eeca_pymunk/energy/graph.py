@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray, IntArray
+from ..arrays import FloatArray, IntArray
 
 
 def restrict(row_a: IntArray, row_b: IntArray, count: int) -> tuple[IntArray, IntArray, IntArray]:
@@ -17,9 +17,10 @@ def restrict(row_a: IntArray, row_b: IntArray, count: int) -> tuple[IntArray, In
     return rows, number[row_a], number[row_b]
 
 
-def components(row_a: IntArray, row_b: IntArray, moves: BoolArray) -> IntArray:
-    """(R,) label of the connected component of every body; bodies that do not move (moves (R,) bool) do not connect."""
-    label = np.arange(len(moves))
+def islands(row_a: IntArray, row_b: IntArray, inverse_mass: FloatArray) -> IntArray:
+    """(m,) label of the island of every contact; bodies of infinite mass do not connect."""
+    moves = inverse_mass > 0
+    label = np.arange(len(moves))  # (R,) of the bodies
     both = moves[row_a] & moves[row_b]
     a, b = row_a[both], row_b[both]
     while True:
@@ -30,10 +31,4 @@ def components(row_a: IntArray, row_b: IntArray, moves: BoolArray) -> IntArray:
         np.minimum.at(label, before[b], lowest)
         label = label[label]
         if np.array_equal(label, before):
-            return label
-
-
-def islands(row_a: IntArray, row_b: IntArray, inverse_mass: FloatArray) -> IntArray:
-    """(m,) label of the connected component of every contact; bodies of infinite mass do not connect."""
-    label = components(row_a, row_b, inverse_mass > 0)
-    return np.where(inverse_mass[row_a] > 0, label[row_a], label[row_b])
+            return np.where(moves[row_a], label[row_a], label[row_b])

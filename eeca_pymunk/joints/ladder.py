@@ -98,7 +98,7 @@ def take_parts(W: Workspace, h: float, length: float, rung: int, parts: int, giv
 
 
 @nonallocating
-def repaid(W: Workspace, h: float, own: bool) -> bool:
+def repaid(W: Workspace, own: bool) -> bool:
     """Whether exact rows give no more energy than they have taken, or little, which is taken back.
 
     What an earlier step left apart (`own`) closes at once, and gives little beside what moved before, or the step
@@ -160,7 +160,7 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
         compliance = compliance_on(rung, h, yields, first.compliance)
         clear_ledger(W.J.PART)
         done = take_parts(W, h, length, rung, parts, compliance / (h / parts) ** 2, cold)
-        if done and (rung >= ELASTIC_RUNG or repaid(W, h, own)):
+        if done and (rung >= ELASTIC_RUNG or repaid(W, own)):
             first.compliance = compliance
             return EXACT if rung <= WHOLE_STEP else HALVED if rung < ELASTIC_RUNG else ELASTIC
         # A step that began with foretold values, or with impulses of redundant rows, is taken again without these.

@@ -191,6 +191,7 @@ class _Panel:
             self.moving.append(self.arrows)
 
     def show(self, t: float) -> None:
+        """Move everything to the recorded moment that is nearest to time t."""
         i = int(np.argmin(np.abs(self.recording.time - t)))
         x, angle = self.recording.position[i], self.recording.angle[i]
         self.drawing.move(x, angle)

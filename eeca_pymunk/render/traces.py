@@ -18,7 +18,7 @@ from .drawing import ARROW
 FONT = 12  # points: readable at half size too
 _CEILING = 4.0  # upper limit of the axis, relative to the start
 _WORTH = 1e-9  # of the energy: least loss or external work for which the ledger is shown
-_COLOURS = {
+_COLORS = {
     "kinetic": "#0072B2",
     "potential": "#56B4E9",
     "bounces": "#E69F00",
@@ -51,9 +51,11 @@ class Trace(ABC):
 
 def trace(ax: Axes, recording: Recording) -> Trace:
     """The stack of a ledger with losses or external work; otherwise energy and momentum."""
-    held, size = recording.ledger, float(np.abs(recording.energy).max(initial=0.0))
-    if held.kept and np.isfinite(recording.kinetic).all():
-        most = max(float(np.abs(x).max()) for x in (held.restitution, held.friction, held.damping, held.external))
+    ledger, size = recording.ledger, float(np.abs(recording.energy).max(initial=0.0))
+    if ledger.kept and np.isfinite(recording.kinetic).all():
+        most = max(
+            float(np.abs(x).max()) for x in (ledger.restitution, ledger.friction, ledger.damping, ledger.external)
+        )
         if most > _WORTH * size:
             return Stack(ax, recording)
     return Lines(ax, recording)
@@ -90,14 +92,14 @@ class Stack(Trace):
 
     def __init__(self, ax: Axes, recording: Recording) -> None:
         super().__init__(ax, recording)
-        potential, held = recording.energy - recording.kinetic, recording.ledger
+        potential, ledger = recording.energy - recording.kinetic, recording.ledger
         potential = potential - min(0.0, float(potential.min()))
         start = float(recording.kinetic[0] + potential[0])
         parts = {
-            "kinetic": recording.kinetic, "potential": potential, "bounces": held.restitution,
-            "friction": held.friction, "damping": held.damping,
+            "kinetic": recording.kinetic, "potential": potential, "bounces": ledger.restitution,
+            "friction": ledger.friction, "damping": ledger.damping,
         }  # fmt: skip
-        given = start + held.external
+        given = start + ledger.external
         whole = sum(parts.values(), np.zeros(len(given)))
         scale = start or float(np.abs(given).max()) or 1.0
         self.levels: list[tuple[FloatArray, FloatArray]] = []
@@ -107,11 +109,11 @@ class Stack(Trace):
             if float(np.abs(part).max()) > _WORTH * float(np.abs(given).max()):
                 self.levels.append((below, below + part / scale))
                 below = self.levels[-1][1]
-                layer = Polygon(np.zeros((1, 2)), color=_COLOURS[name], lw=0, label=name)
+                layer = Polygon(np.zeros((1, 2)), color=_COLORS[name], lw=0, label=name)
                 ax.add_patch(layer)
                 self.layers.append(layer)
         self.given = given / scale
-        label = "start + external" if float(np.abs(held.external).max()) > _WORTH * abs(scale) else "start"
+        label = "start + external" if float(np.abs(ledger.external).max()) > _WORTH * abs(scale) else "start"
         self.lines = ax.plot([], [], color="black", linewidth=1.5, linestyle="--", label=label)
         self.moving = [*self.layers, *self.lines]
         self.top = min(max(1.0, float(whole.max()) / scale, float(self.given.max())), _CEILING)

@@ -10,7 +10,7 @@ import numpy as np
 import pymunk
 
 from ..arrays import FloatArray, IntArray
-from ..compiled.records import moved, over
+from ..compiled.records import over, selected
 from ..model.joints import EDITED, Joint
 from ..reentry import FunctionsCalled
 from .constraint_impulses import Impulses
@@ -51,7 +51,7 @@ class JointRows(Listing):
             past.refresh()
         super().__init__(space, past)
         before = [-1] * len(self.items) if past is None else [past.row.get(item, -1) for item in self.items]
-        self._memory: bytearray = moved(Joint, bytearray() if past is None else past._memory, before)
+        self._memory: bytearray = selected(Joint, bytearray() if past is None else past._memory, before)
         self.joint = over(Joint, self._memory)
         self._impulses = Impulses(space, self.joint)
         others = [body for body in self.bodies if body not in row]

@@ -18,7 +18,7 @@ import pymunk
 from pymunk import batch
 
 from ..arrays import FloatArray, IntArray
-from ..compiled.records import moved, over
+from ..compiled.records import over, selected
 from ..errors import NotFiniteError
 from ..model.bodies import Body
 from .edits import clock
@@ -45,7 +45,7 @@ class Partners:
         before = {} if past is None else {body: i for i, body in enumerate(past.items)}
         past_rows = [before.get(body, -1) for body in self.items]
         # Rows of new bodies are written by `_read` below.
-        self._memory: bytearray = moved(Body, bytearray() if past is None else past._memory, past_rows)
+        self._memory: bytearray = selected(Body, bytearray() if past is None else past._memory, past_rows)
         self.PARTNER = over(Body, self._memory)
         known = [] if past is None else past._known
         self._known: list[tuple[float, ...] | None] = [known[i] if i >= 0 else None for i in past_rows]

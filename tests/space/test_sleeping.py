@@ -109,6 +109,19 @@ def test_a_sleeper_is_like_a_wall_until_it_is_touched_and_then_takes_the_whole_i
     assert "1 of 3 bodies asleep" in stepper.model
 
 
+def test_sleeping_may_be_switched_on_between_steps() -> None:
+    space, bodies = stack(threshold=math.inf)
+    stepper = ep.EECA(space)
+    for _ in range(5):
+        stepper.step(DT)
+    space.sleep_time_threshold = 0.2
+    for _ in range(20):
+        stepper.step(DT)
+    assert all(body.is_sleeping for body in bodies)
+    bodies[0].activate()
+    assert not any(body.is_sleeping for body in bodies)
+
+
 def test_it_wakes_as_it_would_have_been_hit_awake() -> None:
     """The step in which a sleeping stack is hit ends as that of the same stack awake."""
     space, _, stepper = asleep()

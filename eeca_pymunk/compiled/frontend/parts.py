@@ -36,7 +36,6 @@ from .calls import Call, annotated, by_symbol, symbol
 _OPTIONS = {"fastmath": False, "error_model": "numpy", "boundscheck": False, "nogil": True}
 _BARE = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 NO_MEMORY, NO_SHAPE = 1, 2  # statuses of kernels, added to numba's own; `library.check` has those of entries
-_made: dict[Call, Part] = {}
 
 
 class Part:
@@ -128,15 +127,10 @@ def adapt() -> None:
     calls.inferred.append(lambda call: part_of(call).returned)
 
 
+@functools.cache
 def part_of(call: Call) -> Part:
     """Compile a kernel for these types of arguments, once in a process."""
-    if call not in _made:
-        adapt()
-        _made[call] = _compiled(call)
-    return _made[call]
-
-
-def _compiled(call: Call) -> Part:
+    adapt()
     start = time.perf_counter()
     kernel, args = call
     returned = annotated(kernel)

@@ -55,9 +55,9 @@ def _names(code: CodeType) -> Iterator[str]:
             yield from _names(one)
 
 
-def _said_of(code: CodeType, doc: str | None = None) -> tuple[object, ...]:
+def _content_of(code: CodeType, doc: str | None = None) -> tuple[object, ...]:
     """The compiled content of a function, from memory, since its file may have been edited after the import."""
-    constants = [_said_of(one) if isinstance(one, CodeType) else repr(one) for one in code.co_consts if one != doc]
+    constants = [_content_of(one) if isinstance(one, CodeType) else repr(one) for one in code.co_consts if one != doc]
     return code.co_code, constants, code.co_names, code.co_varnames, code.co_freevars
 
 
@@ -66,21 +66,21 @@ def source_key(kernel: Kernel[Any, Any]) -> str:
     """The hash of a kernel's code and of all globals that it uses."""
     python = kernel.python
     named = [
-        (name, _said(python.__globals__[name], f"{kernel.name} names {name}"))
+        (name, _dependence(python.__globals__[name], f"{kernel.name} names {name}"))
         for name in sorted(set(_names(python.__code__)))
         if name in python.__globals__
     ]
-    code = _said_of(python.__code__, python.__doc__)
+    code = _content_of(python.__code__, python.__doc__)
     return digest(kernel.name, kernel.counted, kernel.inlined, code, python.__annotations__, named)
 
 
-def _said(value: Any, where: str) -> object:
+def _dependence(value: Any, where: str) -> object:
     """The part of a global on which the code that uses it depends."""
     if isinstance(value, Kernel):
         returned = annotated(value)
         return value.name, source_key(value) if returned is None else repr(returned)
     if isinstance(value, Choice):
-        return [_said(one, where) for one in value.kernels]
+        return [_dependence(one, where) for one in value.kernels]
     if isinstance(value, Opener):
         name = value.kind.__name__
         return name, table_fields(name) if name in TABLES else ()
