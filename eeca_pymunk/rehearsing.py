@@ -7,7 +7,6 @@ import math
 
 from .arrays import FloatArray, IntArray
 from .compiled import Table, kernel, nonallocating
-from .compiled.records import Rows
 from .layout import (
     BEFORE_CALL,
     BODY_ROW,
@@ -29,8 +28,7 @@ from .layout import (
     UNALTERED,
     WRITTEN,
 )  # fmt: skip
-from .model.bodies import Body
-from .model.values import reading_of
+from .model.values import Reading, reading_of
 from .transfer import (
     FORCES,
     MOVED_STATIC,
@@ -50,22 +48,18 @@ SUPPORT_SHIFT = 1e-7  # part of its height by which a body is moved towards its 
 
 
 @nonallocating
-def void_predictions(BODY: Rows[Body]) -> None:
-    """Void all predictions: functions may change anything, so that all bodies count as placed by the program. Steps
-    that call none do so as well: no path depends on which they are."""
+def copy_read(R: Reading, copy: FloatArray) -> int:
+    """Copy the state that was read to `copy` (N, 9), and void all predictions: functions may change anything, so that
+    all bodies count as placed by the program. Steps that call none do so as well: no path depends on which they are.
+
+    Returns:
+        0, or OTHER_BODIES, MOVED_STATIC or NOT_FINITE if the bodies are others, a static one was moved, or a number is
+        not finite.
+    """
+    IDS, BODY, now, before = R.IDS, R.BODY, R.STATES[READ], R.STATES[WRITTEN]
+    status = 0
     for i in range(BODY.shape[0]):
         BODY[i].due = min(BODY[i].due, PLACED)
-
-
-@kernel
-def copy_start(table: Table) -> int:
-    """Copy the state that was read to HOOKED[START], and `void_predictions`; 0, or OTHER_BODIES, MOVED_STATIC or
-    NOT_FINITE if the bodies are others, a static one was moved, or a number is not finite."""
-    R = reading_of(table)
-    IDS, BODY, start = R.IDS, R.BODY, R.HOOKED[START]
-    now, before = R.STATES[READ], R.STATES[WRITTEN]
-    status = 0
-    void_predictions(BODY)
     for i in range(IDS.shape[1]):
         if IDS[READ_ID, i] != IDS[KNOWN_ID, i]:
             return OTHER_BODIES
@@ -77,8 +71,15 @@ def copy_start(table: Table) -> int:
             if now[i, 0] != before[i, 0] or now[i, 1] != before[i, 1] or now[i, 2] != before[i, 2]:
                 return MOVED_STATIC
         for c in range(9):
-            start[i, c] = now[i, c]
+            copy[i, c] = now[i, c]
     return status
+
+
+@kernel
+def copy_start(table: Table) -> int:
+    """`copy_read` to HOOKED[START]."""
+    R = reading_of(table)
+    return copy_read(R, R.HOOKED[START])
 
 
 @kernel
@@ -167,9 +168,9 @@ def any_near(STATES: FloatArray, ENDS: FloatArray, HANDLED: FloatArray, PAIRS: I
 def place_for_rehearsal(
     table: Table, HANDLED: FloatArray, PAIRS: IntArray, dt: float, gx: float, gy: float, half_damping: float
 ) -> int:
-    """Copy the present state to HOOKED[REHEARSAL_START], and `void_predictions`. Write to ENDS, to the table END with
-    angles and spins, the poses from which a step of pymunk leads to the end of free flight. pymunk moves bodies before
-    it accelerates them, so that they start at
+    """`copy_read` to HOOKED[REHEARSAL_START]. Write to ENDS, to the table END with angles and spins, the poses from
+    which a step of pymunk leads to the end of free flight. pymunk moves bodies before it accelerates them, so that they
+    start at
 
         q_free - dt v,   q_free = q + dt (d v + dt a / 2),   d = `half_damping`, the factor of half a step's damping.
 
@@ -180,35 +181,28 @@ def place_for_rehearsal(
     lowest one.
 
     Returns:
-        1 if one of PAIRS comes near (`any_near`), else 0; a negative code of `copy_start`, or OVERFLOW if a number at
+        1 if one of PAIRS comes near (`any_near`), else 0; a negative code of `copy_read`, or OVERFLOW if a number at
         the end is not finite.
     """
     R = reading_of(table)
-    IDS, EXTRA, BODY, kept = R.IDS, R.EXTRA, R.BODY, R.HOOKED[REHEARSAL_START]
-    now, before = R.STATES[READ], R.STATES[WRITTEN]
+    status = copy_read(R, R.HOOKED[REHEARSAL_START])
+    if status < 0:
+        return status
+    IDS, EXTRA, BODY, now = R.IDS, R.EXTRA, R.BODY, R.STATES[READ]
     N = IDS.shape[1]
-    void_predictions(BODY)
     pull = math.sqrt(gx * gx + gy * gy)
     down_x, down_y, deepest = 0.0, 0.0, -math.inf
     if pull > 0.0:
         down_x, down_y = gx / pull, gy / pull
     for i in range(N):
-        if IDS[READ_ID, i] != IDS[KNOWN_ID, i]:
-            return OTHER_BODIES
         row = IDS[BODY_ROW, i]
-        if row < 0 and (now[i, 0] != before[i, 0] or now[i, 1] != before[i, 1] or now[i, 2] != before[i, 2]):
-            return MOVED_STATIC
         if row >= 0 and BODY[row].inv_mass > 0.0:
             deepest = max(deepest, now[i, 0] * down_x + now[i, 1] * down_y)
     end = R.ENDS[END * N :]
     for i in range(N):
         x, y, angle, vx, vy, spin = now[i, 0], now[i, 1], now[i, 2], now[i, 3], now[i, 4], now[i, 5]
-        for k in range(9):
-            kept[i, k] = now[i, k]
         row = IDS[BODY_ROW, i]
         if row >= 0:
-            if not finite(x, y, angle, vx, vy, spin):
-                return NOT_FINITE
             special, moves = IDS[FLAGS, i], BODY[row].inv_mass > 0.0
             ax, ay, twist, damped = acceleration(now, i, BODY[row], special, EXTRA, gx, gy, half_damping)
             px, py = x, y

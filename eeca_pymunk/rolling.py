@@ -69,7 +69,7 @@ class Copy:
             return self._take_rollouts(job, first, last)
         events = []
         for k in range(first, last):
-            self.loop.start_anew(self._at, job.states[k])
+            self.loop.reset_to(self._at, job.states[k])
             events += self._take_rollouts(job, k, k + 1)
         return events
 

@@ -108,7 +108,7 @@ class RunningStepper(PackedStepper):
         """
         set_state(self, np.asarray(state))
 
-    def start_anew(self, world: World, state: FloatArray) -> None:
+    def reset_to(self, world: World, state: FloatArray) -> None:
         """Forget results of earlier steps, after the bodies of the space have been set to `state` (N, 9)."""
         loop = self.event_loop
         if loop is None or world.joints is not None or self._sleep is not None:
@@ -122,7 +122,7 @@ class RunningStepper(PackedStepper):
         else:
             rows = world.IDS[BODY_ROW]
             self.decisions.forget(self.space)
-            loop.start_anew(rows[rows >= 0], state[rows >= 0, :6])
+            loop.reset_to(rows[rows >= 0], state[rows >= 0, :6])
             world.STATES[WRITTEN, rows >= 0] = np.nan
 
     def patch(self, world: World) -> bool:
@@ -142,7 +142,7 @@ class RunningStepper(PackedStepper):
             return False
         if not world.collisions:
             loop.rule({})
-        loop.be_new(found.reach or found.moved, found.moved)
+        loop.reset(found.reach or found.moved, found.moved)
         if sides is not None:
             sides.recall(world, loop)
         return True

@@ -78,7 +78,7 @@ def _place(stepper: RunningStepper, state: FloatArray) -> None:
     whole[:] = world.state
     whole[rows, :6], whole[rows, 6:] = state, 0.0
     world.bodies.scatter(whole, unchanged=True)
-    stepper.start_anew(world, whole)
+    stepper.reset_to(world, whole)
 
 
 def _recall(stepper: RunningStepper, state: IntArray) -> None:

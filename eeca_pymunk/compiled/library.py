@@ -59,22 +59,18 @@ def check(name: str, status: int) -> int:
 
 
 class Entry:
-    """One entry point, called with arrays and numbers as its kernel is."""
+    """One entry point, the C function at this address, called with arrays and numbers as its kernel is."""
 
     def __init__(self, name: str, address: int, kinds: str = "") -> None:
         self.name = name
         self.kinds = (kinds or ENTRIES[name]).split()
-        self.point_to(address)
+        numbers = ["double" if kind == "f8" else "int64_t" for kind in self.kinds if not is_array(kind)]
+        self.function: Callable[..., int] = _ffi.cast(f"int64_t(*)({', '.join(['int64_t *', *numbers])})", address)
+        self._last: tuple[tuple[Any, ...], Callable[..., int]] = (), int  # arrays and result of the last `bind`
         self._arrays = [i for i, kind in enumerate(self.kinds) if is_array(kind)]
         # None for tables.
         self._wanted = [None if (kind := self.kinds[i]).endswith("}") else split(kind) for i in self._arrays]
         self._numbers = [i for i, kind in enumerate(self.kinds) if not is_array(kind)]
-
-    def point_to(self, address: int) -> None:
-        """Call the C function at this address."""
-        numbers = ["double" if kind == "f8" else "int64_t" for kind in self.kinds if not is_array(kind)]
-        self.function: Callable[..., int] = _ffi.cast(f"int64_t(*)({', '.join(['int64_t *', *numbers])})", address)
-        self._last: tuple[tuple[Any, ...], Callable[..., int]] = (), int
 
     def __call__(self, *args: Any) -> int:
         if len(args) != len(self.kinds):

@@ -7,7 +7,7 @@ import hashlib
 import os
 import sys
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
 from .entries import SOURCES
@@ -16,20 +16,15 @@ from .targets import TARGETS, this_platform
 PACKAGE = Path(__file__).parents[1]
 
 
-def _files(package: Path) -> Iterator[Path]:
-    for name in SOURCES:
-        one = package / name
-        yield from sorted([*one.rglob("*.py"), *one.rglob("*.ll")]) if one.is_dir() else [one]
-
-
 @functools.cache
 def sources_hash(package: Path = PACKAGE) -> str:
     """32 hexadecimal digits that change with every edit of a file of `SOURCES`, whatever its line ends."""
     digest = hashlib.sha256()
-    for one in _files(package):
-        text = one.read_bytes().replace(b"\r\n", b"\n")
-        digest.update(f"{one.relative_to(package).as_posix()}\0{len(text)}\0".encode())
-        digest.update(text)
+    for room in (package / name for name in SOURCES):
+        for one in sorted([*room.rglob("*.py"), *room.rglob("*.ll")]) if room.is_dir() else [room]:
+            text = one.read_bytes().replace(b"\r\n", b"\n")
+            digest.update(f"{one.relative_to(package).as_posix()}\0{len(text)}\0".encode())
+            digest.update(text)
     return digest.hexdigest()[:32]
 
 

@@ -105,7 +105,7 @@ class Remembering:
         self.scene, self.joints = self.__dict__.pop("_arrays")
 
     def keep_fresh(self) -> None:
-        """Before the first step: store what steps change, apart from poses and velocities, for `start_anew`."""
+        """Before the first step: store what steps change, apart from poses and velocities, for `reset_to`."""
         self.own = self._gather()
         self.fresh: IntArray = self.own.copy()
         self._first, self._listed = self.table, None
@@ -117,7 +117,7 @@ class Remembering:
             self._listed = bool(np.isfinite(self.scene.MARK["margin"]).any())
         return self._listed
 
-    def start_anew(self, at: IntArray, state: FloatArray) -> None:
+    def reset_to(self, at: IntArray, state: FloatArray) -> None:
         """Return to the state of a new loop, after `keep_fresh`, with the poses and velocities `state` (b, 6) of the
         rows `at` (b,) of BODY."""
         if self.listed:
@@ -125,9 +125,9 @@ class Remembering:
             put(moved, state, *POSE, *VELOCITY)
             moved["since"] = 0.0
             BODY[at] = moved
-        self.be_new(False)
+        self.reset(False)
 
-    def be_new(self, lists: bool, corners: bool = False) -> None:
+    def reset(self, lists: bool, corners: bool = False) -> None:
         """Return to the state of a new loop, after `keep_fresh`, with the present BODY and shapes.
 
         Args:
@@ -145,11 +145,11 @@ class Remembering:
         if corners and len(scene.CORNER):
             find_corners(scene.LINK, scene.VERTEX, scene.CORNER)
         if self.listed:
-            self._list_anew()
+            self._make_lists()
         elif lists and relist(self.table):
             self.fresh[:] = self.own
         elif lists:
-            self._list_anew()
+            self._make_lists()
 
     def remembered(self) -> list[AnyArray]:
         """All arrays that determine the next step, apart from the states exchanged with pymunk."""
@@ -171,7 +171,7 @@ class Remembering:
         self.joint = self.joints.JOINT
         return memory
 
-    def _list_anew(self) -> None:
+    def _make_lists(self) -> None:
         """Make near lists for the present places of bodies, as for a new loop."""
         table = refilled(self.table)
         if table is self.table:

@@ -210,7 +210,7 @@ class Rehearsal:
             self._step(self._settings[0])
         finally:
             world.bodies.scatter(present, unchanged=True)
-            private_shapes.reindex_anew(self.space, world.movers)
+            private_shapes.reindex_uncorrected(self.space, world.movers)
 
     @property
     def after(self) -> bool:

@@ -177,7 +177,7 @@ class Sync:
             private_shapes.reindex(self.space, self._world.movers)
         else:
             self.state, self.were_read = MADE, False
-            private_shapes.reindex_anew(self.space, self._world.movers)
+            private_shapes.reindex_uncorrected(self.space, self._world.movers)
         self.call_back()
 
     def is_ours(self) -> bool:

@@ -199,7 +199,7 @@ class World(BodyStates):
                 self._forget_rules()
             else:
                 self.read_settings()
-            self._take(0.0, 0.0, 1.0)
+            self._read_states(0.0, 0.0, 1.0)
         return found
 
     def show_joints(self) -> None:

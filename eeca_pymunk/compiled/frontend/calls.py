@@ -17,7 +17,7 @@ from typing import Any
 
 from numba.core import cgutils, types
 
-from ..kernels import Choice, Compilable, Kernel, set_types
+from ..kernels import Choice, Compilable, Kernel
 from .types import global_type, type_of_other
 
 _RETURNED = {int: types.int64, float: types.float64, bool: types.boolean, type(None): types.none}
@@ -91,8 +91,3 @@ def type_of(one: Compilable) -> Any:
         scope,
     )
     return global_type(scope[python.__name__])
-
-
-def activate() -> None:
-    """Make numba use these types."""
-    set_types(type_of)

@@ -145,13 +145,6 @@ def linked(group: Group, calls: Mapping[str, Call] | None = None) -> Any:
     return whole
 
 
-def mark(sources: str) -> Any:
-    """A module that contains only the hash of the sources, as the symbol `eeca_sources`."""
-    initialise()
-    text = f'@eeca_sources = constant [{len(sources)} x i8] c"{sources}"\n'
-    return llvm.parse_assembly(text)
-
-
 def retargeted(module: Any, machine: Any) -> Any:
     """A copy of a module for another platform, whose entry points are exported."""
     copy = module.clone()
@@ -191,9 +184,10 @@ def object_of(group: Group, triple: str, cpu: str) -> bytes:
 
 
 def marked_object(sources: str, triple: str, cpu: str) -> bytes:
-    """An object file that contains only the hash of the sources."""
+    """An object file that contains only the hash of the sources, as the symbol `eeca_sources`."""
     machine = machine_of(triple, cpu)
-    return bytes(machine.emit_object(retargeted(mark(sources), machine)))
+    module = llvm.parse_assembly(f'@eeca_sources = constant [{len(sources)} x i8] c"{sources}"\n')
+    return bytes(machine.emit_object(retargeted(module, machine)))
 
 
 def host() -> str:

@@ -29,12 +29,14 @@ from numba.core.registry import cpu_target
 from numba.core.runtime import rtsys  # type: ignore[attr-defined]
 from numba.np import arrayobj
 
-from ..kernels import Kernel
+from ..kernels import set_types
 from . import NUMBA, calls
 from .calls import Call, annotated, by_symbol, symbol
 
-_OPTIONS = {"fastmath": False, "error_model": "numpy", "boundscheck": False, "nogil": True}
-_BARE = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_OPTIONS = {
+    "fastmath": False, "error_model": "numpy", "boundscheck": False, "nogil": True, "no_cpython_wrapper": True,
+    "no_cfunc_wrapper": True,
+}  # fmt: skip
 NO_MEMORY, NO_SHAPE = 1, 2  # statuses of kernels, added to numba's own; `library.check` has those of entries
 
 
@@ -123,7 +125,7 @@ def adapt() -> None:
     convention.return_user_exc = convention.return_dynamic_user_exc = _raise
     arrayobj.fix_integer_index = _index
     _remember_operators(cpu_target.typing_context)
-    calls.activate()
+    set_types(calls.type_of)
     calls.inferred.append(lambda call: part_of(call).returned)
 
 
@@ -134,18 +136,13 @@ def part_of(call: Call) -> Part:
     start = time.perf_counter()
     kernel, args = call
     returned = annotated(kernel)
-    dispatcher = _dispatcher(kernel)
+    options: dict[str, Any] = _OPTIONS if kernel.counted else _OPTIONS | {"_nrt": False}
+    dispatcher: Any = numba.njit(**options)(kernel.python)
     dispatcher.compile(args if returned is None else returned(*args))
     found = dispatcher.overloads[args]
     module = _module(found, symbol(call), kernel.inlined)
     made = [by_symbol[f.name] for f in module.functions if f.is_declaration and f.name in by_symbol]
     return Part(bytes(module.as_bitcode()), made, found.signature.return_type, time.perf_counter() - start)
-
-
-def _dispatcher(kernel: Kernel[Any, Any]) -> Any:
-    njit: Any = numba.njit
-    options: dict[str, Any] = _OPTIONS | _BARE | ({} if kernel.counted else {"_nrt": False})
-    return njit(**options)(kernel.python)
 
 
 def _module(found: Any, name: str, inlined: bool) -> Any:

@@ -6,7 +6,6 @@ words are constant while a kernel runs and are loaded as invariant, so that LLVM
 
 from __future__ import annotations
 
-import functools
 from typing import Any
 
 from llvmlite import ir
@@ -99,18 +98,12 @@ def global_type(python: Any) -> Any:
     return cpu_target.typing_context.resolve_value_type(found)
 
 
-@functools.cache
 def type_of_other(one: Compilable) -> Any:
-    """The type of an opener or of `fetch`."""
-    if isinstance(one, Opener):
-        return _opener(one.kind)
-    assert isinstance(one, Fetch)
-    return global_type(_fetch)
-
-
-def _opener(kind: type) -> Any:
-    """The type of the function that opens tables of this kind; other arguments are returned unchanged."""
-    name = kind.__name__
+    """The type of `fetch`, or of an opener, which returns arguments other than tables unchanged."""
+    if isinstance(one, Fetch):
+        return global_type(_fetch)
+    assert isinstance(one, Opener)
+    name = one.kind.__name__
     fields = table_fields(name)
 
     def opened(typing: Any, table: Any) -> Any:

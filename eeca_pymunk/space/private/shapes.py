@@ -55,7 +55,7 @@ def reindex(space: pymunk.Space, bodies: Iterable[Any]) -> None:
         move(c, body)
 
 
-def reindex_anew(space: pymunk.Space, bodies: Iterable[Any]) -> None:
+def reindex_uncorrected(space: pymunk.Space, bodies: Iterable[Any]) -> None:
     """`forget_corrections`, then `reindex`."""
     c, move, forget = space._space, lib.cpSpaceReindexShapesForBody, lib.cpBodyUpdatePosition
     for body in bodies:
