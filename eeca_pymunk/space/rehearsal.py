@@ -2,8 +2,13 @@
 
 So begin, pre_solve, post_solve and separate are called in pymunk's order and with pymunk's numbers. What they decide
 (collisions to ignore, restitution, friction, surface velocities) and change (velocities) applies to the EECA step,
-which overwrites the motion of the rehearsal. A rehearsal that would call no handler is *left out*; such a step is
-*silent*.
+which overwrites the motion of the rehearsal.
+
+| step | rehearsal |
+|---|---|
+| a handler may be called | pymunk's step, with handlers that record what they change (`Rehearsal.run`) |
+| *silent*: none would be called | left out |
+| silent, but arbiters were read since the last step, or `REINDEXINGS` in a row were left out | pymunk's step |
 """
 
 from __future__ import annotations
@@ -30,7 +35,6 @@ if TYPE_CHECKING:
     from .world import World
 
 _MEMORY = 4  # steps for which pymunk may keep arbiters of pairs that have touched; silence is not tested before
-_POST_SOLVE = private.PHASES[2]
 _NO_PAIRS: tuple[FloatArray, IntArray] = np.zeros((0, HANDLED_COLUMNS)), np.zeros((0, 2), np.int64)
 
 
@@ -38,7 +42,7 @@ class Rehearsal:
     """The arrays and wrappers for rehearsals of a world, kept from step to step.
 
     Attributes:
-        left_out: whether pymunk's step was left out in the last rehearsal.
+        left_out: number of the last steps in a row whose rehearsals were left out.
         failure: the exception of a function in the last rehearsal.
         decided: whether a function has changed a collision in it.
     """
@@ -48,13 +52,13 @@ class Rehearsal:
         self._place = self._bound(None)
         (self._record_changes,) = world.bound(record_changes)
         self._settings = 0.0, 0.0, 0.0, 1.0  # dt, gravity (2), factor of half a step's damping
-        # Whether begin or pre_solve have changed bodies, and whether post_solve or separate have; stage of the last
-        # call (see `Watched`), -1 before the first.
+        # Whether begin or pre_solve, and post_solve or separate, have changed bodies; stage of the last call (see
+        # `Watched`), -1 before the first.
         self._changed, self._stage = [False, False], -1
         self._wrapped: list[tuple[Any, str, Any, Any]] = []  # handler, phase, its function, the wrapper
         self._functions: list[tuple[Any, ...]] = []  # see `private.functions`
         self.failure: BaseException | None = None
-        self.decided, self.left_out, self._left_out_steps = False, False, 0  # number of them in a row
+        self.decided, self.left_out = False, 0
         self._sync: Sync | None = None  # of the last step
         # Whether the last step was certainly silent; number of steps until that is tested again.
         self._silent, self._unchecked = False, 0
@@ -77,7 +81,7 @@ class Rehearsal:
 
     def is_silent(self) -> bool:
         """Whether no decision applies, and the last `_MEMORY` steps, all of them EECA's, were silent and left out."""
-        return self._left_out_steps >= _MEMORY and self._silent and self._sync is not None and self._sync.is_ours()
+        return self.left_out >= _MEMORY and self._silent and self._sync is not None and self._sync.is_ours()
 
     def is_silent_again(self, dt: float, half_damping: float, sync: Sync) -> bool:
         """Whether this step is silent as the last one was; if so, its rehearsal is done or left out here. For worlds in
@@ -111,16 +115,14 @@ class Rehearsal:
         """After a function was called: record its changes in HOOKED[CHANGES_BEFORE] or HOOKED[CHANGES_AFTER]."""
         late = stage > 0
         self.world.gather()
-        if self._record_changes(late):
-            self._changed[late] = True
+        self._changed[late] |= self._record_changes(late) > 0
 
     def run(self, dt: float, half_damping: float, sync: Sync | None = None) -> int:
         """Take pymunk's step; STATES then has the start of the EECA step, with the changes by begin and pre_solve. An
         exception of a function is raised when pymunk has finished.
 
         Args:
-            sync: if given, the rehearsal may be left out, see `_step_without_calls`, unless pymunk has taken a step of
-                its own since the last EECA step.
+            sync: if given, the rehearsal may be left out, unless pymunk has taken a step since the last EECA step.
 
         Returns:
             0 or a negative code of `transfer.py`, with nothing done.
@@ -142,7 +144,7 @@ class Rehearsal:
         if self._silent and sync is not None:
             self._step_without_calls(dt, sync)
             return 0
-        self.left_out, self._left_out_steps = False, 0
+        self.left_out = 0
         world.scatter(TURNS)
         self._wrap()
         try:
@@ -161,13 +163,11 @@ class Rehearsal:
         return 0
 
     def _step_without_calls(self, dt: float, sync: Sync) -> None:
-        """A silent step: leave pymunk's step out, REINDEXINGS times in a row at most, as `sync.py` then reindexes. Take
-        it if arbiters were read since the last step, since they will probably be read again."""
-        self.left_out = not sync.were_read and self._left_out_steps < private_shapes.REINDEXINGS
-        if self.left_out:
-            self._left_out_steps += 1
+        """The rehearsal of a silent step. Arbiters that were read will probably be read again."""
+        if not sync.were_read and self.left_out < private_shapes.REINDEXINGS:
+            self.left_out += 1
             return
-        self._left_out_steps = 0
+        self.left_out = 0
         self.world.scatter(TURNS)
         self._step(dt)
 
@@ -232,7 +232,7 @@ class Rehearsal:
             ]
         if late:
             self._wrapped = [
-                (handler, phase, f, hooks.later(f) if phase == _POST_SOLVE else watched)
+                (handler, phase, f, hooks.later(f) if phase == private.PHASES[2] else watched)
                 for handler, phase, f, watched in self._wrapped
             ]
 

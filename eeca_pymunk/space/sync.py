@@ -168,9 +168,9 @@ class Sync:
         """Count the steps that pymunk has taken until now as parts of EECA steps."""
         self.stamp = self._timestamp()
 
-    def finish_rehearsal(self, left_out: bool) -> None:
-        """The end of a step with handlers, whose rehearsal was taken or `left_out`: move shapes to their bodies, then
-        `call_back`."""
+    def finish_rehearsal(self, left_out: int) -> None:
+        """The end of a step with handlers, whose rehearsal was taken or left out (`Rehearsal.left_out`): move shapes to
+        their bodies, then `call_back`."""
         self.stamp = self._timestamp()
         if left_out:
             self.state = NO_REHEARSAL

@@ -81,7 +81,7 @@ def played(
             space.remove(extra, disk)
         stepper.step(DT)
         world = stepper._world
-        left_out += world is not None and world.rehearsal.left_out
+        left_out += world is not None and world.rehearsal.left_out > 0
         told.append([(*body.position, *body.velocity, body.angle) for body in space.bodies])
         each(space, told)
     return told, left_out
