@@ -102,8 +102,17 @@ class HookedStepper(PackedSpace):
     def _take_hooked(self, world: World, dt: float) -> tuple[World, StepReport]:
         """The step without post-step callbacks; returns its world, which may be new, and its report.
 
-        `called`: whether functions may have changed bodies. `alters`: whether the end of the step is changed after the
-        method has computed it: by damping 0, position functions, post_solve or separate. `lost`: the energy of that.
+        | stage | method |
+        |---|---|
+        | read and check all states, and keep a copy of them | `_start_hooked` |
+        | call `pre_solve` of constraints, then velocity functions | `Hooks.before`, `Hooks.velocity_changes` |
+        | call collision handlers; their decisions are the rules of this step | `Rehearsal.run`, `Rehearsal.rules` |
+        | move the arrays | `advance` |
+        | change the end: by damping 0, post_solve and separate of handlers, position functions | `World.alter_end` |
+        | write the states, and call `post_solve` of constraints | `_write_hooked_end` |
+
+        `called`: whether functions may have changed bodies. `alters`: whether the end is changed; `lost`: the energy
+        that damping 0 takes then.
         """
         world = self._start_hooked(world)
         half_damping, lost, hooks, called = world.half_damping(dt), 0.0, world.hooks, True
