@@ -9,7 +9,7 @@ from weakref import ref
 from .closures.time_of_impact import TimeOfImpact
 from .runs import RunningStepper
 from .saved import Saved, Sides, sides_of
-from .space.arbiters import Touches, show_contacts, touches
+from .space.arbiters import Touches, show_contacts, touches_of
 from .space.world import World
 from .stepper import Method
 
@@ -110,5 +110,5 @@ class EECA(RunningStepper):
             return None
         step = loop.stamp
         if self._shown[0] != step or self._shown[1] is not world:
-            self._shown = step, world, Touches(touches(loop.events, world.shapes))
+            self._shown = step, world, Touches(touches_of(loop.events, world.shapes))
         return self._shown[2]

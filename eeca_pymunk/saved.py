@@ -18,7 +18,7 @@ from .model.joints import OF_STEPS, RATCHET, Joint
 from .model.parameters.intervals import INTERVAL_DEPTH_LEAST
 from .model.shapes import Link, Side
 from .space.decisions import Decisions
-from .space.packing import Record
+from .space.packing import ShapeRecord
 from .space.world import World
 
 _FIXED = ["extent", "elasticity", "friction"]  # fields of BODY that no step changes
@@ -176,7 +176,7 @@ def sides_of(world: World, loop: EventLoop) -> Sides | None:
     return None if known is None and len(world.BODY) - 1 <= world.dynamic else Sides(world, known)
 
 
-def _outline(record: Record | None) -> object:
+def _outline(record: ShapeRecord | None) -> object:
     """Vertices and radius, for comparison."""
     return record and (record.vertices, record.numbers[0])
 

@@ -20,12 +20,12 @@ import scenes
 from comparisons.__main__ import main
 from eeca_pymunk import render
 from eeca_pymunk.render import encode, film, traces
-from eeca_pymunk.render.drawing import MOVING
+from eeca_pymunk.render.drawing import MOVING_COLOR
 from eeca_pymunk.space.outlines import Outlines
 
 from .test_recording import lossy
 
-BLUE = tuple(int(MOVING[i : i + 2], 16) for i in (1, 3, 5))
+BLUE = tuple(int(MOVING_COLOR[i : i + 2], 16) for i in (1, 3, 5))
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..closures.dashpot import check_stiffness
-from ..closures.motion import Disks, Geometry, Motion, Pairs, Start
+from ..closures.motion import DiskMotion, Disks, Geometry, Pairs, Start
 from ..energy.complementarity import solve
 from ..energy.delassus import Delassus
 from ..energy.graph import restrict
@@ -38,12 +38,12 @@ class PenaltyStepper(PackedStepper):
         world.load()
         return Disks(world, type(self).__name__, self._move)
 
-    def _move(self, disks: Disks, start: Start) -> Motion:
+    def _move(self, disks: Disks, start: Start) -> DiskMotion:
         velocity = start.free_velocity
         displacement = start.free_displacement
         pairs, before, _ = disks.near(start, displacement)
         if len(pairs) == 0:
-            return Motion(velocity, displacement)
+            return DiskMotion(velocity, displacement)
         springs = Springs(start, pairs, before)
         impulse, iterations, converged = self.load(springs)
         velocity[springs.rows], displacement[springs.rows] = springs.velocity, springs.displacement
@@ -52,7 +52,7 @@ class PenaltyStepper(PackedStepper):
         contacts = pairs.take(on).contacts(at, before.gap[on], np.full(len(on), start.dt / 2))
         psi, increment = np.zeros(len(on)), at.gap - before.gap[on]
         details = Details(contacts, impulse[on], psi, psi, increment)
-        return Motion(velocity, displacement, details, converged=converged, iterations=iterations)
+        return DiskMotion(velocity, displacement, details, converged=converged, iterations=iterations)
 
     @abstractmethod
     def load(self, springs: Springs) -> tuple[FloatArray, int, bool]:

@@ -15,7 +15,7 @@ from ..energy.complementarity import solve
 from ..energy.delassus import Delassus
 from ..energy.graph import islands
 from .motion import Disks, Geometry
-from .simultaneous import ActiveContacts, Solution, advance
+from .simultaneous import ActiveContacts, Solution, move_disks
 
 if TYPE_CHECKING:
     from ..space.world import World
@@ -49,7 +49,7 @@ class Dashpot:
 
     def prepare(self, world: World) -> Disks:
         """The disks of a world of single disks and static shapes, which was just read."""
-        return Disks(world, type(self).__name__, partial(advance, self.solve))
+        return Disks(world, type(self).__name__, partial(move_disks, self.solve))
 
     def solve(self, problem: ActiveContacts) -> Solution:
         """The impulses of the fixed point, scaled by the energy lock, and the motion of the bodies."""

@@ -60,7 +60,7 @@ class Start:
 
 
 @dataclass(frozen=True)
-class Motion:
+class DiskMotion:
     """Velocity and displacement (n, 2) of all bodies over a step, and its report; `details` is None without
     contacts."""
 
@@ -149,12 +149,12 @@ class Disks:
         move: the motion over a step, from the disks and their start.
     """
 
-    def __init__(self, world: World, mover: str, move: Callable[[Disks, Start], Motion]) -> None:
+    def __init__(self, world: World, mover: str, move: Callable[[Disks, Start], DiskMotion]) -> None:
         moving = int(np.count_nonzero(world.LINK["owner"] < len(world.BODY) - 1))
         check_disks(world, moving, mover)
         self.world, self.move = world, move
         self.rules: Mapping[tuple[int, int], tuple[float, float, float, float]] = {}
-        self.motion = Motion(np.zeros((0, 2)), np.zeros((0, 2)))  # of the last step
+        self.motion = DiskMotion(np.zeros((0, 2)), np.zeros((0, 2)))  # of the last step
         scene = scene_with(
             BODY=world.BODY, SHAPE=world.SHAPE, LINK=world.LINK, VERTEX=world.VERTEX, CORE=core_room(world.LINK)
         )
@@ -222,7 +222,7 @@ class Disks:
         gaps are round-off.
 
         A body's reach is the length of its free flight and `extra` (n,), times 2 for bodies that impulses accelerate.
-        Those that impulses move farther are searched again (`simultaneous.advance`).
+        Those that impulses move farther are searched again (`simultaneous.move_disks`).
         """
         # Sagitta of the parabola, a dt² / 8.
         bow = (0.125 * start.dt**2) * np.hypot(*start.acceleration.T)

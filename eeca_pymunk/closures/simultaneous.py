@@ -15,7 +15,7 @@ from ..arrays import BoolArray, FloatArray, IntArray
 from ..energy.delassus import Delassus
 from ..energy.graph import restrict
 from ..report import Details
-from .motion import Disks, Geometry, Motion, Pairs, Start
+from .motion import DiskMotion, Disks, Geometry, Pairs, Start
 
 _PASSES = 3
 _STRUCK = 10.0  # ratio of displacements from which on pairs are searched again, which costs as much as a solve
@@ -87,14 +87,14 @@ class Solution:
     converged: bool
 
 
-def advance(solve: Callable[[ActiveContacts], Solution], disks: Disks, start: Start) -> Motion:
+def move_disks(solve: Callable[[ActiveContacts], Solution], disks: Disks, start: Start) -> DiskMotion:
     """The motion of all disks over a step, with the impulses of `solve`, which conserve energy and momentum."""
     velocity = start.free_velocity
     displacement = start.free_displacement
     pairs, before, tolerance = disks.near(start, displacement)
     active = (before.gap <= tolerance) | closing(pairs, before, tolerance, start, displacement)
     if not active.any():
-        return Motion(velocity, displacement)
+        return DiskMotion(velocity, displacement)
     guess = np.zeros(len(pairs))
     for left in range(_PASSES, -1, -1):
         which = np.flatnonzero(active)
@@ -124,7 +124,7 @@ def advance(solve: Callable[[ActiveContacts], Solution], disks: Disks, start: St
     at = solution.geometry
     contacts = chosen.contacts(at, before.gap[which], solution.time)
     details = Details(contacts, solution.impulse, solution.psi1, solution.psi2, solution.gap_increment)
-    return Motion(velocity, displacement, details, solution.lock, solution.converged, solution.iterations)
+    return DiskMotion(velocity, displacement, details, solution.lock, solution.converged, solution.iterations)
 
 
 def active_contacts(

@@ -11,8 +11,9 @@ from eeca_pymunk.arrays import FloatArray, IntArray
 from eeca_pymunk.space.outlines import Outlines, place
 
 # From the colour-blind safe set of Okabe and Ito; they differ in lightness too.
-MOVING, STATIC, SENSOR, ARROW, GHOST = "#0072b2", "#444444", "#cc79a7", "#d55e00", "#e69f00"
-COLORS = (MOVING, STATIC, SENSOR, ARROW, GHOST)
+MOVING_COLOR, STATIC_COLOR, SENSOR_COLOR = "#0072b2", "#444444", "#cc79a7"
+ARROW_COLOR, GHOST_COLOR = "#d55e00", "#e69f00"
+COLORS = (MOVING_COLOR, STATIC_COLOR, SENSOR_COLOR, ARROW_COLOR, GHOST_COLOR)
 _ARC = 7  # points of the rounding of a corner
 
 
@@ -31,7 +32,7 @@ class Drawing:
         for still in (False,) if ghost else (True, False):
             for sensor in (True, False):
                 here = ((outlines.row < 0) == still) & (outlines.sensor == sensor)
-                color = SENSOR if sensor else STATIC if still else MOVING
+                color = SENSOR_COLOR if sensor else STATIC_COLOR if still else MOVING_COLOR
                 for which in (disk, line, ~disk & ~line):
                     chosen = np.flatnonzero(here & which)
                     if len(chosen) == 0:
@@ -75,7 +76,7 @@ def _artist(
     ax: Axes, radius: FloatArray, local: list[FloatArray], color: str, ghost: bool
 ) -> tuple[Collection, list[FloatArray]]:  # fmt: skip
     """The collection of shapes of one kind, and the points of each: disks, segments without width, or polygons."""
-    face, edge = "none" if ghost else color, GHOST if ghost else "none"
+    face, edge = "none" if ghost else color, GHOST_COLOR if ghost else "none"
     if len(local[0]) == 1:
         return EllipseCollection(
             2.0 * radius, 2.0 * radius, np.zeros(len(radius)), units="xy", offsets=np.zeros((len(radius), 2)),
@@ -83,9 +84,9 @@ def _artist(
             zorder=4 if ghost else 2,
         ), local  # fmt: skip
     if len(local[0]) == 2 and radius[0] == 0.0:
-        return LineCollection([], colors=GHOST if ghost else color, linewidths=1.5), local
+        return LineCollection([], colors=GHOST_COLOR if ghost else color, linewidths=1.5), local
     rounded = [_rounded(v, float(r)) for v, r in zip(local, radius, strict=True)]
-    return PolyCollection([], facecolors=face, edgecolors=GHOST if ghost else "white", linewidths=0.5), rounded
+    return PolyCollection([], facecolors=face, edgecolors=GHOST_COLOR if ghost else "white", linewidths=0.5), rounded
 
 
 def _rounded(vertices: FloatArray, radius: float) -> FloatArray:

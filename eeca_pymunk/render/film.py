@@ -20,7 +20,7 @@ from eeca_pymunk.arrays import FloatArray
 from eeca_pymunk.files import check_writable, whole_file
 from eeca_pymunk.recording import Recording
 
-from .drawing import MOVING, Drawing, bounds
+from .drawing import MOVING_COLOR, Drawing, bounds
 from .encode import encoder, html_player
 from .pictures import ARROWS, View, arrows, figure, frame
 from .traces import FONT, Trace, readable, trace
@@ -175,7 +175,9 @@ class _Panel:
         self.moving = self.drawing.artists
         self.trails: list[Line2D] = []
         if recording.position.shape[1] <= _TRAILED:
-            self.trails = [ax.plot([], [], color=MOVING, linewidth=0.8)[0] for _ in range(recording.position.shape[1])]
+            self.trails = [
+                ax.plot([], [], color=MOVING_COLOR, linewidth=0.8)[0] for _ in range(recording.position.shape[1])
+            ]
             self.moving += self.trails
         self.exact = exact if exact is not None and exact(0.0) is not None else None
         if self.exact is not None:

@@ -20,7 +20,7 @@ from eeca_pymunk.report import StepReport
 from eeca_pymunk.space.bodies import moving
 from eeca_pymunk.space.outlines import Outlines
 
-from .drawing import ARROW, GHOST, Drawing, bounds
+from .drawing import ARROW_COLOR, GHOST_COLOR, Drawing, bounds
 
 if TYPE_CHECKING:
     import pymunk
@@ -143,7 +143,7 @@ def arrows(ax: Axes, x: FloatArray, vector: FloatArray, longest: float | None = 
     length = float(np.linalg.norm(shown, axis=1).max(initial=0.0)) if longest is None else longest
     scale = 2.5 * max(length, np.finfo(float).tiny)
     return ax.quiver(
-        x[:, 0], x[:, 1], shown[:, 0], shown[:, 1], color=ARROW, width=0.006, scale=scale, scale_units="width",
+        x[:, 0], x[:, 1], shown[:, 0], shown[:, 1], color=ARROW_COLOR, width=0.006, scale=scale, scale_units="width",
         minlength=_LEAST, zorder=3,
     )  # fmt: skip
 
@@ -157,6 +157,6 @@ def _impulses(ax: Axes, report: StepReport) -> None:
     for sign in (1.0, -1.0):
         ax.quiver(
             point[:, 0], point[:, 1], sign * push[:, 0], sign * push[:, 1],
-            color=GHOST, width=0.006, scale=scale, scale_units="width", zorder=5,
+            color=GHOST_COLOR, width=0.006, scale=scale, scale_units="width", zorder=5,
         )  # fmt: skip
     ax.plot(point[:, 0], point[:, 1], "k.", markersize=3, zorder=6)

@@ -13,7 +13,7 @@ from matplotlib.patches import Polygon
 from eeca_pymunk.arrays import FloatArray
 from eeca_pymunk.recording import Recording
 
-from .drawing import ARROW
+from .drawing import ARROW_COLOR
 
 FONT = 12  # points: readable at half size too
 _CEILING = 4.0  # upper limit of the axis, relative to the start
@@ -74,7 +74,7 @@ class Lines(Trace):
         self.values = (energy / start, size / (float(size.max()) or 1.0))
         self.top = min(max(1.0, float(np.nanmax(self.values[0]))), _CEILING)
         self.lines = ax.plot([], [], color="black", linewidth=2, label="E / E(0)")
-        self.lines += ax.plot([], [], color=ARROW, linewidth=1.2, linestyle="--", label="|p| / max |p|")
+        self.lines += ax.plot([], [], color=ARROW_COLOR, linewidth=1.2, linestyle="--", label="|p| / max |p|")
         self.moving = [*self.lines]
         self._legend(2, FONT)
 

@@ -77,7 +77,7 @@ def show_contacts(space: pymunk.Space, read: ReadTouches) -> None:
         batch.get_space_arbiters = _get_space_arbiters
 
 
-def touches(EVENT: Rows[Impulse], shapes: Sequence[pymunk.Shape]) -> list[Touch]:
+def touches_of(EVENT: Rows[Impulse], shapes: Sequence[pymunk.Shape]) -> list[Touch]:
     """The pairs of the (m,) impulses of a step; `shapes` by row."""
     found: dict[tuple[int, int], list[Any]] = {}
     for e in EVENT:

@@ -19,7 +19,7 @@ from ..model.joints import ROTARY_SPRING, SPRING, Joint
 from .private import spaces as private
 
 
-class Impulses:
+class ConstraintImpulses:
     """The impulses in `joint` (j,), which `constraint.impulse` returns. The constraints refer to this object through
     `_shown`; it refers neither to them nor to the space, so that both can be freed.
 
@@ -38,14 +38,14 @@ class Impulses:
         """Let `impulse` of these constraints return their impulses in the rows of `joint`, as long as the number of
         pymunk's own steps (`private.timestamp`) is `stamp`."""
         self._stamp = stamp
-        if self._checked != Impulses.shows:
+        if self._checked != ConstraintImpulses.shows:
             if _shown.get(items[0], _NATIVE)[0] is not self:
-                Impulses.shows += 1
+                ConstraintImpulses.shows += 1
                 for j, item in enumerate(items):
                     _shown[item] = self, j
                 if pymunk.Constraint.impulse is not _OWN:
                     pymunk.Constraint.impulse = _OWN  # type: ignore[method-assign]
-            self._checked = Impulses.shows
+            self._checked = ConstraintImpulses.shows
 
     def read(self, j: int) -> float | None:
         """The impulse of row j, mass length/time; of rotary joints mass length²/time. That of springs has a sign
@@ -60,7 +60,7 @@ class Impulses:
 
 
 # The impulses of each constraint, and its row there; _NATIVE for constraints that no EECA step has moved.
-_shown: WeakKeyDictionary[pymunk.Constraint, tuple[Impulses | None, int]] = WeakKeyDictionary()
+_shown: WeakKeyDictionary[pymunk.Constraint, tuple[ConstraintImpulses | None, int]] = WeakKeyDictionary()
 _NATIVE = None, 0
 _native_impulse: Any = pymunk.Constraint.impulse
 

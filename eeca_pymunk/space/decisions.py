@@ -29,7 +29,7 @@ DECISION_COLUMNS = 7  # indices of both shapes in `space.shapes`; the law (4), s
 
 _NONE = -1.0, 0.0, 0.0, 0.0  # the law of shapes that do not collide
 _SAME = 1e-9  # relative difference of a surface velocity and pymunk's tangential part of it that is round-off
-Pair = tuple[int, int]
+ShapePair = tuple[int, int]
 # Elasticity (-1: the shapes do not collide), friction, surface velocity (x, y) of b relative to a.
 Law = tuple[float, float, float, float]
 
@@ -41,8 +41,8 @@ class Rules:
     `ignored`: pairs that do not collide.  `changed`: the laws of pairs that differ from those of their shapes.
     """
 
-    ignored: frozenset[Pair] = frozenset()
-    changed: Mapping[Pair, Law] = field(default_factory=dict)
+    ignored: frozenset[ShapePair] = frozenset()
+    changed: Mapping[ShapePair, Law] = field(default_factory=dict)
 
     @property
     def any_pair(self) -> bool:
@@ -68,7 +68,7 @@ class Rules:
                 changed[pair] = law
         return cls(frozenset(ignored), changed)
 
-    def of_pairs(self, SHAPE: Rows[Shape], parted: Iterable[Pair] = ()) -> dict[Pair, Law]:
+    def of_pairs(self, SHAPE: Rows[Shape], parted: Iterable[ShapePair] = ()) -> dict[ShapePair, Law]:
         """The laws of all these pairs, sorted. `parted` pairs do not collide, whatever handlers decide."""
         never = self.ignored.union(parted)
         return {
@@ -129,7 +129,7 @@ class Decisions:
             for pair, (law, step) in self.laws.items()
             if now - step < space.collision_persistence and frozenset(pair) not in newer
         }
-        earlier: dict[Pair, Law] = {}
+        earlier: dict[ShapePair, Law] = {}
         for (one, two), (law, _) in self.laws.items():
             a, b = places.get(one, -1), places.get(two, -1)
             if min(a, b) >= 0:

@@ -13,13 +13,13 @@ from ..arrays import FloatArray, IntArray
 from ..compiled.records import over, selected
 from ..model.joints import EDITED, Joint
 from ..reentry import FunctionsCalled
-from .constraint_impulses import Impulses
+from .constraint_impulses import ConstraintImpulses
 from .constraints import read
 from .joint_edits import Edits
 from .listing import Listing, calls_of
 from .partners import Partners
 from .private import spaces as private
-from .spring_functions import Motion, Rate, law, write_law
+from .spring_functions import BodyMotion, Rate, force_function, write_law
 
 _ROUND_OFF = 1e-12  # of the distance of a pin's anchors, over that distance
 
@@ -53,7 +53,7 @@ class JointRows(Listing):
         before = [-1] * len(self.items) if past is None else [past.row.get(item, -1) for item in self.items]
         self._memory: bytearray = selected(Joint, bytearray() if past is None else past._memory, before)
         self.joint = over(Joint, self._memory)
-        self._impulses = Impulses(space, self.joint)
+        self._impulses = ConstraintImpulses(space, self.joint)
         others = [body for body in self.bodies if body not in row]
         self.partners: Partners = Partners(tuple(others), space, None if past is None else past.partners)
         self._row_of = {**row, **{body: n + i for i, body in enumerate(others)}}
@@ -137,7 +137,7 @@ class JointRows(Listing):
 
     def laws(self) -> list[Callable[[Any, float], float]]:
         """The linear laws of the springs with functions in the last step."""
-        return [law(self.items[j], self.joint[j]) for j in self.functions]
+        return [force_function(self.items[j], self.joint[j]) for j in self.functions]
 
     def measured(self) -> list[int]:
         """Rows of the pins whose length is the distance of their anchors, up to round-off: pickles of pymunk lack the
@@ -197,7 +197,7 @@ class JointRows(Listing):
                     a, b = (self._motion(body, state, place) for body in (item.a, item.b))
                     self.rates[item] = write_law(item, a, b, dt, self.joint[j], self.rates.get(item))
 
-    def _motion(self, body: pymunk.Body, state: FloatArray, place: Mapping[pymunk.Body, int]) -> Motion:
+    def _motion(self, body: pymunk.Body, state: FloatArray, place: Mapping[pymunk.Body, int]) -> BodyMotion:
         row = self._row_of[body]
         if row >= self._n:
             return self.partners.motion(row - self._n)

@@ -33,7 +33,7 @@ _VALUES = struct.Struct("2q3Q5dq")  # a `ShapeValues`
 _POINT = 16  # bytes of a row of POINT
 
 
-class Record(NamedTuple):
+class ShapeRecord(NamedTuple):
     """The values of a shape, read once.
 
     Attributes:
@@ -53,10 +53,10 @@ class Record(NamedTuple):
     points: bytes
 
 
-Records: TypeAlias = dict[pymunk.Shape, Record | None]
+ShapeRecords: TypeAlias = dict[pymunk.Shape, ShapeRecord | None]
 
 
-def read(shape: pymunk.Shape, ground: pymunk.Body | None = None) -> Record:
+def read(shape: pymunk.Shape, ground: pymunk.Body | None = None) -> ShapeRecord:
     """The record of a shape. If `ground` is given, the record of an equal shape of `ground` at the same place.
 
     Raises:
@@ -70,19 +70,19 @@ def read(shape: pymunk.Shape, ground: pymunk.Body | None = None) -> Record:
         body = ground
     packed = _VALUES.pack(0, len(outline), *words, *numbers, 0)
     points = array("d", chain.from_iterable(outline)).tobytes()
-    return Record(body, outline, numbers, words, ground is not None, packed, points)
+    return ShapeRecord(body, outline, numbers, words, ground is not None, packed, points)
 
 
-def read_surface(shape: pymunk.Shape, record: Record) -> Record:
+def read_surface(shape: pymunk.Shape, record: ShapeRecord) -> ShapeRecord:
     """The record of a shape whose body and vertices are still those of `record`."""
     numbers, words = _surface(shape)
     packed = _VALUES.pack(0, len(record.vertices), *words, *numbers, 0)
-    return Record(record.body, record.vertices, numbers, words, record.outside, packed, record.points)
+    return ShapeRecord(record.body, record.vertices, numbers, words, record.outside, packed, record.points)
 
 
 def _surface(shape: pymunk.Shape) -> tuple[tuple[float, ...], tuple[int, int, int]]:
     """`numbers` and `filter` of the record of a shape."""
-    numbers = private_shapes.numbers(shape)
+    numbers = private_shapes.surface(shape)
     rounding, elasticity, friction, *_ = numbers
     if shape.body is None or not (rounding >= 0.0 and elasticity >= 0.0 and friction >= 0.0 and isfinite(sum(numbers))):
         check_shape(shape)  # raises with the name of the value; the test above costs less
@@ -90,14 +90,16 @@ def _surface(shape: pymunk.Shape) -> tuple[tuple[float, ...], tuple[int, int, in
     return numbers, (group & _WORD, categories & _WORD, mask & _WORD)
 
 
-def records_of(space: pymunk.Space, bodies: Bodies, known: Records, stale: Collection[Any]) -> tuple[Records, int]:
+def records_of(
+    space: pymunk.Space, bodies: Bodies, known: ShapeRecords, stale: Collection[Any]
+) -> tuple[ShapeRecords, int]:
     """The records of all shapes, None for sensors, and how many shapes were read. `known` records are used again unless
     their shape is in `stale`, or its body is not in the space.
 
     A shape whose body was removed from the space becomes a static shape at its present place, where pymunk detects it.
     """
     shapes, row = space.shapes, bodies.row
-    records: Records = dict(zip(shapes, map(known.get, shapes), strict=True))
+    records: ShapeRecords = dict(zip(shapes, map(known.get, shapes), strict=True))
     unknown = records.keys() - known.keys()
     unknown.update(s for s, r in records.items() if r is not None and (r.outside or r.body not in row))
     unknown.update(thing for thing in stale if thing in records)
@@ -108,7 +110,7 @@ def records_of(space: pymunk.Space, bodies: Bodies, known: Records, stale: Colle
     return records, len(unknown)
 
 
-def shape_counts(bodies: Bodies, records: Records) -> dict[Any, int]:
+def shape_counts(bodies: Bodies, records: ShapeRecords) -> dict[Any, int]:
     """The number of shapes of each body that is not static."""
     still = bodies.static.tolist()
     count = dict.fromkeys((body for body, rests in zip(bodies.items, still, strict=True) if not rests), 0)
@@ -145,7 +147,7 @@ class Packed:
 
     _layout: Layout[Reading]
 
-    def __init__(self, bodies: Bodies, states: BodyStates, records: Records, past: Packed | None) -> None:
+    def __init__(self, bodies: Bodies, states: BodyStates, records: ShapeRecords, past: Packed | None) -> None:
         solid = [shape for shape, record in records.items() if record is not None]
         known = [record for record in records.values() if record is not None]
         k, N = len(solid), len(bodies)
@@ -186,7 +188,7 @@ class Packed:
         found: list[int] = self._layout.integers("MEASURED").tolist()
         return found
 
-    def write_again(self, records: Records, edited: Mapping[pymunk.Shape, Record], moved: bool) -> bool:
+    def write_again(self, records: ShapeRecords, edited: Mapping[pymunk.Shape, ShapeRecord], moved: bool) -> bool:
         """Write the rows again, in place, after changes of numbers, filters and masses, and, if `moved`, of poses of
         static bodies.
 

@@ -19,7 +19,7 @@ import pymunk
 
 from ..transfer import MOVED_STATIC, OTHER_BODIES
 from .edits import clock, edited_since
-from .packing import Record, read, read_surface
+from .packing import ShapeRecord, read, read_surface
 
 if TYPE_CHECKING:
     from .world import World
@@ -51,7 +51,7 @@ def patch(world: World, surfaces: bool) -> Patched | None:
     if edited is None or world.frictionless or list(world.space.constraints) != constraints:
         return None
     (stale, reshaped), elasticity, reach, bodies = edited, False, False, world.bodies
-    records: dict[pymunk.Shape, Record] = {}
+    records: dict[pymunk.Shape, ShapeRecord] = {}
     for shape in [thing for thing in stale if thing in world.records]:
         record = world.records[shape]
         if record is None or record.outside or shape.sensor:

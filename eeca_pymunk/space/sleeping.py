@@ -6,7 +6,7 @@ group wake, and the step is repeated from its start with them awake: no body bou
 Bodies fall asleep by `body.sleep()`, or as a group of bodies that touch or are jointed, all of which have been at rest
 for `space.sleep_time_threshold`. A body counts as at rest if, at both ends of a step, no force of the program acts and
 
-    |v|, |spin| size <= AT_REST |g| dt     and     |x - x0| <= AT_REST |g| dt^2 + round-off,
+    |v|, |spin| size <= REST_RATIO |g| dt     and     |x - x0| <= REST_RATIO |g| dt^2 + round-off,
 
 where velocities may have the round-off of the fastest body, x0 is the position at the start, and size the extent of the
 body. Then the impulses of contacts and joints, which obey their laws, balance gravity to that accuracy: the body is in
@@ -39,7 +39,7 @@ from .sleep_groups import resting_groups
 if TYPE_CHECKING:
     from .world import World
 
-AT_REST = 1e-6  # ratio in the criterion above; `..model.bodies.AT_REST` is a state
+REST_RATIO = 1e-6  # in the criterion above
 _AGAIN = 16  # steps from one search for groups that may fall asleep to the next
 # Groups fall asleep at once if they are at least 1/_SHARE of the bodies awake; else _PATIENCE steps after the last one.
 _SHARE, _PATIENCE = 8, 120
@@ -224,7 +224,7 @@ class Sleep:
         self._stamp = self._timestamp()
         # The sum of dt may be less than the threshold by round-off.
         need = self.space.sleep_time_threshold * (1.0 - 1e-9)
-        ready = self._rests(AT_REST * math.hypot(*self.world.gravity) * dt, dt, need)
+        ready = self._rests(REST_RATIO * math.hypot(*self.world.gravity) * dt, dt, need)
         self._wait = max(self._wait - 1, 0)
         self._since += 1
         return self._wait == 0 and ready == 1

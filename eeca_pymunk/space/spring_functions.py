@@ -27,7 +27,7 @@ _POINT = 0.5 / math.sqrt(3.0)  # distance of a Gauss point from the middle, over
 _NEAR = 1e-6  # below this ratio of the interval [l0, l1] to the length, round-off spoils the secant: k = 0
 
 # Position of the body's origin (2), angle, velocity of its centre of mass (2), spin.
-Motion = tuple[float, float, float, float, float, float]
+BodyMotion = tuple[float, float, float, float, float, float]
 Rate = tuple[float, float]  # r0 and h of a step
 
 
@@ -44,7 +44,7 @@ def own_function(item: Any) -> Callable[[Any, float], float] | None:
     return None if function is default else function
 
 
-def write_law(item: Any, a: Motion, b: Motion, dt: float, row: Joint, past: Rate | None) -> Rate:
+def write_law(item: Any, a: BodyMotion, b: BodyMotion, dt: float, row: Joint, past: Rate | None) -> Rate:
     """Write the law of a spring with a function into its row of JOINT: F to `push`, |k| to `stiffness`, m to `rest`.
 
     Args:
@@ -77,13 +77,13 @@ def write_law(item: Any, a: Motion, b: Motion, dt: float, row: Joint, past: Rate
     return rate, dt
 
 
-def law(item: Any, row: Joint) -> Callable[[Any, float], float]:
+def force_function(item: Any, row: Joint) -> Callable[[Any, float], float]:
     """The law in a spring's row of JOINT as a force function of pymunk."""
     slope = -row.stiffness if isinstance(item, pymunk.DampedSpring) else row.stiffness
     return lambda spring, length: float(row.push + slope * (length - row.rest))
 
 
-def _length(item: Any, a: Motion, b: Motion) -> tuple[float, float, float]:
+def _length(item: Any, a: BodyMotion, b: BodyMotion) -> tuple[float, float, float]:
     """The length of a spring, its rate, and the scale of lengths (at least the rest length); of a rotary spring its
     angle, the rate of this, and 1."""
     if isinstance(item, pymunk.DampedRotarySpring):
@@ -96,7 +96,7 @@ def _length(item: Any, a: Motion, b: Motion) -> tuple[float, float, float]:
     return length, rate, max(length, item.rest_length)
 
 
-def _anchor(anchor: tuple[float, float], body: pymunk.Body, motion: Motion) -> tuple[float, float, float, float]:
+def _anchor(anchor: tuple[float, float], body: pymunk.Body, motion: BodyMotion) -> tuple[float, float, float, float]:
     """Position (2) and velocity (2) of an anchor, given in coordinates of its body."""
     x, y, angle, vx, vy, spin = motion
     c, s = math.cos(angle), math.sin(angle)

@@ -20,7 +20,7 @@ from .decisions import Rules
 from .edits import Counts, clock, counts, edited_since
 from .hooks import Hooks
 from .joints import JointRows
-from .packing import Packed, Records, records_of, shape_counts
+from .packing import Packed, ShapeRecords, records_of, shape_counts
 from .patching import Patched, patch
 from .private import spaces as private
 from .rehearsal import Rehearsal
@@ -73,7 +73,7 @@ class World(BodyStates):
         super().__init__(space, past)
         bodies = Bodies(space, self.sleeps, None if known is None else known.bodies, stale or (), self.IDS[KNOWN_ID])
         self.bodies = bodies
-        self.records: Records
+        self.records: ShapeRecords
         self.records, count = records_of(space, bodies, {} if known is None else known.records, stale or ())
         self.objects_read = bodies.fresh + count
         self.undecided = past is not None and not past.edited() and past.is_silent()

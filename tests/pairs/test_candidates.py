@@ -8,7 +8,7 @@ import pytest
 
 import eeca_pymunk as ep
 import scenes
-from eeca_pymunk.closures.motion import Disks, Motion, Start
+from eeca_pymunk.closures.motion import DiskMotion, Disks, Start
 from eeca_pymunk.compiled.records import columns, put
 from eeca_pymunk.space.world import World
 from scenes.scene import add_disk, add_walls
@@ -36,7 +36,7 @@ def test_every_pair_that_can_meet_is_listed(count: int, unit: float) -> None:
     add_walls(space, [((unit, -unit), (unit, 2 * unit))])
     world = World(space)
     world.load()
-    disks = Disks(world, "test", lambda _, start: Motion(start.free_velocity, start.free_displacement))
+    disks = Disks(world, "test", lambda _, start: DiskMotion(start.free_velocity, start.free_displacement))
     meetings = 0
     for _ in range(60):
         put(world.BODY[:count], x, "x", "y")

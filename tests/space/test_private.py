@@ -107,7 +107,7 @@ def test_what_shapes_say_of_themselves() -> None:
     shape = pymunk.Circle(pymunk.Body(1.0, 1.0), 1.0)
     shape.elasticity, shape.friction, shape.surface_velocity = 0.25, 0.5, (3.0, -4.0)
     shape.filter = pymunk.ShapeFilter(7, 1 << 31, 3)
-    assert private_shapes.numbers(shape) == (1.0, 0.25, 0.5, 3.0, -4.0)
+    assert private_shapes.surface(shape) == (1.0, 0.25, 0.5, 3.0, -4.0)
     assert private_shapes.filter_of(shape) == shape.filter == (7, 1 << 31, 3)
 
 

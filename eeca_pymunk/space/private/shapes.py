@@ -20,7 +20,7 @@ OF_LIBRARY = (
 REINDEXINGS = 32
 
 
-def numbers(shape: Any) -> tuple[float, float, float, float, float]:
+def surface(shape: Any) -> tuple[float, float, float, float, float]:
     """Radius, elasticity, friction and surface velocity of a shape."""
     c = shape._shape
     velocity = lib.cpShapeGetSurfaceVelocity(c)
