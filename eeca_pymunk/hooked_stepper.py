@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from math import isfinite
 
-from .energy.ledger import AFTER, DAMPED
+from .energy.ledger import BOOK_AFTER, BOOK_DAMPING
 from .impacts.run import ENERGY
 from .layout import WRITTEN
 from .packed_space import TOO_FAR, PackedSpace
@@ -205,7 +205,7 @@ class HookedStepper(PackedSpace):
         positions and velocities are."""
         outcome = self._method.outcome()
         book = outcome[0]
-        if book is not None and not isfinite(book[AFTER]):
+        if book is not None and not isfinite(book[BOOK_AFTER]):
             self._raise_failure(world, dt, ENERGY)
         return outcome
 
@@ -222,8 +222,8 @@ class HookedStepper(PackedSpace):
         """The report of the step with this outcome; `lost` is entered in its book as a loss by damping."""
         book, lock, converged, iterations = outcome
         if lost and book is not None:
-            book[DAMPED] += lost
-            book[AFTER] -= lost
+            book[BOOK_DAMPING] += lost
+            book[BOOK_AFTER] -= lost
         loop = self.event_loop
         unmet = () if converged or loop is None else partial(of_missed, loop.missed, world.bodies.items, world.owner)
         if not status & EVENTS:

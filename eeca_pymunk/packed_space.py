@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 import numpy as np
 
 from .arrays import FloatArray, IntArray
-from .energy.ledger import AFTER
+from .energy.ledger import BOOK_AFTER
 from .errors import NotFiniteError
 from .impacts.run import ENERGY
 from .impacts.scene import EventLoop
@@ -234,7 +234,7 @@ class PackedSpace(Stepper):
         if status == ENERGY:
             book = self._method.outcome()[0]
             assert book is not None  # without a ledger there is no such status
-            raise NotFiniteError(f"the energy of the space would be {book[AFTER]} after dt = {dt}: {TOO_FAR}")
+            raise NotFiniteError(f"the energy of the space would be {book[BOOK_AFTER]} after dt = {dt}: {TOO_FAR}")
         if status == NOT_FINITE:
             world.bodies.check_finite(world.state)
         if status == OVERFLOW:

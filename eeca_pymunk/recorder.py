@@ -11,7 +11,7 @@ from tqdm import tqdm
 
 from .arrays import FloatArray, IntArray
 from .energy.invariants import traces
-from .energy.ledger import LedgerTrace, entries
+from .energy.ledger import LedgerTrace, as_array
 from .events import Events
 from .recording import Recording
 from .report import StepReport
@@ -145,7 +145,7 @@ class _Moments:
 
     def add_step(self, report: StepReport, start: float) -> None:
         """Add the ledger and the impacts of a step that began at the time `start`."""
-        self.total += entries(report.ledger)
+        self.total += as_array(report.ledger)
         self.unmet += not report.converged
         self.events.append(Events.of_report(report, start, self.place))
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from .arrays import FloatArray, IntArray
 from .compiled import table_of
-from .energy.ledger import entries
+from .energy.ledger import as_array
 from .errors import NotFiniteError
 from .events import Events
 from .impacts.run_buffers import RunBuffers
@@ -151,7 +151,7 @@ def roll_in_python(twin: RunningStepper, job: Job, done: Callable[[int], object]
                 for body, (fx, fy, torque) in zip(bodies, job.push[k, t].tolist(), strict=True):
                     body.force, body.torque = (fx, fy), torque
             report = twin.step(job.dt)
-            total += entries(report.ledger)
+            total += as_array(report.ledger)
             job.unmet[k] += not report.converged
             if job.full:
                 parts.append(Events.of_report(report, step * job.dt, place))

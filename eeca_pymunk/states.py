@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .arrays import AnyArray, FloatArray, IntArray
-from .compiled.records import KINDS, numbers
+from .compiled.records import RECORD_TYPES, numbers
 from .impacts.scene import EventLoop
 from .layout import STATE_COLUMNS, WRITTEN
 from .model.joints import OF_STEPS, RATCHET
@@ -191,7 +191,7 @@ def _fingerprint(space: pymunk.Space, loop: EventLoop | None) -> int:
     connected, the kind of the event loop, sizes of records."""
     bodies = {body: i for i, body in enumerate(_everyone(space))}
     hashed: list[object] = [type(loop).__name__, None if loop is None else loop.together]
-    hashed += [(name, kind.itemsize) for name, kind in sorted(KINDS.items())]
+    hashed += [(name, kind.itemsize) for name, kind in sorted(RECORD_TYPES.items())]
     hashed += [body.body_type for body in bodies]
     hashed += [(type(s).__name__, bodies.get(s.body, -1), s.sensor) for s in space.shapes if s.body is not None]
     hashed += [(type(c).__name__, bodies.get(c.a, -1), bodies.get(c.b, -1)) for c in space.constraints]

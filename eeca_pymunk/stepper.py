@@ -13,7 +13,7 @@ from tqdm import tqdm
 
 from .arrays import IntArray
 from .compiled import Table
-from .energy.ledger import Ledger, entries
+from .energy.ledger import Ledger, as_array
 from .report import Details, Outcome, RunReport, StepReport
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ class Stepper(ABC):
         total, impacts, unmet, iterations, lock, done = np.zeros(6), 0, 0, 0, 1.0, 0
         for _ in tqdm(range(steps if dt > 0.0 else 0), desc=type(self).__name__, unit="step", disable=not progress):
             report = self.step(dt)
-            total += entries(report.ledger)
+            total += as_array(report.ledger)
             contacts = report.contacts
             impacts += int(np.count_nonzero((contacts.duration == 0.0) & (report.impulse != 0.0)))
             unmet, iterations, done = unmet + (not report.converged), iterations + report.iterations, done + 1

@@ -38,14 +38,14 @@ def main(arguments: list[str] | None = None) -> int:
         return 2
     folder = (options.out or library_folder()).resolve()
     try:
-        from .builder import Builder, alone, remove_older
+        from .builder import Builder, one_build, remove_older
         from .workers import default_workers
     except ImportError as error:
         print(f"{error}. {advice()}", file=sys.stderr)
         return 2
     if options.object:
         return _object(Builder(cache_folder(), options.workers or default_workers(), True))
-    with alone(folder):
+    with one_build(folder):
         here = folder / library_name()
         if (
             not options.force

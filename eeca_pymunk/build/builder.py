@@ -21,7 +21,7 @@ from ..compiled.frontend.module import Group
 from ..compiled.frontend.parts import Part
 from ..compiled.sources import cache_folder, library_name, sources_hash
 from ..compiled.targets import TARGETS, Target, linker
-from .workers import Workers, gather, import_kernels
+from .workers import Workers, all_parts, import_kernels
 
 _MACHINE_CODE = 150  # weight of machine code of one platform in the progress bar, in parts
 _SMALL = 5000  # bytes of code up to which a kernel is copied into other modules that call it, to be inlined
@@ -67,7 +67,7 @@ class Builder:
                 raise RuntimeError(f"no linker for {name}: pip install ziglang")
         with self._bar, Workers(self.workers) as workers:
             calls, found = self._parts(workers, _MACHINE_CODE * len(names))
-            groups = split(calls, found)
+            groups = two_groups(calls, found)
             check_unchanged()
             built = []
             for name in names:
@@ -103,7 +103,7 @@ class Builder:
         with self.stage("compiling kernels"):
             import_kernels()
             calls = {name: module.entry_call(name) for name in ENTRIES}
-            return calls, gather(calls.values(), workers, lambda done, known: self._show(done, known + after))
+            return calls, all_parts(calls.values(), workers, lambda done, known: self._show(done, known + after))
 
     def _show(self, done: int, total: int) -> None:
         self._bar.total, self._bar.n = total, done
@@ -128,7 +128,7 @@ def check_unchanged() -> None:
         raise RuntimeError("sources were edited during the build: build again")
 
 
-def split(calls: dict[str, Call], found: dict[Call, Part]) -> list[Group]:
+def two_groups(calls: dict[str, Call], found: dict[Call, Part]) -> list[Group]:
     """Two modules, that of joints and that of all other kernels, which are optimised in parallel.
 
     Small kernels of one module that the other one calls are copied into it, to be inlined; a call of a larger kernel is
@@ -199,7 +199,7 @@ def remove_older(path: Path) -> None:
 
 
 @contextmanager
-def alone(folder: Path) -> Iterator[None]:
+def one_build(folder: Path) -> Iterator[None]:
     """Wait until no other process of this machine builds into this folder."""
     try:
         import fcntl

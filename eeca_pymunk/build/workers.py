@@ -74,7 +74,7 @@ class Workers:
         return [one.result() for one in [self.submit(object_of, group, triple, cpu) for group in groups]]
 
 
-def gather(first: Iterable[Call], workers: Workers, progress: Callable[[int, int], None]) -> dict[Call, Part]:
+def all_parts(first: Iterable[Call], workers: Workers, progress: Callable[[int, int], None]) -> dict[Call, Part]:
     """The parts of these calls and of all that they call, from the store or compiled.
 
     Args:

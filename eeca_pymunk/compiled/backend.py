@@ -105,10 +105,10 @@ def choose(build: bool) -> Backend:
     if not wrong:
         if not build:
             return Backend("jit", why or "set by EECA_KERNELS")
-        from .frontend.jit import entries as compiled
+        from .frontend.jit import compiled_entries
 
         try:
-            return Backend("jit", why or "set by EECA_KERNELS", compiled())
+            return Backend("jit", why or "set by EECA_KERNELS", compiled_entries())
         except ImportError as error:
             wrong = str(error)
     if choice == "jit":

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from .records import KINDS
+from .records import RECORD_TYPES
 
 SOURCES = (
     "arrays.py", "layout.py", "transfer.py", "rehearsing.py", "sleepers.py", "world_rows.py", "compiled", "model",
@@ -98,19 +98,19 @@ _CODES = {"f8": "<f8", "i8": "<i8", "i4": "<i4", "u1": "|u1"}
 
 
 @functools.cache
-def split(kind: str) -> tuple[Any, int]:
+def dtype_of(kind: str) -> tuple[Any, int]:
     """The numpy dtype and the dimensions of `f8[2]`; those of `Body[1]`, an array of records, and of `Step`, one."""
     code, _, rest = kind.partition("[")
-    return KINDS[code] if code in KINDS else np.dtype(_CODES[code]), int(rest.rstrip("]") or 0)
+    return RECORD_TYPES[code] if code in RECORD_TYPES else np.dtype(_CODES[code]), int(rest.rstrip("]") or 0)
 
 
 def is_array(kind: str) -> bool:
     """Whether this is the type of an array, a record or a table."""
-    return kind.endswith(("]", "}")) or kind in KINDS
+    return kind.endswith(("]", "}")) or kind in RECORD_TYPES
 
 
 @functools.cache
 def table_fields(name: str) -> tuple[tuple[str, Any, int], ...]:
     """(name, dtype, dimensions) of the arrays of a table."""
     pairs = (field.split(":") for field in TABLES[name].split())
-    return tuple((field, *split(kind)) for field, kind in pairs)
+    return tuple((field, *dtype_of(kind)) for field, kind in pairs)

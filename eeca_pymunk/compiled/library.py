@@ -21,7 +21,7 @@ from typing import Any
 import _cffi_backend
 
 from ..arrays import address_of
-from .entries import ENTRIES, is_array, split
+from .entries import ENTRIES, dtype_of, is_array
 from .sources import sources_hash
 
 NO_MEMORY, NO_SHAPE = -(1 << 63), -(1 << 63) + 1  # returned if an array cannot be created; if shapes do not fit
@@ -41,12 +41,12 @@ class Status(enum.Enum):
     UNKNOWN = "the sources, whose hash it has to carry, cannot be read"
 
 
-def symbol(name: str) -> str:
+def c_name(name: str) -> str:
     """The C name of the entry "room.module:function"."""
     return "eeca_" + name.replace(".", "_").replace(":", "_")
 
 
-def check(name: str, status: int) -> int:
+def result_of(name: str, status: int) -> int:
     """The result of an entry.
 
     Raises:
@@ -69,18 +69,18 @@ class Entry:
         self._last: tuple[tuple[Any, ...], Callable[..., int]] = (), int  # arrays and result of the last `bind`
         self._arrays = [i for i, kind in enumerate(self.kinds) if is_array(kind)]
         # None for tables.
-        self._wanted = [None if (kind := self.kinds[i]).endswith("}") else split(kind) for i in self._arrays]
+        self._wanted = [None if (kind := self.kinds[i]).endswith("}") else dtype_of(kind) for i in self._arrays]
         self._numbers = [i for i, kind in enumerate(self.kinds) if not is_array(kind)]
 
     def __call__(self, *args: Any) -> int:
         if len(args) != len(self.kinds):
             raise TypeError(f"{self.name} takes {len(self.kinds)} arguments, not {len(args)}")
         call = self.bind(*[args[i] for i in self._arrays])
-        return check(self.name, call(*[args[i] for i in self._numbers]))
+        return result_of(self.name, call(*[args[i] for i in self._numbers]))
 
     def bind(self, *arrays: Any) -> Callable[..., int]:
-        """The entry with these arrays: a function of its numbers, whose result `check` takes; that of the last call for
-        the same arrays.
+        """The entry with these arrays: a function of its numbers, whose result `result_of` takes; that of the last
+        call for the same arrays.
 
         Raises:
             TypeError: an array is not of the declared dtype and dimensions, or not C-contiguous.
@@ -130,7 +130,7 @@ def load(path: Path | None) -> tuple[Status, dict[str, Entry], str]:
     entries = {}
     for name in ENTRIES:
         try:
-            address = ctypes.cast(getattr(library, symbol(name)), ctypes.c_void_p).value
+            address = ctypes.cast(getattr(library, c_name(name)), ctypes.c_void_p).value
         except AttributeError:
             return Status.INCOMPLETE, {}, name
         entries[name] = Entry(name, address or 0)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 else:
     _Row = np.void
 
-KINDS: dict[str, np.dtype[Any]] = {}  # dtypes of all records by name
+RECORD_TYPES: dict[str, np.dtype[Any]] = {}  # dtypes of all records by name
 _CODES: dict[Any, Any] = {float: np.float64, int: np.int64, FloatArray: np.float64, IntArray: np.int64}
 
 
@@ -40,7 +40,7 @@ class Record(_Row):
         hints = get_type_hints(cls, include_extras=True)
         fields = [(name, *_code(hints[name])) for name in cls.__annotations__]
         cls.TYPE = np.dtype((cls, np.dtype(fields, align=True)))
-        KINDS[cls.__name__] = cls.TYPE
+        RECORD_TYPES[cls.__name__] = cls.TYPE
         for name, *_ in fields:
             setattr(cls, name, property(itemgetter(name), _setter(name)))
 

@@ -18,7 +18,7 @@ from ..arrays import FloatArray
 
 # Entries of a book: restitution, friction, external, damping, change of the energy in springs (part of the energy
 # after), energy before and after.
-DAMPED, AFTER = 3, 6
+BOOK_DAMPING, BOOK_AFTER = 3, 6
 
 
 @dataclass(frozen=True)
@@ -80,6 +80,6 @@ class LedgerTrace:
             getattr(self, f.name)[moment] = value
 
 
-def entries(one: Ledger | None) -> FloatArray:
+def as_array(one: Ledger | None) -> FloatArray:
     """(6,) fields of a ledger in their order; NaN if there is none."""
     return np.full(6, np.nan) if one is None else np.array(astuple(one))

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import Table, replaced
-from ..compiled.library import check
+from ..compiled.library import result_of
 from ..compiled.records import R, Rows, columns, from_bytes, put, rows
 from ..contacts.memory import forget
 from ..islands.accounting import flag_pairs
@@ -139,7 +139,7 @@ class EventLoop(Remembering):
             call = self._bind_to(reading)
         status = call(dt, gx, gy, half_damping, -1)
         while status <= ROOM_FOR_LISTS:
-            self._grow(check("step", status))
+            self._grow(result_of("step", status))
             bits = FORCES if reading_of(reading).STATES[READ, :, 6:].any() else 0
             status = self._bind_to(reading)(dt, gx, gy, half_damping, bits)
         return status
@@ -149,7 +149,7 @@ class EventLoop(Remembering):
         or `run.ENERGY`."""
         while True:
             call = buffers.call = buffers.call or run.bind(self.table, self.ties, buffers.table, reading)
-            status = check("run", call())
+            status = result_of("run", call())
             if status == ROOM_FOR_IMPACTS:
                 buffers.more_events()
             elif status <= ROOM_FOR_LISTS:

@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import Table
 from ..compiled.layouts import COUNT, Layout, Plan
-from ..compiled.library import check
+from ..compiled.library import result_of
 from ..compiled.records import Rows, rows
 from ..geometry.corners import side_rows
 from ..joints.workspace import JointMemory
@@ -88,7 +88,7 @@ class SceneMemory:
         }  # fmt: skip
         table = self._layout.lay(counts, BODY, SHAPE, LINK, VERTEX, PINNED)
         (begin,) = self._layout.bound(begin_scene)
-        found = check("begin_scene", begin(limit, disks, together, budget, lossy))
+        found = result_of("begin_scene", begin(limit, disks, together, budget, lossy))
         return filled(table, SHAPE, moving, found)
 
     def records(self) -> tuple[memoryview, memoryview, memoryview]:

@@ -55,8 +55,8 @@ def test_older_libraries_are_left_for_a_while(tmp_path: Path) -> None:
 
 @needs_compiler
 def test_every_kernel_is_in_a_module_and_every_call_finds_it() -> None:
-    from eeca_pymunk.build.builder import split
-    from eeca_pymunk.build.workers import Workers, gather, import_kernels
+    from eeca_pymunk.build.builder import two_groups
+    from eeca_pymunk.build.workers import Workers, all_parts, import_kernels
     from eeca_pymunk.compiled.entries import ENTRIES
     from eeca_pymunk.compiled.frontend import module
 
@@ -64,8 +64,8 @@ def test_every_kernel_is_in_a_module_and_every_call_finds_it() -> None:
     names = ("transfer:write_ends", "joints.workspace:plan_components", "islands.accounting:flag_pairs")
     calls = {name: module.entry_call(name) for name in names}
     with Workers(1) as workers:
-        found = gather(calls.values(), workers, lambda done, known: None)
-    groups = split(calls, found)
+        found = all_parts(calls.values(), workers, lambda done, known: None)
+    groups = two_groups(calls, found)
     assert sorted(name for group in groups for name, _ in group.entries) == sorted(names)
     for group, other in ((groups[0], groups[1]), (groups[1], groups[0])):
         assert group.foreign == other.public

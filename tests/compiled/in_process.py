@@ -13,7 +13,7 @@ from eeca_pymunk.compiled.frontend.module import Group, linked, machine_of, opti
 from eeca_pymunk.compiled.frontend.parts import Part, part_of
 from eeca_pymunk.compiled.frontend.types import declared_type
 from eeca_pymunk.compiled.kernels import Kernel
-from eeca_pymunk.compiled.library import Entry, symbol
+from eeca_pymunk.compiled.library import Entry, c_name
 
 
 def call_of(kernel: Kernel[..., Any], kinds: str) -> Call:
@@ -43,4 +43,4 @@ def compiled(kernel: Kernel[..., Any], kinds: str) -> Entry:
     machine = machine_of(llvm.get_process_triple(), llvm.get_host_cpu_name(), here=True)
     optimise(module, machine)
     engine = loaded(bytes(machine.emit_object(module)))
-    return Entry(kernel.name, engine.get_function_address(symbol(kernel.name)), kinds)
+    return Entry(kernel.name, engine.get_function_address(c_name(kernel.name)), kinds)

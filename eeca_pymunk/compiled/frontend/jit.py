@@ -16,14 +16,14 @@ from typing import Any
 import llvmlite.binding as llvm
 
 from ..entries import ENTRIES
-from ..library import Entry, symbol
+from ..library import Entry, c_name
 from ..sources import builder_environment
 
 _engines: list[Any] = []  # they own the code
 
 
 @functools.cache
-def entries() -> Mapping[str, Entry]:
+def compiled_entries() -> Mapping[str, Entry]:
     """All entry points, compiled.
 
     Raises:
@@ -34,7 +34,7 @@ def entries() -> Mapping[str, Entry]:
     if done.returncode:
         raise ImportError(f"{' '.join(call)} failed with exit status {done.returncode}")
     engine = loaded(Path(done.stdout.splitlines()[-1]).read_bytes())
-    return {name: Entry(name, engine.get_function_address(symbol(name))) for name in ENTRIES}
+    return {name: Entry(name, engine.get_function_address(c_name(name))) for name in ENTRIES}
 
 
 def loaded(code: bytes) -> Any:

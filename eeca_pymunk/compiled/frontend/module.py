@@ -15,7 +15,7 @@ from numba.core.registry import cpu_target
 
 from ..entries import ENTRIES
 from ..kernels import kernels
-from ..library import NO_MEMORY, NO_SHAPE, symbol
+from ..library import NO_MEMORY, NO_SHAPE, c_name
 from . import calls, parts
 from .calls import Call
 from .types import declared_type
@@ -48,7 +48,7 @@ def _entry(module: ir.Module, name: str, call: Call, returned: Any) -> None:
     args = call[1]
     kinds = ENTRIES[name].split() if name in ENTRIES else [""] * len(args)
     numbers = [_FLOAT if a == types.float64 else _INT for a in args if not isinstance(a, _POINTED)]
-    function = ir.Function(module, ir.FunctionType(_INT, [_INT.as_pointer(), *numbers]), symbol(name))
+    function = ir.Function(module, ir.FunctionType(_INT, [_INT.as_pointer(), *numbers]), c_name(name))
     builder = ir.IRBuilder(function.append_basic_block())
     words, *given = function.args
     place = 0
@@ -89,7 +89,7 @@ def _entry(module: ir.Module, name: str, call: Call, returned: Any) -> None:
     kernel = ir.Function(module, convention.get_function_type(returned, args), calls.symbol(call))
     status, result = convention.call_function(builder, kernel, returned, args, values)
     with cgutils.if_unlikely(builder, status.is_error):
-        full = builder.icmp_signed("==", status.code, ir.Constant(status.code.type, 1 + parts.NO_MEMORY))
+        full = builder.icmp_signed("==", status.code, ir.Constant(status.code.type, 1 + parts.MEMORY_STATUS))
         builder.ret(builder.select(full, ir.Constant(_INT, NO_MEMORY), ir.Constant(_INT, NO_SHAPE)))
     if returned == types.none:
         builder.ret(ir.Constant(_INT, 0))
@@ -134,7 +134,7 @@ def linked(group: Group, calls: Mapping[str, Call] | None = None) -> Any:
     whole.link_in(llvm.parse_assembly(header + runtime))
     for one in group.parts:
         whole.link_in(llvm.parse_bitcode(one))
-    seen = {symbol(name) for name, _ in group.entries}
+    seen = {c_name(name) for name, _ in group.entries}
     for one in (*whole.functions, *whole.global_variables):
         if not one.is_declaration and one.name not in seen:
             if one.name in group.public:

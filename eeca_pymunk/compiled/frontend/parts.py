@@ -37,7 +37,8 @@ _OPTIONS = {
     "fastmath": False, "error_model": "numpy", "boundscheck": False, "nogil": True, "no_cpython_wrapper": True,
     "no_cfunc_wrapper": True,
 }  # fmt: skip
-NO_MEMORY, NO_SHAPE = 1, 2  # statuses of kernels, added to numba's own; `library.check` has those of entries
+# Statuses of kernels, added to numba's own; those of entries are in `library.py`.
+MEMORY_STATUS, SHAPE_STATUS = 1, 2
 
 
 class Part:
@@ -75,7 +76,7 @@ class _Library(codegen.JITCodeLibrary):
 
 def _raise(self: Any, builder: Any, exc: Any, *_: Any, **__: Any) -> None:
     """In the place of numba's `return_user_exc`: return a status, without the exception."""
-    code = NO_MEMORY if exc is not None and issubclass(exc, MemoryError) else NO_SHAPE
+    code = MEMORY_STATUS if exc is not None and issubclass(exc, MemoryError) else SHAPE_STATUS
     self.check_try_status(builder)
     self._return_errcode_raw(builder, ir.Constant(callconv.errcode_t, callconv.RETCODE_USEREXC.constant + code))
 

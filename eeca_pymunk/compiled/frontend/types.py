@@ -16,7 +16,7 @@ from numba.core.typing.templates import AttributeTemplate
 from numba.extending import infer_getattr, intrinsic, models, register_model
 from numba.np.numpy_support import from_dtype
 
-from ..entries import is_array, split, table_fields
+from ..entries import dtype_of, is_array, table_fields
 from ..kernels import Compilable, Fetch
 from ..tables import WORDS, Opener
 
@@ -85,7 +85,7 @@ def declared_type(kind: str) -> Any:
     if kind.endswith("}"):
         return types.Array(types.int64, 1, "C")
     if is_array(kind):
-        dtype, ndim = split(kind)
+        dtype, ndim = dtype_of(kind)
         return types.Array(from_dtype(dtype), ndim, "C") if ndim else from_dtype(dtype)
     return {"f8": types.float64, "i8": types.int64, "bool": types.boolean}[kind]
 
