@@ -38,6 +38,8 @@ class Remembering:
 
     Attributes:
         log: the memory of LOG; another object once that is elsewhere.
+        own, fresh: after `keep_fresh`, the memory of the arrays that steps change (`memory.OF_SCENE`), as integers, and
+            a copy of it from before the first step, to which `reset` returns.
     """
 
     jointed: bool
@@ -108,7 +110,7 @@ class Remembering:
         """Before the first step: store what steps change, apart from poses and velocities, for `reset_to`."""
         self.own = self._gather()
         self.fresh: IntArray = self.own.copy()
-        self._first, self._listed = self.table, None
+        self._first, self._listed = self.table, None  # the table whose values `fresh` has
 
     @property
     def listed(self) -> bool:
