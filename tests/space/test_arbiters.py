@@ -158,3 +158,15 @@ def test_a_body_that_was_just_added_has_its_contacts() -> None:
     stepper.step(DT)
     for body in (*bodies, new):
         assert sum(impulse.y for impulse, *_ in seen(body)) == pytest.approx(2.0 * G * DT, rel=1e-9)
+
+
+def test_a_body_that_has_become_kinematic_since_has_the_impulse_of_the_step() -> None:
+    """Its effective mass is infinite, so that none of its energy is lost."""
+    space, (_, falling) = scene(height=0.6)
+    stepper = ep.EECA(space)
+    falling.velocity = (0.0, -20.0)
+    stepper.step(DT)
+    ((impulse, lost, *_),) = seen(falling)
+    falling.body_type = pymunk.Body.KINEMATIC
+    assert lost > 0.0
+    assert [found[:2] for found in seen(falling)] == [(impulse, 0.0)]

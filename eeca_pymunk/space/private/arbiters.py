@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -87,7 +88,7 @@ def make_arbiter(
     """An arbiter, in no space, of two shapes that touched at these points (1 or 2) with this impulse on b.
 
     The normal is a unit vector from a to b. `nMass` and `tMass` are the effective masses of a point along the normal
-    and the tangent.
+    and the tangent; infinite if no body is dynamic any more, so that no energy was lost.
     """
     nx, ny = normal
     contacts, arbiter = ffi.new("cpContact[]", len(points)), ffi.new("cpArbiter *")
@@ -97,8 +98,9 @@ def make_arbiter(
         # Arms of the normal and of the tangential impulse.
         n_arm_a, n_arm_b = (px - xa) * ny - (py - ya) * nx, (px - xb) * ny - (py - yb) * nx
         t_arm_a, t_arm_b = (px - xa) * nx + (py - ya) * ny, (px - xb) * nx + (py - yb) * ny
-        contact.nMass = 1.0 / (ma + mb + ia * n_arm_a * n_arm_a + ib * n_arm_b * n_arm_b)
-        contact.tMass = 1.0 / (ma + mb + ia * t_arm_a * t_arm_a + ib * t_arm_b * t_arm_b)
+        moves = ma + mb > 0.0
+        contact.nMass = 1.0 / (ma + mb + ia * n_arm_a * n_arm_a + ib * n_arm_b * n_arm_b) if moves else math.inf
+        contact.tMass = 1.0 / (ma + mb + ia * t_arm_a * t_arm_a + ib * t_arm_b * t_arm_b) if moves else math.inf
     body_a, body_b = a.body, b.body
     assert body_a is not None
     assert body_b is not None
