@@ -80,19 +80,20 @@ def carried_along(isle: Island, row: Row, h: float) -> tuple[float, float]:
 @nonallocating
 def follow_wall(isle: Island, ROWS: Rows[Row], m: int, count: int, NOW: FloatArray, h: float) -> None:
     """Let `count` rows from m on, of a body and a wall that turns, know the geometry of the start, NOW (2, 5): normal,
-    point, gap of each point."""
+    point, gap of each point. h: 0 for walls that are disks, whose spin does not turn the tangent."""
     POSE, V, a, b = isle.POSE, isle.V, ROWS[m].a, ROWS[m].b
-    swing, mean = carried_along(isle, ROWS[m], h)
-    nx, ny, px, py = NOW[0, 0], NOW[0, 1], NOW[0, 2], NOW[0, 3]
-    slid = slip_rate(ROWS[m], V) + swing - gap_rate(POSE, V, a, b, -ny, nx, px, py) + mean
-    turn = h * V[a if isle.IM[a] == 0.0 else b, 2]
+    swing, slid, unsure = 0.0, 0.0, 0.0
+    if h > 0.0:
+        swing, mean = carried_along(isle, ROWS[m], h)
+        nx, ny, px, py = NOW[0, 0], NOW[0, 1], NOW[0, 2], NOW[0, 3]
+        slid = slip_rate(ROWS[m], V) + swing - gap_rate(POSE, V, a, b, -ny, nx, px, py) + mean
+        unsure = abs(0.5 * h * V[a if isle.IM[a] == 0.0 else b, 2] * swing) + 2.0 * abs(mean)
     for z in range(count):
         row = ROWS[m + z]
         u = gap_rate(POSE, V, a, b, NOW[z, 0], NOW[z, 1], NOW[z, 2], NOW[z, 3])
         row.turned = max(u - normal_rate(row, V), 0.0)
         row.surface -= slid
-        row.swung = 0.5 * swing
-        row.unsure = abs(turn * row.swung) + 2.0 * abs(mean)
+        row.swung, row.unsure = 0.5 * swing, unsure
 
 
 @kernel
@@ -169,6 +170,7 @@ def gather(
             place_row(row, THEN[z, 2], THEN[z, 3], centre, isle.IM, isle.II)
             row.surface = row.nx * sy - row.ny * sx
         if ahead and turning:
-            follow_wall(isle, ROWS, m, count, NOW, h)
+            edge = LINK[s if isle.IM[a] == 0.0 else r].vertices > 1
+            follow_wall(isle, ROWS, m, count, NOW, h if edge else 0.0)
         m += count
     return m

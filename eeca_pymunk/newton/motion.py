@@ -31,7 +31,7 @@ def size_up(J: Joints, s: int, h: float) -> float:
     """Complete the scratch of the bodies of component s: roots of mobilities, cosine and sine of the angle.
 
     Their pose, velocity and mobility are there. Returns the component's size, the length by which errors of its joints
-    are measured: its largest coordinate, way in h or anchor, as round-off is relative to these.
+    are measured: its largest coordinate, way in h, anchor or radius of gyration, as round-off is relative to these.
     """
     C, local, length = J.COMPONENT[s], J.LOCAL, 0.0
     for i in range(C.end_body - C.first_body):
@@ -41,6 +41,7 @@ def size_up(J: Joints, s: int, h: float) -> float:
         local[i].cos, local[i].sin = np.cos(local[i].pose[2]), np.sin(local[i].pose[2])
         for c in range(2):
             length = max(length, abs(local[i].pose[c]), abs(h * local[i].v0[c]))
+        length = max(length, local[i].root[0] * local[i].unroot[2])
     for k in range(C.first_joint, C.end_joint):
         joint = J.JOINT[J.COUPLING[k].joint]
         for c in range(2):

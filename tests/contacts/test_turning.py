@@ -115,3 +115,26 @@ def test_what_a_container_presses_into_its_corners_stays_inside(placed: tuple[Pl
         for body in bodies:
             x, y = box.world_to_local(body.position)
             assert max(abs(x - 8.0 * unit), abs(y)) <= HALF * unit
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+@pytest.mark.parametrize("dt", [0.001, 0.01])
+def test_what_lies_on_rollers_turns_with_their_surfaces(dt: float, unit: float) -> None:
+    """Two rollers of radius 1 that turn with 10 rad/s, and between them a disk of radius .5 under gravity: it turns
+    with -20 rad/s, for any step. The spin of a disk turns neither its normals nor its tangents."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -10.0 * unit
+    for x in (-1.1, 1.1):
+        roller = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+        roller.position, roller.angular_velocity = (x * unit, 0.0), 10.0
+        space.add(roller, pymunk.Circle(roller, unit))
+    disk = pymunk.Body(1.0, 0.125 * unit * unit)
+    disk.position, disk.angular_velocity = (0.0, math.sqrt(1.5**2 - 1.1**2) * unit), -20.0
+    space.add(disk, pymunk.Circle(disk, 0.5 * unit))
+    for shape in space.shapes:
+        shape.friction = 1.0
+    stepper = ep.EECA(space)
+    for _ in range(50):
+        stepper.step(dt)
+    assert disk.angular_velocity == pytest.approx(-20.0, rel=1e-9)
+    assert abs(disk.position.x) <= 1e-9 * unit

@@ -303,3 +303,18 @@ def test_a_slow_wall_takes_resting_bodies_along_without_gravity(joined: bool, pu
     assert first.position.x + 0.2 * unit == pytest.approx(wall.position.x, abs=1e-6 * unit)
     assert first.velocity.x == pytest.approx(-0.01 * unit, rel=1e-9)
     assert second.velocity.x == pytest.approx(-0.01 * unit if joined else 0.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("place", [0.0, 1e-119, 1e-200])
+def test_a_wheel_pinned_at_its_middle_at_the_origin_holds_what_it_carries(place: float) -> None:
+    """Errors of joints are measured by the size of the component, which has a radius of gyration even where
+    coordinates, ways and anchors are 0 or what round-off has left of them."""
+    space, wheel, box = pymunk.Space(), pymunk.Body(100.0, 100.0), pymunk.Body(1.0, 1.0 / 6.0)
+    space.gravity = 0.0, -10.0
+    wheel.position, box.position = (place, 0.0), (0.0, 1.5)
+    space.add(wheel, pymunk.Poly.create_box(wheel, (2.0, 2.0)), box, pymunk.Poly.create_box(box, (1.0, 1.0)))
+    space.add(pymunk.PivotJoint(space.static_body, wheel, (0.0, 0.0), (0.0, 0.0)))
+    stepper = ep.EECA(space)
+    for _ in range(10):
+        assert stepper.step(0.02).converged
+    assert box.position.y == pytest.approx(1.5, abs=1e-9)
