@@ -3,8 +3,9 @@
 Forces of an interval are right for the whole of it: a soft landing pushes before the shapes touch. Cut after s, an
 impulse J with the mean relative velocity u has lost D = -J.u, and has given energy if that is negative. Then the island
 is solved again, from the start of its interval to the cut, whose impulses lose energy, or none. Where that is no
-interval (bodies would move too far), all impulses are scaled by one q instead. With E = sum J.u > 0 and the energy C =
-sum m w^2 / 2 of the changes of velocity w that they cause, they give q (E - C) + q^2 C, which is 0 for q = 1 - E / C.
+interval (bodies would move too far, or too far from the paths on which impacts were predicted), all impulses are scaled
+by one q instead. With E = sum J.u > 0 and the energy C = sum m w^2 / 2 of the changes of velocity w that they cause,
+they give q (E - C) + q^2 C, which is 0 for q = 1 - E / C.
 """
 
 from __future__ import annotations
@@ -16,8 +17,9 @@ from ..compiled import inlined, kernel, nonallocating
 from ..contacts.counts import count_solve
 from ..contacts.interval import make_contacts, step_island
 from ..contacts.single import move_to
+from ..geometry.flight import norm
 from ..model.contacts import ENDED
-from ..model.parameters.intervals import INTERVAL_RETRY, REPAY_ROUND_OFF
+from ..model.parameters.intervals import INTERVAL_DEPTH, INTERVAL_RETRY, REPAY_ROUND_OFF
 from ..model.scene import Scene
 from ..pairs.lists import mark_pair
 from ..rows.energy import scale_to_lose
@@ -58,6 +60,14 @@ def pairs_of(A: Scene, first: int, end: int) -> IntArray:
             found[p, 0], found[p, 1] = one.a, one.b
             p += 1
     return found[:p]
+
+
+@inlined
+def strays(A: Scene, i: int, x: float, y: float, turn: float, s: float) -> bool:
+    """Whether a change (x, y, turn) of its acceleration over a time s takes body i so far from its path that it may be
+    in others: impacts were predicted on that path only."""
+    extent = A.BODY[i].extent
+    return bool(0.5 * (norm(x, y) + abs(turn) * extent) * s * s > INTERVAL_DEPTH * extent)
 
 
 @nonallocating
@@ -111,7 +121,12 @@ def repay(A: Scene, root: int, t: float) -> None:
     m = step_island(A, isle, contacts, n, s, sweeps_of(n, start), 0.0, owed, 0.0)
     A.COUNT.direct += OUT[0].direct
     count_solve(A, n, len(found), m, OUT[0])
-    if m < 0 or m > end - first or times_too_long(A, isle, contacts, m, s) > INTERVAL_RETRY:
+    far = m < 0 or m > end - first or times_too_long(A, isle, contacts, m, s) > INTERVAL_RETRY
+    for q in range(n if not far else 0):
+        body = A.BODY[MINE[q]]
+        x, y = (VN[q, 0] - body.vx) / s - body.ax, (VN[q, 1] - body.vy) / s - body.ay
+        far = far or strays(A, MINE[q], x, y, (VN[q, 2] - body.spin) / s - body.angular, s)
+    if far:
         scale_impulses(A, root, t)
         return
     for c in range(first, end):
