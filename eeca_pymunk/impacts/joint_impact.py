@@ -9,11 +9,12 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, zeros
+from ..contacts.counts import spend
 from ..contacts.works import carried, gained_energy, kinetic_energy
 from ..islands.building import comes_to_rest
 from ..islands.local import clear_places, set_places
 from ..islands.membership import jointed, members
-from ..jointed.columns import fill_free, make_columns, weigh
+from ..jointed.columns import count_operations, fill_free, make_columns, weigh
 from ..jointed.ends import shorten, under_way
 from ..jointed.groups import find_groups
 from ..jointed.meet import end_before, meet
@@ -22,7 +23,7 @@ from ..model.contacts import SOLVED, JointedProblem, Row, Solved
 from ..model.joints import Joints
 from ..model.parameters.events import EVENT_LOOKS
 from ..model.parameters.impulses import WEDGED
-from ..model.parameters.joints import CLOSES, IMPACT_ENERGY, IMPACT_LIMITS, SOLUTION_WORK
+from ..model.parameters.joints import CLOSES, IMPACT_ENERGY, IMPACT_LIMITS
 from ..model.scene import Scene
 from ..rows.blocks import TRUNCATED, close_block, solve_block
 from ..rows.bounded import room_for_rows
@@ -151,7 +152,6 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
         WHO[q] = A.BLOCK[q]
     groups = find_groups(WHO, block.IM, J)
     C = make_columns(groups, ROWS, rows)
-    J.PROGRESS.effort += SOLUTION_WORK * C.AT[rows]
     fill_free(groups, C, ROWS, block.IM, block.II, rows)
     BEFORE = V.copy()
     problem = JointedProblem(ROWS, C, room_for_rows(0, 0), rows)
@@ -168,13 +168,10 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
         copy(V, BEFORE)
         L[:] = 0.0
     if OUT[0].residual > WEDGED * aim(ROWS, rows) and rubs(ROWS, rows):
-        sweeps, direct = OUT[0].sweeps, OUT[0].direct
         slip_freely(ROWS, rows)
         L[:] = 0.0
         velocities(problem, L, FITTED, V)
         status = solve_block(problem, L, V, owed, False, OUT)
-        OUT[0].sweeps += sweeps
-        OUT[0].direct += direct
     exact, fastest = conserves(ROWS, rows), aim(ROWS, rows)
     for q in range(n):
         fastest = max(fastest, math.hypot(FITTED[q, 0], FITTED[q, 1]))
@@ -196,6 +193,8 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     bear(A, J, block, groups, L, BEFORE if fits else 0.0 * BEFORE, t)
     lost = OUT[0].restitution + OUT[0].friction - owed
     finish(A, block, n, m, L, OUT, status, t)
+    spend(A, n, m, 0.0)  # besides what its solutions take
+    count_operations(J, C)
     A.STATE[i].version += 1
     if A.BODY[j].inv_mass > 0.0:
         A.STATE[j].version += 1

@@ -51,7 +51,6 @@ def finish(A: Scene, block: Block, n: int, m: int, L: FloatArray, OUT: Rows[Solv
                 block.POINTS[z, 0], block.POINTS[z, 1], L[z, 0] / ROWS[z].k_n, math.nan,
             )  # fmt: skip
             COUNT.logged += 1
-    spend(A, n, m, looks_of(len(ROWS), OUT[0]))
     COUNT.blocks += 1 if m > 1 else 0
 
 
@@ -85,6 +84,7 @@ def strike(A: Scene, a: int, b: int, t: float, rest: bool) -> int:
     status = solve_block(problem, L, block.V, owed, piled, OUT)
     lost = OUT[0].restitution + OUT[0].friction - owed
     finish(A, block, n, m, L, OUT, status, t)
+    spend(A, n, m, looks_of(rows, OUT[0]))
     return rejoin(A, a, b, t, n, rest, lost)
 
 

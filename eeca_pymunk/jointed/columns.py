@@ -42,6 +42,13 @@ def make_columns(groups: Groups, ROWS: Rows[Row], m: int) -> Columns:
 
 
 @nonallocating
+def count_operations(J: Joints, C: Columns) -> None:
+    """Add the operations that solutions with columns have taken to the work of the step."""
+    J.PROGRESS.effort += C.WORK[0]
+    C.WORK[0] = 0.0
+
+
+@nonallocating
 def fill_free(groups: Groups, C: Columns, ROWS: Rows[Row], IM: FloatArray, II: FloatArray, m: int) -> None:
     """The columns' entries on bodies that no joint holds."""
     for i in range(m):

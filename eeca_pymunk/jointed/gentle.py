@@ -12,7 +12,7 @@ from ..model.scene import Scene
 from ..rows.gentle import sweep_gently
 from .advance import Interval, advance, align
 from .bounded_rows import with_bounded
-from .columns import fill_free, weigh
+from .columns import count_operations, fill_free, weigh
 
 
 @kernel
@@ -29,6 +29,7 @@ def solve_gently(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Boun
     V, BOTH = interval.motion.MEAN.copy(), with_bounded(B, L, m)
     problem = JointedProblem(ROWS, C, B, m)
     sweep_gently(problem, BOTH, V)
+    count_operations(J, C)
     for i in range(m):
         L[i, 0], L[i, 1] = BOTH[i, 0], BOTH[i, 1]
     advance(A, J, interval, L, B, False, np.empty((0, 3)))

@@ -30,6 +30,7 @@ from ..model.parameters.joints import (
     CHORD,
     COLUMN_CONTACTS,
     COLUMN_SWEEPS,
+    CONTACT_WORK,
     GUESS_SPEED,
     JOINTS_NEAR,
     OUTER,
@@ -44,7 +45,6 @@ from ..model.parameters.joints import (
     PRESS_SWEEPS_FEW,
     PRESS_WORK_ROUND_OFF,
     PRESS_WORK_TAUT,
-    SOLUTION_WORK,
 )
 from ..model.scene import Scene
 from ..rows.build import conserves, rates, rubs
@@ -54,7 +54,7 @@ from ..rows.inplace import copy
 from ..rows.laws import give_slips, solve_columns, solve_wedged, take_slips
 from .advance import Interval, advance, advance_aligned, align, farthest_apart
 from .bounded_rows import make_bounded, settle_bounded, with_bounded
-from .columns import fill_free, leave_out, weigh
+from .columns import count_operations, fill_free, leave_out, weigh
 from .gentle import solve_gently
 from .groups import Groups, hangs
 from .losses import lock, lost, work_error
@@ -153,6 +153,7 @@ def press(
     for outer in range(rounds):
         if J.PROGRESS.effort > J.PROGRESS.share:
             break
+        J.PROGRESS.effort += CONTACT_WORK * (m + 2)
         anew = outer % CHORD == 0
         advance(A, J, interval, L, B, anew, FORESEEN if outer > 0 else UNKNOWN)
         bent = align(interval, True) if free else 0.0
@@ -181,7 +182,6 @@ def press(
             anew = True
         if anew and free:
             fill_free(groups, C, ROWS, isle.IM, isle.II, m)
-        J.PROGRESS.effort += SOLUTION_WORK * C.AT[m] if anew else 0.0
         if outer == 0:
             most_pull = accelerations(interval, L, B, EFFECT)
             if most_pull * h > GUESS_SPEED * quick and clear(L):
@@ -201,13 +201,13 @@ def press(
             NOW[i] = B.ROWS[i].now
         leave_out(C, L, m, FORESEEN)
         BOTH = with_bounded(B, L, m)
-        C.WORK[0], work = 0.0, J.PROGRESS.share - J.PROGRESS.effort
+        work = J.PROGRESS.share - J.PROGRESS.effort
         worst = solve_columns(problem, BOTH, FORESEEN, fine, COLUMN_SWEEPS if anew else 0, most, work)
         if worst > WEDGED * scale and m <= COLUMN_CONTACTS and rubs(ROWS, m):
             worst = solve_wedged(problem, BOTH, FORESEEN, fine, most, work)
         if not exactly:
             stop_at_walls(A, problem, n, BOTH, FORESEEN)
-        J.PROGRESS.effort += C.WORK[0]
+        count_operations(J, C)
         for i in range(m):
             L[i, 0], L[i, 1] = BOTH[i, 0], BOTH[i, 1]
         converged = worst <= 10.0 * max(fine, min(agree, AGREE * scale))

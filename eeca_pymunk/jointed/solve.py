@@ -25,7 +25,7 @@ from ..model.joint_steps import ELASTIC
 from ..model.joints import Joints
 from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, LARGE_ISLAND, UNSOLVED_PART
-from ..model.parameters.joints import COLUMN_CONTACTS, INTERVAL_SHARE
+from ..model.parameters.joints import COLUMN_CONTACTS, INTERVAL_SHARE, INTERVAL_WORK
 from ..model.scene import Scene
 from ..model.step import AGAIN, CONTACTS, DONE, PUSHES_FULL, SPENT
 from ..rows.bounded import room_for_rows
@@ -114,6 +114,7 @@ def try_interval(A: Scene, J: Joints, root: int, t: float, h: float, last: bool)
     found = pairs_within(A, root, t, A.PAR.planned - t, lossy(A, root), MINE)
     p = len(found)
     spend(A, n, 2 * p, 0.0)  # besides what joints take
+    J.PROGRESS.effort += INTERVAL_WORK * (p + 2)
     if p == 0 and whole:
         clear_places(A, MINE)
         far = begin_alone(A, J, root, t, h, last)

@@ -20,7 +20,7 @@ from ..model.parameters.joints import (
     REDUNDANT_PASSES,
 )
 from ..newton.entries import acts
-from ..newton.systems import apply, back, effort, factorise, first_iterate, linearise
+from ..newton.systems import apply, back, factorise, first_iterate, linearise
 from .bounds import gap, gap_rate, has_bound
 
 
@@ -54,7 +54,6 @@ def correct(W: Workspace, what: int) -> None:
             system = factorise(W, what, 2.0, 1.0, 0.0, system, epsilon)
         if system < 0:
             return
-        W.J.PROGRESS.effort += effort(system, fresh, 0, W.joints, component)
         back(W, system, CONDENSED_PASSES, W.J.RIGHT)
         apply(W, what)
         if what == SPEEDS:

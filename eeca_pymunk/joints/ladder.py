@@ -16,10 +16,18 @@ from __future__ import annotations
 from ..compiled import nonallocating
 from ..model.joint_steps import ELASTIC, EXACT, HALVED, LINEAR
 from ..model.joints import GIVES_WAY, ROTARY_SPRING, SPRING, Workspace
-from ..model.parameters.joints import COMPONENT_BUDGET, ELASTIC_PARTS, HASTE, JOINT_GAIN, LEAST_SOLUTIONS, REPAID
+from ..model.parameters.joints import (
+    COMPONENT_BUDGET,
+    CONDENSED_PASSES,
+    ELASTIC_PARTS,
+    HASTE,
+    JOINT_GAIN,
+    LEAST_SOLUTIONS,
+    REPAID,
+)
+from ..newton.effort import work_of_iteration
 from ..newton.motion import go_back
 from ..newton.solve import drop_impulses
-from ..newton.systems import effort
 from .foresight import foretell, forget, recalls, remember
 from .ledger import clear_ledger
 from .limits import step_with_limits
@@ -53,9 +61,10 @@ def gives_way(W: Workspace) -> bool:
 def limit_work(W: Workspace) -> None:
     """Set the share of the work of a step of the scene that this component may take: PROGRESS.limit and hurry."""
     component, progress = W.J.COMPONENT[W.s], W.J.PROGRESS
+    one = work_of_iteration(component.system, CONDENSED_PASSES, component.boxes, W.joints, component)
     # Components whose share of the work is spent can still be solved where that is easy.
-    least = LEAST_SOLUTIONS * effort(component.system, True, component.boxes, W.joints, component)
-    progress.limit = progress.effort + max((progress.budget - progress.effort) * COMPONENT_BUDGET, least)
+    share = max((progress.budget - progress.effort) * COMPONENT_BUDGET, LEAST_SOLUTIONS * one)
+    progress.limit = progress.effort + share
     progress.hurry = progress.effort + HASTE * (progress.limit - progress.effort)
 
 

@@ -28,13 +28,14 @@ from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.joints import BOXED, GROOVE, Coupling, Workspace
 from ..model.parameters.joints import (
+    BOX_COLUMN_WORK,
     BOX_REDUNDANT,
     BOX_RESIDUAL,
     BOX_ROUNDS,
     BOX_SWEEPS,
+    BOX_WORK,
     DISC_WORK,
     MOTOR_OFF,
-    SWEEP_WORK,
 )
 from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, on_disc
 from .condensed import factor, substitute
@@ -234,7 +235,9 @@ def bound_impulses(W: Workspace, n: int, h: float, fresh: bool) -> None:
     w = STRIDE * component.dual_size + (n + 1) * (component.unknowns + component.impulses)
     u = w + 3 * n * n
     measure_boxes(W, w, u, n, h, fresh)
-    W.J.PROGRESS.effort += (SWEEP_WORK * n * n + DISC_WORK * discs(W.J.MORE, u, n)) * solve_boxes(W.J.MORE, w, u, n)
+    sweep = BOX_WORK * n * n + DISC_WORK * discs(W.J.MORE, u, n)
+    W.J.PROGRESS.effort += sweep * solve_boxes(W.J.MORE, w, u, n)
+    W.J.PROGRESS.effort += BOX_COLUMN_WORK * n * (component.unknowns + component.impulses)
     apply_boxes(W, u, n)
 
 

@@ -23,7 +23,7 @@ from ..model.parameters.joints import (
 from .boxes import bound_impulses, boxed_rows, rows_of, unit_impulse
 from .dual import STRIDE, refresh
 from .motion import move, settle
-from .systems import apply, back, effort, factorise, first_iterate, linearise
+from .systems import apply, back, factorise, first_iterate, linearise
 
 
 @nonallocating
@@ -140,7 +140,6 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
         elif system == DUAL:
             refresh(W, True)
         passes = 1 if give > 0.0 or not fresh else CONDENSED_PASSES - 1 if lasting else CONDENSED_PASSES
-        progress.effort += effort(system, fresh, boxes, W.joints, component)
         iterate(W, STEP, system, passes, boxes, h, fresh)
         ready = lasting
     return False
@@ -159,7 +158,6 @@ def solve_linearly(W: Workspace, h: float, length: float) -> bool:
     if system < 0:
         return False
     boxes = boxed_rows(link, W.joints)
-    W.J.PROGRESS.effort += effort(system, True, boxes, W.joints, component)
     iterate(W, LINEAR_STEP, system, CONDENSED_PASSES, boxes, h, True)
     for i in range(W.bodies):
         for c in range(3):

@@ -24,14 +24,15 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import inlined, nonallocating
+from ..compiled import inlined
 from ..model.joint_steps import LINEAR_STEP, NO_BEND, POSES, SPEEDS, STEP
-from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, WHOLE, Component, Workspace
-from ..model.parameters.joints import CONDENSED_PASSES, FACTOR_BAND, REFINEMENT_WORK, ROW_WORK, STIFFEST
+from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, WHOLE, Workspace
+from ..model.parameters.joints import STIFFEST
 from .banded import back_banded, factor_banded
 from .boxes import leave_box
 from .condensed import back_condensed, factor, put_row
 from .dual import back_dual, factor_dual
+from .effort import work_of_factors, work_of_rows, work_of_solution
 from .entries import acts, along, idle, put_free, put_idle, put_stiffness, scale_rows
 from .motion import move
 from .rows import joint_rows, start_joint
@@ -94,6 +95,7 @@ def assemble(W: Workspace, what: int, h: float, give: float, first: bool, system
     Returns how far rows are from their targets, over the size of the component; for SPEEDS, the worst G v over it.
     """
     hinge, link, local, matrix = W.J.HINGE, W.link, W.J.LOCAL, W.J.MATRIX
+    W.J.PROGRESS.effort += work_of_rows(W.joints)
     worst = 0.0
     still = what in (POSES, SPEEDS)
     slopes = what == STEP
@@ -169,6 +171,7 @@ def decompose(W: Workspace, what: int, system: int, epsilon: float, give: float)
     there are none."""
     matrix = W.J.MATRIX
     size, band = W.J.COMPONENT[W.s].unknowns, W.J.COMPONENT[W.s].band
+    W.J.PROGRESS.effort += work_of_factors(system, W.J.COMPONENT[W.s])
     if system == CONDENSED:
         return factor(matrix, size, band)
     if system == DUAL:
@@ -199,6 +202,7 @@ def back(W: Workspace, system: int, passes: int, right: FloatArray) -> None:
     """Solve with the factors of `decompose` in place of `right`: changes of velocities and of impulses, scaled.
     passes: of `condensed`, whose scratch is the second half of `right`."""
     size, band = W.J.COMPONENT[W.s].unknowns, W.J.COMPONENT[W.s].band
+    W.J.PROGRESS.effort += work_of_solution(system, passes, W.joints, W.J.COMPONENT[W.s])
     if system == CONDENSED:
         back_condensed(W, passes, size, band, W.J.MATRIX, right, len(right) - size)
     elif system == DUAL:
@@ -221,17 +225,3 @@ def apply(W: Workspace, what: int) -> None:
         for r in range(W.link[k].rows):
             impulse = W.J.HINGE[k].pushed if what in (POSES, SPEEDS) else W.J.HINGE[k].lam
             impulse[r] += W.J.RIGHT[W.link[k].first_row + r] * W.J.HINGE[k].scale[r]
-
-
-@nonallocating
-def effort(system: int, fresh: bool, boxes: int, joints: int, component: Component) -> float:
-    """About how many operations an iteration takes: rows, factors (if `fresh`), solutions, with as many again for the
-    columns of `boxes` boxed rows; of a condensed system each is refined by all rows."""
-    size, band = (component.dual_size, component.dual_band) if system == DUAL else (component.unknowns, component.band)
-    turns = 1 + boxes if fresh else 1
-    # Wide bands take several numbers at once.
-    factors = (2.7 if system == WHOLE else 0.5 if band >= FACTOR_BAND else 2.0) * size * band * band
-    one = 5.8 * size * (band + 4)
-    if system == CONDENSED:
-        one = CONDENSED_PASSES * (one + REFINEMENT_WORK * joints)
-    return float(ROW_WORK * joints + (factors if fresh else 0.0) + turns * one)

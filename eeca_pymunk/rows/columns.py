@@ -11,7 +11,8 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import inlined, kernel, nonallocating
 from ..model.contacts import Columns, JointedProblem, Problem
-from .bounded import SINGLE, bounded_rate, push_row, room_for_rows, sweep_bounded
+from ..model.parameters.joints import DISC_WORK, SWEEP_ENTRY_WORK, SWEEP_WORK
+from .bounded import FIRST_OF_DISC, SINGLE, bounded_rate, push_row, room_for_rows, sweep_bounded
 from .build import normal_rate, tangent_rate
 from .coulomb import coulomb, limited_slip
 
@@ -131,10 +132,21 @@ def breach(problem: JointedProblem, L: FloatArray, V: FloatArray) -> float:
 
 
 @nonallocating
+def work_of_sweep(problem: JointedProblem) -> float:
+    """Operations of a sweep over contacts and bounded rows."""
+    C, D, m = problem.C, problem.D, problem.m
+    work = SWEEP_WORK * (m + D.USED[0]) + SWEEP_ENTRY_WORK * (C.AT[m] + D.AT[D.USED[0]])
+    for i in range(D.USED[0]):
+        work += DISC_WORK if D.ROWS[i].part == FIRST_OF_DISC else 0.0
+    return float(work)
+
+
+@nonallocating
 def sweep_jointed(problem: JointedProblem, L: FloatArray, V: FloatArray) -> float:
     """One sweep over the contacts as `sweeps.sweep_free`, and over the bounded rows, whose impulses are L[m:, 0];
     returns the largest change of a velocity."""
     ROWS, C, m = problem.ROWS, problem.C, problem.m
+    C.WORK[0] += work_of_sweep(problem)
     worst = 0.0
     for i in range(m):
         if C.OUT[i] != 0:

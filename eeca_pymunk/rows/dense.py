@@ -14,7 +14,7 @@ from ..compiled import Choice, kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import AnyProblem, JointedProblem, Problem, Row
 from ..model.parameters.impulses import PROXIMAL_DENSE
-from ..model.parameters.joints import COLUMN_PROXIMAL
+from ..model.parameters.joints import COLUMN_PROXIMAL, MATRIX_WORK
 from .bounded import bounded_rate
 from .build import normal_rate, tangent_rate
 from .polish import clamp, classify
@@ -100,6 +100,7 @@ def matrix_jointed(
 ) -> None:
     """As `matrix_free`, with response columns; unknowns of kind 2 are bounded rows."""
     ROWS, C, D, _ = problem
+    C.WORK[0] += MATRIX_WORK * N * N
     bodies = 0
     for i in range(N):
         if kind[i] == 2:

@@ -15,10 +15,10 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import kernel, nonallocating
+from ..compiled import inlined, kernel, nonallocating
 from ..model.contacts import JointedProblem
 from ..model.parameters.impulses import HOMOTOPY_CHANGES, HOMOTOPY_CHANGES_ANEW, HOMOTOPY_REFINEMENTS
-from ..model.parameters.joints import HOMOTOPY_WORK
+from ..model.parameters.joints import CHANGE_ENTRY_WORK, CHANGE_WORK, HOMOTOPY_WORK
 from .bounded import SINGLE, bounded_rate
 from .build import normal_rate, tangent_rate
 from .coulomb import limited_slip
@@ -44,6 +44,12 @@ from .pivots import (
 from .sweeps import velocities
 
 
+@inlined
+def work_of_change(size: int) -> float:
+    """Operations of a change of state among so many unknowns: the search for it, and the pivot."""
+    return size * (CHANGE_WORK + CHANGE_ENTRY_WORK * size)
+
+
 @kernel
 def begin(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: bool) -> Tableau:
     """The homotopy's start at impulses L (m + n, 2) of m contacts and n bounded rows with velocities V (k, 3); or, if
@@ -61,7 +67,7 @@ def begin(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: bool) -> 
     for k in range(size):
         AT[k], KIND[k] = (k // 2, k % 2) if k < 2 * m else (k - 2 * m, 2)
     matrix_jointed(problem, np.zeros(m), AT, KIND, size, T)
-    pivots = HOMOTOPY_WORK
+    C.WORK[0] += HOMOTOPY_WORK
     for i in range(m):
         tableau.MU[i] = max(ROWS[i].friction, 0.0)
         if C.OUT[i] == 0 and not ROWS[i].wake < np.inf:
@@ -73,7 +79,7 @@ def begin(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: bool) -> 
             if L[i, 0] > 0.0 and L[i, 1] == 0.0 and slides * ROWS[i].ut < 0.0:
                 tableau.MU[i] = 0.0  # a slip that has reversed by less than its size: no friction without giving energy
             X[2 * i], X[2 * i + 1] = L[i, 0], L[i, 1]
-            pivots += 1.0 if L[i, 0] > 0.0 else 0.0
+            C.WORK[0] += work_of_change(size) if L[i, 0] > 0.0 else 0.0
     for i in range(n):
         row, k = D.ROWS[i], 2 * m + i
         tableau.LOW[i], tableau.HIGH[i] = row.low, row.high
@@ -89,7 +95,6 @@ def begin(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: bool) -> 
         set_opening_direction(tableau, m)
     else:
         restore_states(tableau, m, X)
-    C.WORK[0] += pivots * size * size
     return tableau
 
 
@@ -230,6 +235,6 @@ def follow_homotopy(problem: JointedProblem, L: FloatArray, V: FloatArray, FREE:
         if changed < 0:
             return False
         theta += way * nearest
-        problem.C.WORK[0] += size * size
+        problem.C.WORK[0] += work_of_change(size)
         number = change(tableau, m, changed, number, theta)
     return False

@@ -12,38 +12,12 @@ from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import JointedProblem, Problem, Row, Solved
-from ..model.parameters.joints import (
-    COLUMN_CONTACTS,
-    COLUMN_HOMOTOPIES,
-    COLUMN_SWEEPS,
-    COLUMN_SWEEPS_AFTER,
-    DISC_WORK,
-    SWEEP_WORK,
-)
-from .bounded import FIRST_OF_DISC
+from ..model.parameters.joints import COLUMN_CONTACTS, COLUMN_HOMOTOPIES, COLUMN_SWEEPS, COLUMN_SWEEPS_AFTER
 from .columns import as_columns, breach
 from .conjugate import iterate
 from .coulomb import slip_freely
 from .homotopy import follow_homotopy
 from .sweeps import push, restore, sweep, velocities
-
-
-@nonallocating
-def count_sweeps(problem: JointedProblem, sweeps: int) -> None:
-    """Add the work of sweeps over contacts and bounded rows to that of the problem."""
-    C, D = problem.C, problem.D
-    one = SWEEP_WORK * (C.AT[problem.m] + D.AT[D.USED[0]])
-    for i in range(D.USED[0]):
-        one += DISC_WORK if D.ROWS[i].part == FIRST_OF_DISC else 0.0
-    C.WORK[0] += sweeps * one
-
-
-@kernel
-def sweep_columns(problem: JointedProblem, L: FloatArray, V: FloatArray, tolerance: float, most: int) -> float:
-    """`iterate`, whose work is counted; the change in the last sweep."""
-    done, worst = iterate(problem, L, V, tolerance, most)
-    count_sweeps(problem, done)
-    return worst
 
 
 @kernel
@@ -61,8 +35,8 @@ def solve_columns(
         the largest velocity by which a law is broken, or of a change in the last sweep if that came last.
     """
     if problem.m > COLUMN_CONTACTS:
-        return sweep_columns(problem, L, V, tolerance, most)
-    worst = sweep_columns(problem, L, V, tolerance, sweeps) if sweeps > 0 else breach(problem, L, V)
+        return iterate(problem, L, V, tolerance, most)[1]
+    worst = iterate(problem, L, V, tolerance, sweeps)[1] if sweeps > 0 else breach(problem, L, V)
     best, L0, V0, before = worst, L.copy(), V.copy(), np.inf
     for _ in range(COLUMN_HOMOTOPIES):
         if worst <= tolerance:
@@ -81,7 +55,6 @@ def solve_columns(
         while done < COLUMN_SWEEPS_AFTER and worst > tolerance:
             worst = sweep(problem, L, V)
             done += 1
-        count_sweeps(problem, done)
         if worst < best:
             best = worst
             restore(L0, V0, L, V)
@@ -91,7 +64,7 @@ def solve_columns(
     if worst > tolerance:
         restore(L, V, L0, V0)
         before = breach(problem, L, V)
-        worst = sweep_columns(problem, L, V, tolerance, most)
+        _, worst = iterate(problem, L, V, tolerance, most)
         if not breach(problem, L, V) <= 2.0 * before:
             # Sweeps diverge where friction could open contacts.
             restore(L, V, L0, V0)

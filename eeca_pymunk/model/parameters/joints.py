@@ -50,7 +50,9 @@ CLOSING_EPSILON = round_off(1e-05, "of the diagonal", "Term added to the diagona
 CLOSINGS = work(8, "iterations", "Iterations to close joints that are apart, at most.")
 REDUNDANT_PASSES = work(12, "number", "Refinements that remove the effect of REDUNDANT_EPSILON.")
 FACTOR_BAND = work(16, "rows", "Half-width of the band from which on factors are computed several numbers at a time.")
-ROW_WORK = work(500.0, "operations", "Work of the rows of one joint, for the budget of a step.")
+ROW_WORK = work(250.0, "operations", "Work of the rows of a joint in an iteration, for the budget of a step.")
+FACTOR_WORK = work(215.0, "operations", "Work of the factors of a row besides that of its band.")
+BACK_WORK = work(3.0, "operations", "Work of a solution for each row and each number in its band.")
 JOINT_APART = accuracy(1e-10, "of the component", "Error of a joint above which it closes at pymunk's rate.")
 ELASTIC_PARTS = work(7, "number", "Parts of a step of elastic joints.")
 HASTE = work(0.25, "of the budget", "Work of a step after which limits are located roughly.")
@@ -84,15 +86,15 @@ FIT_RESIDUAL = accuracy(1e-06, "of the fastest closing contact",
     "Residual of the impulses that keep contacts from closing in this projection.")
 FIT_ENERGY = round_off(1e-12, "of the energy", "Change of energy by this projection that is round-off.")
 JOINTED_CORRECTION_SWEEPS = work(40, "sweeps", "Sweeps of the penetration correction of jointed bodies.")
-STEP_WORK = work(60000000.0, "operations",
+STEP_WORK = work(65000000.0, "operations",
     "Work of a step with joints besides STEP_WORK_BODY; 5e9 operations take about a second.")
 INTERVAL_SHARE = work(0.25, "of what is left of the budget",
     "Work of an interval after which it is solved again, shorter, if it has not converged.")
 STEP_WORK_BODY = work(250000.0, "operations", "Work of a step with joints for each body of the scene.")
 CUT_WORK = work(10000000.0, "operations",
     "Work for the intervals with joints that end where a step is cut short, beside its budget.")
-COMPONENT_WORK = work(8000.0, "operations", "Work of a step of a component, beside its iterations.")
-COMPONENT_WORK_BODY = work(3500.0, "operations", "What each of its bodies adds to it.")
+COMPONENT_WORK = work(2000.0, "operations", "Work of a step of a component, beside its iterations.")
+COMPONENT_WORK_BODY = work(1200.0, "operations", "What each of its bodies adds to it.")
 MEET = round_off(1e-13, "of the smaller shape", "Gap at the located instant of an impact on a component.")
 MEET_LOADED = accuracy(1e-06, "of the smaller shape", "Gap at that instant if contacts push on the component.")
 MEET_MANY = accuracy(0.0001, "of the smaller shape", "Gap at that instant if many contacts push on it.")
@@ -129,11 +131,19 @@ FIT_ROUND_OFF = round_off(1e-12, "of the size of a body",
 OUTER_FLOOR = round_off(1e-08, "of the speed",
     "Difference of the velocities that is round-off of stiff components if it does not fall.")
 PRESS_WORK_ROUND_OFF = round_off(4e-14, "of impulses times speed", "Round-off of the work of contacts of components.")
-SWEEP_WORK = work(40.0, "operations", "Work of a sweep over contacts for each entry of their columns.")
-DISC_WORK = work(1000.0, "operations", "Work of a sweep over bounded rows for each two of a disc.")
-HOMOTOPY_WORK = work(25.0, "operations",
-    "Work of the matrix of a homotopy for each of its entries; a change of state takes one.")
-SOLUTION_WORK = work(1000.0, "operations", "Work of a solution for each entry of its columns.")
+SWEEP_WORK = work(75.0, "operations", "Work of a sweep for each contact and bounded row.")
+SWEEP_ENTRY_WORK = work(30.0, "operations", "Work of a sweep for each entry of their columns.")
+BOX_WORK = work(10.0, "operations", "Work of a sweep over boxed rows for each two of them.")
+BOX_COLUMN_WORK = work(20.0, "operations", "Work of an iteration for each entry of the columns of boxed rows.")
+DISC_WORK = work(700.0, "operations", "Work of a sweep over bounded rows for each two of a disc.")
+HOMOTOPY_WORK = work(7500.0, "operations", "Work of a homotopy besides that of its matrix.")
+MATRIX_WORK = work(23.0, "operations",
+    "Work of the matrix of a homotopy, or of a direct solution, for each of its entries.")
+CHANGE_WORK = work(75.0, "operations", "Work of a change of state in a homotopy for each unknown.")
+CHANGE_ENTRY_WORK = work(0.8, "operations", "Work of a change of state for each entry of the matrix.")
+CONTACT_WORK = work(1200.0, "operations",
+    "Work of a contact in an iteration between contacts and components, besides sweeps and homotopies.")
+INTERVAL_WORK = work(2200.0, "operations", "Work of an interval of an island with joints for each pair of shapes.")
 PRESS_WORK_TAUT = round_off(1e-09, "of impulses times speed",
     "Round-off of the work of contacts on taut joints, at most.")
 CHORD = work(5, "steps of the components", "Iterations after which the response is computed anew.")

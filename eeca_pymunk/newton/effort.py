@@ -1,0 +1,41 @@
+"""How many operations the parts of an iteration take, for the budget of a step: each part adds its own where it is
+computed (`systems`, `boxes`)."""
+
+from __future__ import annotations
+
+from ..compiled import inlined
+from ..model.joints import CONDENSED, DUAL, WHOLE, Component
+from ..model.parameters.joints import BACK_WORK, FACTOR_BAND, FACTOR_WORK, REFINEMENT_WORK, ROW_WORK
+
+
+@inlined
+def work_of_rows(joints: int) -> float:
+    """Work of the rows of so many joints, and of the balance of their bodies."""
+    return ROW_WORK * (joints + 1)
+
+
+@inlined
+def work_of_factors(system: int, component: Component) -> float:
+    """Work of the factors of a system."""
+    size, band = (component.dual_size, component.dual_band) if system == DUAL else (component.unknowns, component.band)
+    # Wide bands take several numbers at once; in those of whole systems most rows are 0.
+    each = 0.5 if system == WHOLE or band >= FACTOR_BAND else 2.0
+    return float(size * (FACTOR_WORK + each * band * band))
+
+
+@inlined
+def work_of_solution(system: int, passes: int, joints: int, component: Component) -> float:
+    """Work of a solution with these factors; of a condensed system so many `passes`, each refined by all rows."""
+    # To a dual system there also belong products with its rows, 24 numbers each.
+    size, more = (
+        (component.dual_size, component.dual_band + 24) if system == DUAL else (component.unknowns, component.band)
+    )
+    one = BACK_WORK * size * (more + 6)
+    return float(passes * (one + REFINEMENT_WORK * joints) if system == CONDENSED else one)
+
+
+@inlined
+def work_of_iteration(system: int, passes: int, boxes: int, joints: int, component: Component) -> float:
+    """Work of an iteration with new factors, with the columns of `boxes` boxed rows."""
+    solutions = (1 + boxes) * work_of_solution(system, passes, joints, component)
+    return work_of_rows(joints) + work_of_factors(system, component) + solutions
