@@ -1,12 +1,16 @@
-"""What a step notes of budgets and tolerances that it has not met."""
+"""What a step notes of budgets and tolerances that it has not met, and the work of its solves."""
 
 from __future__ import annotations
 
 from types import SimpleNamespace
 from typing import Any
 
+import pytest
+
 from eeca_pymunk.compiled.records import rows
-from eeca_pymunk.contacts.counts import note_unmet
+from eeca_pymunk.contacts.counts import count_solve, note_unmet
+from eeca_pymunk.model.contacts import Solved
+from eeca_pymunk.model.parameters.events import DIRECT_LOOKS, OPERATION_LOOKS, SWEEP_LOOKS
 from eeca_pymunk.model.step import CONTACTS, SOLVES, Count, Missed
 
 
@@ -20,3 +24,19 @@ def test_why_a_step_ended_early_is_noted_after_others_have_filled_the_room() -> 
     assert scene.MISSED["kind"].tolist() == [CONTACTS, CONTACTS, SOLVES]
     assert (scene.MISSED[2].first, scene.MISSED[2].second) == (7, -1)
     assert (scene.MISSED[2].value, scene.MISSED[2].limit) == (9.0, 8.0)
+
+
+@pytest.mark.parametrize(
+    ("field", "amount", "looks"),
+    [("sweeps", 10_000, 3 * SWEEP_LOOKS), ("direct", 10_000, 9 * DIRECT_LOOKS), ("operations", 1e7, OPERATION_LOOKS)],
+)
+def test_what_a_solve_has_taken_is_work_of_the_step(field: str, amount: float, looks: float) -> None:
+    """Sweeps of three contacts, direct solutions, which are dense, and homotopies."""
+    work = []
+    for taken in (0, amount):
+        scene: Any = SimpleNamespace(COUNT=rows(Count, 1)[0])
+        out = rows(Solved, 1)[0]
+        setattr(out, field, taken)
+        count_solve(scene, 1, 1, 3, out)
+        work.append(int(scene.COUNT.work))
+    assert work[1] - work[0] == pytest.approx(looks * amount, abs=1.0)
