@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import inlined, kernel, nonallocating
 from ..model.contacts import Columns, JointedProblem, Problem
-from ..model.parameters.joints import DISC_WORK, SWEEP_ENTRY_WORK, SWEEP_WORK
+from ..model.parameters.joints import DISC_WORK, SLIP_WORK, SWEEP_ENTRY_WORK, SWEEP_WORK
 from .bounded import FIRST_OF_DISC, SINGLE, bounded_rate, push_row, room_for_rows, sweep_bounded
 from .build import normal_rate, tangent_rate
 from .coulomb import coulomb, limited_slip
@@ -91,6 +91,7 @@ def lawful(problem: JointedProblem, L: FloatArray, V: FloatArray, i: int) -> tup
         beta = beta0 - (ROWS[i].w_nt * short + ROWS[i].w_tt * off)
         return (lam, beta) if beta * ROWS[i].ut > 0.0 and abs(beta) <= ROWS[i].friction * lam else (0.0, 0.0)
     ant, att = ROWS[i].a_nt, ROWS[i].a_tt
+    problem.C.WORK[0] += SLIP_WORK
     return coulomb(
         qn, ut - beta0 * att - lam0 * ant, ann, ant, att, ROWS[i].friction, ROWS[i].un, ROWS[i].ut, ROWS[i].target
     )

@@ -116,6 +116,7 @@ BOX_DISCS: list[Part] = [(boxes, "sweep_boxes", lambda *_: 1)]
 BOX_COLUMNS: list[Part] = [(boxes, "measure_boxes", lambda W, w, u, n, *_: n * size_of(W))]
 # The box is the only body: each contact and each row has one entry.
 SWEEPS: list[Part] = [(columns, "sweep_bounded", lambda B, L, m, V: m + B.USED[0])]
+SLIPS: list[Part] = [(columns, "coulomb", lambda *_: 1)]
 DISCS: list[Part] = [(columns, "sweep_bounded", lambda *_: 1)]
 HOMOTOPIES: list[Part] = [(homotopy, "begin", lambda *_: 1)]
 MATRICES: list[Part] = [
@@ -152,6 +153,7 @@ def counted(function: Callable[..., Any], amount: Callable[..., float], done: li
         (ON_FLOOR, columns, "DISC_WORK", DISCS),
         (ON_FLOOR, columns, "SWEEP_WORK", SWEEPS),
         (ON_FLOOR, columns, "SWEEP_ENTRY_WORK", SWEEPS),
+        (ON_FLOOR, columns, "SLIP_WORK", SLIPS),
         (ON_FLOOR, homotopy, "HOMOTOPY_WORK", HOMOTOPIES),
         (ON_FLOOR, dense, "MATRIX_WORK", MATRICES),
         (ON_FLOOR, homotopy, "CHANGE_WORK", CHANGES),

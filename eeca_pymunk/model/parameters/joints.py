@@ -133,6 +133,7 @@ OUTER_FLOOR = round_off(1e-08, "of the speed",
 PRESS_WORK_ROUND_OFF = round_off(4e-14, "of impulses times speed", "Round-off of the work of contacts of components.")
 SWEEP_WORK = work(75.0, "operations", "Work of a sweep for each contact and bounded row.")
 SWEEP_ENTRY_WORK = work(30.0, "operations", "Work of a sweep for each entry of their columns.")
+SLIP_WORK = work(250.0, "operations", "Work of a contact in a sweep beside that if it does not stick.")
 BOX_WORK = work(10.0, "operations", "Work of a sweep over boxed rows for each two of them.")
 BOX_COLUMN_WORK = work(20.0, "operations", "Work of an iteration for each entry of the columns of boxed rows.")
 DISC_WORK = work(700.0, "operations", "Work of a sweep over bounded rows for each two of a disc.")
