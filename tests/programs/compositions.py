@@ -8,8 +8,8 @@ from 1 mm to 50 m, steps of 1/240 to 1/10 s, with gravity or without; joints and
 * what comes from outside is no more than what acts from there can do (`outside.py`);
 * nobody leaves the container, by more than a part of his size, but whom joints lead out (`led.py`);
 * a step of up to 1/30 s takes no longer than 20 ms of processor time, or 100 native steps; a longer one as much for
-  each 1/30 s. Steps that do are repeated, as the machine may have been busy; in scenes with joints, where the count of
-  work is a third off in some, they are counted; and events spend their budget only;
+  each 1/30 s. Steps that do are repeated, as the machine may have been busy; in scenes with joints, where the time of
+  counted work varies by up to 1.3, they are counted; and events spend their budget only;
 * saved and loaded half-way the run goes on bit by bit;
 * time goes on: not `STANDS` steps in a row leave all that moves where it is;
 * joints of a step that has converged hold, and none exceeds its `max_force` (`joined.py`).
