@@ -9,8 +9,8 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
-from ..contacts.geometry import gap_rate
 from ..contacts.memory import shapes_of
+from ..contacts.turning import gap_rate
 from ..geometry.gap import gap_at
 from ..geometry.sides import depth_limit, half_width, held_side, remembers, smaller
 from ..model.contacts import Row

@@ -82,11 +82,11 @@ class Row(Record):
     elasticity: float  # of the contact: products of both shapes' values
     friction: float
     target: float  # b: the law is 0 <= lam _|_ u_n - b >= 0
-    # t.(surface velocity of B's shape - that of A's), length/time; where a body without mobility turns, such that u_t
-    # at the end of the interval is 0 for what it carries along (`..contacts.geometry`).
+    # t.(surface velocity of B's shape - that of A's), length/time; on walls that turn (`..contacts.turning`) such that
+    # u_t at the end of the interval is 0 for what sticks.
     surface: float
-    turned: float  # by how much u_n is less than with the geometry of the start, where a body without mobility turns
-    swung: float  # half the change of u_t of what that body carries along; surface + swung does work
+    turned: float  # by how much u_n is less than with the geometry of the start, where bodies turn together
+    swung: float  # half the change of u_t of what a turning wall carries along; surface + swung does work
     unsure: float  # error of u_t of that
     # Activation velocity: the contact is inactive while u_n without its own impulse is above it; infinite once active.
     wake: float

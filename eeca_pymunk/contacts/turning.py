@@ -1,0 +1,96 @@
+"""Contacts of bodies that turn together by w h within an interval: a wall and what it carries along, for instance.
+
+With the geometry of the middle of the interval (`geometry.py`) such a pair has the relative velocities -c_0 at its
+start and c_1 at its end, both about w^2 h x/2 with the way x between the bodies, along the normal as along the tangent.
+
+* u_n + c_0 bounces, see `targets.py`. Bodies that impulses move turn together as far as their spins are the same: of
+  their c_0 the part w_a w_b / max(w_a^2, w_b^2) is taken, 0 where one does not turn, and would stop the other.
+* u_t on a wall is counted from -c_0 + m and from c_1 + m. By m the mean velocity exceeds the mean of both, (w h)^2/12
+  of it: what sticks has no slip, in its position neither, and friction does no work on it in the frame of the wall.
+  (With as much between bodies that impulses move, friction would no longer stop what rocks in piles.)
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..arrays import FloatArray
+from ..compiled import nonallocating
+from ..compiled.records import Rows
+from ..model.contacts import Row
+from ..model.islands import Island
+from ..rows.build import normal_rate, slip_rate
+
+
+@nonallocating
+def common_spin(isle: Island, a: int, b: int) -> tuple[float, float]:
+    """The spin w with which local bodies a and b turn together, and the part, from 0 to 1, to which they do. w is that
+    of a body without mobility, else (w_a m_a + w_b m_b)/(m_a + m_b)."""
+    IM, one, two = isle.IM, isle.V[a, 2], isle.V[b, 2]
+    if IM[a] == 0.0 or IM[b] == 0.0:
+        w = one if IM[a] == 0.0 else two
+        return w, 0.0 if w == 0.0 else 1.0
+    if not one * two > 0.0:
+        return 0.0, 0.0
+    return (IM[b] * one + IM[a] * two) / (IM[a] + IM[b]), one * two / max(one * one, two * two)
+
+
+@nonallocating
+def way_about(isle: Island, a: int, b: int, w: float) -> float:
+    """Largest relative speed of points of local bodies a and b in a frame that turns with spin w."""
+    POSE, V, EXTENT = isle.POSE, isle.V, isle.EXTENT
+    x = V[b, 0] - V[a, 0] + w * (POSE[b, 1] - POSE[a, 1])
+    y = V[b, 1] - V[a, 1] - w * (POSE[b, 0] - POSE[a, 0])
+    return math.sqrt(x * x + y * y) + abs(V[a, 2] - w) * EXTENT[a] + abs(V[b, 2] - w) * EXTENT[b]
+
+
+@nonallocating
+def gap_rate(POSE: FloatArray, V: FloatArray, a: int, b: int, nx: float, ny: float, px: float, py: float) -> float:
+    """Velocity of local body b's point (px, py) relative to body a's along the normal n. POSE, V: (k, 3)."""
+    x = V[b, 0] - V[b, 2] * (py - POSE[b, 1]) - V[a, 0] + V[a, 2] * (py - POSE[a, 1])
+    y = V[b, 1] + V[b, 2] * (px - POSE[b, 0]) - V[a, 1] - V[a, 2] * (px - POSE[a, 0])
+    return nx * x + ny * y
+
+
+@nonallocating
+def carried_along(isle: Island, row: Row, w: float, h: float) -> tuple[float, float]:
+    """If the bodies of a row turn together with spin w for h: the change of their tangential velocity, and by how much
+    its mean is above the mean of those at the start and the end.
+
+    Let x lead from a to b, r = v_b - v_a - w x x be the velocity in the rotating frame, and R the rotation by w h. Then
+    x' = R x + h R^(1/2) r, and v_b' - v_a' = w x x' + R r.
+    """
+    POSE, V, a, b = isle.POSE, isle.V, row.a, row.b
+    x, y = POSE[b, 0] - POSE[a, 0], POSE[b, 1] - POSE[a, 1]
+    ux, uy = V[b, 0] - V[a, 0], V[b, 1] - V[a, 1]
+    rx, ry = ux + w * y, uy - w * x
+    half_c, half_s = math.cos(0.5 * w * h), math.sin(0.5 * w * h)
+    s, less = 2.0 * half_s * half_c, -2.0 * half_s * half_s  # sine, and cosine less 1
+    dx = less * x - s * y + h * (half_c * rx - half_s * ry)
+    dy = s * x + less * y + h * (half_s * rx + half_c * ry)
+    vx, vy = less * rx - s * ry - w * dy, s * rx + less * ry + w * dx
+    mx, my = dx / h - ux - 0.5 * vx, dy / h - uy - 0.5 * vy
+    return row.nx * vy - row.ny * vx, row.nx * my - row.ny * mx
+
+
+@nonallocating
+def follow_rotation(
+    isle: Island, ROWS: Rows[Row], m: int, count: int, NOW: FloatArray, shared: float, w: float, h: float
+) -> None:
+    """Let `count` rows from m on know the geometry of the start, NOW (2, 5): normal, point, gap of each point.
+
+    shared, w: of `common_spin`.  h: 0 unless the tangent is that of a wall that turns it, not of a disk.
+    """
+    POSE, V, a, b = isle.POSE, isle.V, ROWS[m].a, ROWS[m].b
+    swing, counted, unsure = 0.0, 0.0, 0.0
+    if h > 0.0 and ROWS[m].friction > 0.0:
+        swing, mean = carried_along(isle, ROWS[m], w, h)
+        nx, ny, px, py = NOW[0, 0], NOW[0, 1], NOW[0, 2], NOW[0, 3]
+        counted = slip_rate(ROWS[m], V) + swing - gap_rate(POSE, V, a, b, -ny, nx, px, py) + mean
+        unsure = abs(0.5 * w * h * swing) + 2.0 * abs(mean)
+    for z in range(count):
+        row = ROWS[m + z]
+        u = gap_rate(POSE, V, a, b, NOW[z, 0], NOW[z, 1], NOW[z, 2], NOW[z, 3])
+        row.turned = shared * max(u - normal_rate(row, V), 0.0)
+        row.surface -= counted
+        row.swung, row.unsure = 0.5 * swing, unsure
