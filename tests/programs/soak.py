@@ -14,6 +14,7 @@ import argparse
 import subprocess
 import sys
 import time
+import traceback
 
 from hypothesis import HealthCheck, given, seed, settings
 from hypothesis import strategies as st
@@ -21,6 +22,7 @@ from tqdm import tqdm
 
 from comparisons.ablation import package_without
 
+from .compositions import Broken
 from .fuzz import GAIN, Drawn, Program, Thrown
 from .varied import Varied
 
@@ -69,7 +71,8 @@ def compositions(count: int, minutes: float, start: int, joints: bool) -> int:
                 late += found.late
             except Exception as error:
                 failed += 1
-                tqdm.write(f"seed {start + done}: {type(error).__name__}: {error}")
+                told = str(error) if isinstance(error, Broken) else traceback.format_exc()
+                tqdm.write(f"seed {start + done}: {type(error).__name__}: {told}")
             done += 1
             bar.update(1)
     spent = time.process_time() / max(done, 1)
