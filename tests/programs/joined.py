@@ -94,7 +94,7 @@ def reach(joint: pymunk.Constraint) -> float:
             seen |= found
             front += found
             anchors = (getattr(other, name, (0.0, 0.0)) for other in body.constraints for name in ANCHORS)
-            far = max(far, *(abs(x) for anchor in anchors for x in anchor))
+            far = max((far, *(abs(x) for anchor in anchors for x in anchor)))
     return max(far, *(abs(place) for body in seen for place in body.position))
 
 
