@@ -61,14 +61,18 @@ def plain(count: int, start: int, gain: float, joints: bool, length: int) -> str
 
 
 def compositions(count: int, minutes: float, start: int, joints: bool) -> int:
-    """Play so many compositions, or for so long; how many break a law."""
+    """Play so many compositions, or for so long; how many break a law or have a step that takes too long."""
     clock, failed, longest, unconverged, late, done = time.perf_counter(), 0, 0.0, 0, 0, 0
     with tqdm(total=count, unit="scene", desc="compositions") as bar:
         while done < count and time.perf_counter() - clock < 60.0 * minutes:
             try:
                 found = Varied(start + done, joints).play()
                 longest, unconverged = max(longest, found.longest), unconverged + found.unconverged
+                if found.late:
+                    tqdm.write(f"seed {start + done}: a step takes too long")
                 late += found.late
+                if found.late:
+                    tqdm.write(f"seed {start + done}: a step takes too long")
             except Exception as error:
                 failed += 1
                 told = str(error) if isinstance(error, Broken) else traceback.format_exc()
@@ -78,7 +82,7 @@ def compositions(count: int, minutes: float, start: int, joints: bool) -> int:
     spent = time.process_time() / max(done, 1)
     print(f"{done} compositions, {failed} fail, longest step {1e3 * longest:.0f} ms, {late} take too long", end=", ")
     print(f"{unconverged / max(done, 1):.2f} steps of each not converged, {spent:.2f} s each")
-    return failed
+    return failed + late
 
 
 def soak(count: int, minutes: float, start: int, gain: float, joints: bool, shrink: bool, length: int = 40) -> int:
