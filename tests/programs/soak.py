@@ -71,8 +71,6 @@ def compositions(count: int, minutes: float, start: int, joints: bool) -> int:
                 if found.late:
                     tqdm.write(f"seed {start + done}: a step takes too long")
                 late += found.late
-                if found.late:
-                    tqdm.write(f"seed {start + done}: a step takes too long")
             except Exception as error:
                 failed += 1
                 told = str(error) if isinstance(error, Broken) else traceback.format_exc()
