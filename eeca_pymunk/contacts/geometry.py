@@ -6,8 +6,8 @@ island without forces keeps its angular momentum exactly, as its middle and the 
 impulses.
 
 A pair has the geometry now instead if it moves too far in half an interval (an impact at high speed), hardly moves, or
-has another number of contact points at the middle. How far it moves is measured in a frame that turns with both bodies
-if these turn together (`turning.py`). Arms are then those now too; but in a free island they are still those at the
+has another number of contact points at the middle. How far it moves is measured in the frame of a wall that turns
+(`turning.py`) if it has one. Arms are then those now too; but in a free island they are still those at the
 middle, and the points of the pair are displaced by the mean of the displacements of its two bodies.
 """
 
@@ -27,7 +27,7 @@ from ..model.scene import Scene
 from ..pairs.rules import law
 from ..rows.build import place_row
 from .memory import key_of
-from .turning import common_spin, follow_rotation, way_about
+from .turning import follow_rotation, spin_of_wall, way_about
 
 
 @kernel
@@ -69,8 +69,8 @@ def gather(
             + abs(V[a, 2]) * EXTENT[a]
             + abs(V[b, 2]) * EXTENT[b]
         )
-        w, shared = common_spin(isle, a, b)
-        about = half * way_about(isle, a, b, w) if shared > 0.0 else way
+        w = spin_of_wall(isle, a, b)
+        about = half * way_about(isle, a, b, w) if w != 0.0 else way
         centre = MIDDLE
         # Normals rotate as circles move around each other, slowly around a large one.
         far = SHAPE[s].rounding + SHAPE[r].rounding if LINK[s].vertices == 1 and LINK[r].vertices == 1 else small
@@ -100,8 +100,8 @@ def gather(
             row.elasticity, row.friction, row.surface = elasticity, friction, 0.0
             place_row(row, THEN[z, 2], THEN[z, 3], centre, isle.IM, isle.II)
             row.surface = row.nx * sy - row.ny * sx
-        if ahead and shared > 0.0:
-            wall = (isle.IM[a] == 0.0 and LINK[s].vertices > 1) or (isle.IM[b] == 0.0 and LINK[r].vertices > 1)
-            follow_rotation(isle, ROWS, m, count, NOW, shared, w, h if wall else 0.0)
+        if ahead and w != 0.0:
+            edge = LINK[s if isle.IM[a] == 0.0 else r].vertices > 1
+            follow_rotation(isle, ROWS, m, count, NOW, w, h if edge else 0.0)
         m += count
     return m

@@ -10,7 +10,7 @@ bounce is e max(-u, 0) for e < 1, -u for e = 1.
   inactive while u_n+ is above its activation velocity `wake`, with which the gap is just closed at the end.
 * Else the surfaces meet softly at the end of the interval: b = min(bounce, -u - 2 max(g, 0)/h).
 
-Where bodies turn together (`turning.py`), u is by a part c of -u less than with the geometry of the start, and u+ more
+Where a wall turns (`turning.py`), u is by a part c of -u less than with the geometry of the start, and u+ more
 than with that of the end: u + c bounces, and c is added to the bounce. What a wall carries along neither sinks nor
 loses energy so, to second order: with the bounce 0 it would go along the tangent of the middle, through the wall. 2 c/h
 is an acceleration, too.

@@ -1,13 +1,14 @@
-"""Contacts of bodies that turn together by w h within an interval: a wall and what it carries along, for instance.
+"""Contacts of bodies with a wall, which impulses do not move, that turns by w h within an interval.
 
-With the geometry of the middle of the interval (`geometry.py`) such a pair has the relative velocities -c_0 at its
-start and c_1 at its end, both about w^2 h x/2 with the way x between the bodies, along the normal as along the tangent.
+With the geometry of the middle of the interval (`geometry.py`) what the wall carries along has the relative velocities
+-c_0 at its start and c_1 at its end, both about w^2 h x/2 with the way x between the bodies, along the normal as along
+the tangent.
 
-* u_n + c_0 bounces, see `targets.py`. Bodies that impulses move turn together as far as their spins are the same: of
-  their c_0 the part w_a w_b / max(w_a^2, w_b^2) is taken, 0 where one does not turn, and would stop the other.
-* u_t on a wall is counted from -c_0 + m and from c_1 + m. By m the mean velocity exceeds the mean of both, (w h)^2/12
-  of it: what sticks has no slip, in its position neither, and friction does no work on it in the frame of the wall.
-  (With as much between bodies that impulses move, friction would no longer stop what rocks in piles.)
+* u_n + c_0 bounces, see `targets.py`.
+* u_t is counted from -c_0 + m and from c_1 + m. By m the mean velocity exceeds the mean of both, (w h)^2/12 of it: what
+  sticks has no slip, in its position neither, and friction does no work on it in the frame of the wall.
+
+Between bodies that impulses move neither is done: what rocks in piles, or rides on what rocks, would bounce for ever.
 """
 
 from __future__ import annotations
@@ -23,16 +24,9 @@ from ..rows.build import normal_rate, slip_rate
 
 
 @nonallocating
-def common_spin(isle: Island, a: int, b: int) -> tuple[float, float]:
-    """The spin w with which local bodies a and b turn together, and the part, from 0 to 1, to which they do. w is that
-    of a body without mobility, else (w_a m_a + w_b m_b)/(m_a + m_b)."""
-    IM, one, two = isle.IM, isle.V[a, 2], isle.V[b, 2]
-    if IM[a] == 0.0 or IM[b] == 0.0:
-        w = one if IM[a] == 0.0 else two
-        return w, 0.0 if w == 0.0 else 1.0
-    if not one * two > 0.0:
-        return 0.0, 0.0
-    return (IM[b] * one + IM[a] * two) / (IM[a] + IM[b]), one * two / max(one * one, two * two)
+def spin_of_wall(isle: Island, a: int, b: int) -> float:
+    """The spin of that one of local bodies a and b that has no mobility, 0 if both have."""
+    return float(isle.V[a, 2]) if isle.IM[a] == 0.0 else float(isle.V[b, 2]) if isle.IM[b] == 0.0 else 0.0
 
 
 @nonallocating
@@ -74,12 +68,10 @@ def carried_along(isle: Island, row: Row, w: float, h: float) -> tuple[float, fl
 
 
 @nonallocating
-def follow_rotation(
-    isle: Island, ROWS: Rows[Row], m: int, count: int, NOW: FloatArray, shared: float, w: float, h: float
-) -> None:
+def follow_rotation(isle: Island, ROWS: Rows[Row], m: int, count: int, NOW: FloatArray, w: float, h: float) -> None:
     """Let `count` rows from m on know the geometry of the start, NOW (2, 5): normal, point, gap of each point.
 
-    shared, w: of `common_spin`.  h: 0 unless the tangent is that of a wall that turns it, not of a disk.
+    w: the spin of the wall.  h: 0 if that is a disk, whose spin does not turn the tangent.
     """
     POSE, V, a, b = isle.POSE, isle.V, ROWS[m].a, ROWS[m].b
     swing, counted, unsure = 0.0, 0.0, 0.0
@@ -91,6 +83,6 @@ def follow_rotation(
     for z in range(count):
         row = ROWS[m + z]
         u = gap_rate(POSE, V, a, b, NOW[z, 0], NOW[z, 1], NOW[z, 2], NOW[z, 3])
-        row.turned = shared * max(u - normal_rate(row, V), 0.0)
+        row.turned = max(u - normal_rate(row, V), 0.0)
         row.surface -= counted
         row.swung, row.unsure = 0.5 * swing, unsure

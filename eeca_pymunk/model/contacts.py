@@ -85,7 +85,7 @@ class Row(Record):
     # t.(surface velocity of B's shape - that of A's), length/time; on walls that turn (`..contacts.turning`) such that
     # u_t at the end of the interval is 0 for what sticks.
     surface: float
-    turned: float  # by how much u_n is less than with the geometry of the start, where bodies turn together
+    turned: float  # by how much u_n is less than with the geometry of the start, where a wall turns
     swung: float  # half the change of u_t of what a turning wall carries along; surface + swung does work
     unsure: float  # error of u_t of that
     # Activation velocity: the contact is inactive while u_n without its own impulse is above it; infinite once active.
