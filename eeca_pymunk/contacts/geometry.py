@@ -7,8 +7,8 @@ impulses.
 
 A pair has the geometry now instead if it moves too far in half an interval (an impact at high speed), hardly moves, or
 has another number of contact points at the middle. How far it moves is measured in the frame of a wall that turns
-(`turning.py`) if it has one. Arms are then those now too; but in a free island they are still those at the
-middle, and the points of the pair are displaced by the mean of the displacements of its two bodies.
+(`turning.py`) if it has one. Arms are then those now too; but in a free island they are still those at the middle, and
+the points of the pair are displaced by the mean of the displacements of its two bodies.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ def gather(
         if m + count > len(ROWS):
             return -1
         note_side(A, s, r, NOW[0, 0], NOW[0, 1], True)
-        # How far points of both bodies move against each other in h/2; about: in the rotating frame.
+        # How far points of both bodies move against each other in h/2; about: in the frame of a wall that turns.
         way = half * (
             math.sqrt((V[b, 0] - V[a, 0]) ** 2 + (V[b, 1] - V[a, 1]) ** 2)
             + abs(V[a, 2]) * EXTENT[a]

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import IntArray
+from ..arrays import FloatArray, IntArray
 from ..compiled import inlined, kernel, nonallocating
 from ..contacts.counts import count_solve
 from ..contacts.interval import make_contacts, step_island
@@ -62,12 +62,17 @@ def pairs_of(A: Scene, first: int, end: int) -> IntArray:
     return found[:p]
 
 
-@inlined
-def strays(A: Scene, i: int, x: float, y: float, turn: float, s: float) -> bool:
-    """Whether a change (x, y, turn) of its acceleration over a time s takes body i so far from its path that it may be
-    in others: impacts were predicted on that path only."""
-    extent = A.BODY[i].extent
-    return bool(0.5 * (norm(x, y) + abs(turn) * extent) * s * s > INTERVAL_DEPTH * extent)
+@nonallocating
+def leave_paths(A: Scene, MINE: IntArray, VN: FloatArray, s: float) -> bool:
+    """Whether velocities VN (k, 3) after a time s take one of the bodies MINE so far from its path that it may be in
+    others: impacts were predicted on that path only."""
+    for q in range(len(MINE)):
+        body = A.BODY[MINE[q]]
+        x, y = VN[q, 0] - body.vx - s * body.ax, VN[q, 1] - body.vy - s * body.ay
+        turn = abs(VN[q, 2] - body.spin - s * body.angular) * body.extent
+        if 0.5 * s * (norm(x, y) + turn) > INTERVAL_DEPTH * body.extent:
+            return True
+    return False
 
 
 @nonallocating
@@ -121,12 +126,8 @@ def repay(A: Scene, root: int, t: float) -> None:
     m = step_island(A, isle, contacts, n, s, sweeps_of(n, start), 0.0, owed, 0.0)
     A.COUNT.direct += OUT[0].direct
     count_solve(A, n, len(found), m, OUT[0])
-    far = m < 0 or m > end - first or times_too_long(A, isle, contacts, m, s) > INTERVAL_RETRY
-    for q in range(n if not far else 0):
-        body = A.BODY[MINE[q]]
-        x, y = (VN[q, 0] - body.vx) / s - body.ax, (VN[q, 1] - body.vy) / s - body.ay
-        far = far or strays(A, MINE[q], x, y, (VN[q, 2] - body.spin) / s - body.angular, s)
-    if far:
+    too_long = m < 0 or m > end - first or times_too_long(A, isle, contacts, m, s) > INTERVAL_RETRY
+    if too_long or leave_paths(A, MINE, VN, s):
         scale_impulses(A, root, t)
         return
     for c in range(first, end):
