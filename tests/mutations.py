@@ -181,6 +181,8 @@ MUTATIONS = (
              "work += beta * (ROWS[i].surface", "oracles/test_friction.py", "belt_works"),
     Mutation("rows: slip of what a turning wall carries along", "contacts/turning.py", "row.surface -= counted",
              "row.surface -= 0.0 * counted", "contacts/test_turning.py", "sticks"),
+    Mutation("joints: work of what a turning wall carries along", "jointed/losses.py", "row.surface + row.swung",
+             "row.surface - row.swung", "contacts/test_turning.py", "joints_connect"),
     Mutation("ledger: damping of speeds, not energies", "impacts/begin.py",
              "(1.0 / (half_damping * half_damping) - 1.0)", "(1.0 / half_damping - 1.0)",
              "oracles/test_ledger.py", "damping"),

@@ -66,11 +66,27 @@ def test_what_sticks_to_a_turning_wall_stays_where_it_is(angle: float, unit: flo
     for _ in range(40):
         report = stepper.step(angle / SPIN)
         intervals += report.iterations
+        assert report.ledger is not None
+        assert abs(report.ledger.residual) <= 1e-12 * energy
     x, y = box.world_to_local(body.position)
     assert x == pytest.approx(2.0 * unit, abs=0.003 * unit)
     assert y == pytest.approx((0.25 - HALF) * unit, abs=1e-4 * unit)
     assert ep.measure(space).energy == pytest.approx(energy, rel=1e-3)
     assert intervals <= 40 * (1 + 25 * angle)
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+@pytest.mark.parametrize("angle", [0.05, 0.1])
+def test_what_joints_connect_on_a_turning_wall_stays_too(angle: float, unit: float) -> None:
+    """Two boxes that a pivot connects, in the solver of contacts with joints."""
+    space, box, (one, two) = turning(((0.5, 1.0, 0.25 - HALF, 1.0), (0.5, 2.5, 0.25 - HALF, 2.0)), unit, 1.0)
+    space.add(pymunk.PivotJoint(one, two, (0.75 * unit, 0.0), (-0.75 * unit, 0.0)))
+    stepper, energy = ep.EECA(space), ep.measure(space).energy
+    for _ in range(40):
+        ledger = stepper.step(angle / SPIN).ledger
+        assert ledger is not None
+        assert abs(ledger.residual) <= 1e-12 * energy
+    assert box.world_to_local(one.position).x == pytest.approx(unit, abs=0.01 * unit)
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
