@@ -13,6 +13,7 @@ from ..jointed.ends import shorten, under_way
 from ..jointed.lifting import lift_here as lift_joined
 from ..jointed.meet import end_before
 from ..jointed.partners import carry
+from ..jointed.rest import wake_disturbed
 from ..jointed.solve import begin_jointed
 from ..model.bodies import AT_REST
 from ..model.joints import Joints
@@ -37,6 +38,8 @@ def start_interval(A: Scene, J: Joints, root: int, t: float) -> int:
 def start_islands(A: Scene, J: Joints) -> int:
     """Build the islands of the start of a step and begin their intervals. DONE, or PUSHES_FULL: to be called again with
     more memory."""
+    if J.TALLY.components > 0:
+        wake_disturbed(A, J)
     if build_islands(A) != DONE:
         return PUSHES_FULL
     for i in range(A.BODY.shape[0] - 1 if J.TALLY.components > 0 else 0):

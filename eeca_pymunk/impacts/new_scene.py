@@ -8,6 +8,7 @@ import numpy as np
 
 from ..compiled import Table, kernel, nonallocating
 from ..geometry.corners import find_corners, moving_thin
+from ..model.bodies import AT_REST, CHANGED
 from ..model.joints import joints_of
 from ..model.parameters.impulses import AUGMENTATION
 from ..model.scene import scene_of
@@ -64,6 +65,8 @@ def tie_components(table: Table, joints: Table) -> None:
     first, last = np.full(OF.shape[0], -1, np.int64), np.full(OF.shape[0], -1, np.int64)
     for i in range(OF.shape[0]):
         s = OF[i]
+        if MEMBER[i].rest == AT_REST:
+            MEMBER[scene_of(table).STATE[i].island].rest = CHANGED  # joints may hold it otherwise now
         MEMBER[i].tied, MEMBER[i].next_tied = -1, -1
         if s >= 0:
             first[s] = i if first[s] < 0 else first[s]

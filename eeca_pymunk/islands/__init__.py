@@ -13,8 +13,9 @@ States of rest, `Member.rest` of the root of an island, and the transitions betw
                start of a step after an edit, a motion of the support, or a change of forces (`at_rest.py`); in between
                the island is CHANGED.
     AT_REST    an island, or the part of it, for which `..contacts.statics` finds static forces (`rest.py`,
-               `intervals.py`, `partial_rest.py`). Left also where contacts of the island cannot support the bodies that
-               move on it (`support.py`).
+               `intervals.py`, `partial_rest.py`), or one with joints that a whole step has left as it was
+               (`..jointed.rest`). Left also where contacts of the island cannot support the bodies that move on it
+               (`support.py`).
 
 `space/sleeping.py` turns islands at rest into pymunk's sleepers after `space.sleep_time_threshold`.
 

@@ -201,7 +201,7 @@ def apply_correction(A: Scene, root: int, end: float) -> None:
     i = root
     if A.MEMBER[root].jointed > 0:
         while i >= 0:
-            if A.MEMBER[root].open > 0:
+            if A.MEMBER[root].open > 0 and A.MEMBER[root].rest != AT_REST:
                 move_to_end(A, i, end)
             i = A.MEMBER[i].following
         return

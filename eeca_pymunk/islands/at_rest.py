@@ -3,14 +3,16 @@
 `rest.py` determines which islands come to rest. Their bodies keep their poses, without velocity (the remaining kinetic
 energy enters the ledger as restitution; disks without friction keep their spin), and their contacts keep their forces.
 An island is solved again when one of its bodies is hit or edited, when the accelerations on it change, when a body that
-supports it moves, and while pairs have laws of their own: in steps in which collision handlers decide, and in spaces in
-which jointed bodies do not collide.
+supports it moves, and when collision handlers or joints give other laws to pairs of shapes than in the last step.
 
 `Member.rest` is AT_REST for all its bodies; for the root CHANGED once it has to be solved again.
 """
 
 from __future__ import annotations
 
+import math
+
+from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..contacts.memory import find, key_of
 from ..contacts.single import kinetic, note
@@ -76,12 +78,25 @@ def wake_supported(A: Scene) -> None:
 
 
 @nonallocating
+def checksum(RULE: FloatArray) -> float:
+    """A number by which other laws of pairs are noticed: the sum of their values, weighted by their places."""
+    total, weight, golden = 0.0, 0.0, 0.5 * (math.sqrt(5.0) - 1.0)
+    for r in range(RULE.shape[0]):
+        for c in range(RULE.shape[1]):
+            weight += golden if weight < 1.0 else golden - 1.0  # between 0 and 1.62, nowhere the same
+            total += weight * (RULE[r, c] + 1.0)
+    return total
+
+
+@nonallocating
 def wake_changed(A: Scene) -> None:
     """At the start of a step: dissolve all islands but those at rest that nothing has changed. The contacts of these
     stay in PUSHED, with the impulses of this step; the others are LASTED. Also advances rest timers."""
     STATE, MEMBER, BODY = A.STATE, A.MEMBER, A.BODY
     ground = BODY.shape[0] - 1
     dt = A.PAR.dt
+    rules = checksum(A.RULE)
+    ruled, A.PAR.rules = rules != A.PAR.rules, rules
     for c in range(A.COUNT.pushes):
         root = A.PUSHED_BY[c].root
         if root < 0:
@@ -90,7 +105,7 @@ def wake_changed(A: Scene) -> None:
             j = A.LINK[A.PUSHED_BY[c].b if side > 0 else A.PUSHED_BY[c].a].owner
             if j != ground and BODY[j].inv_mass == 0.0 and MEMBER[j].rest == CHANGED:
                 MEMBER[root].rest = CHANGED
-        if A.RULE.shape[0] > 0:
+        if ruled:
             MEMBER[root].rest = CHANGED
     wake_supported(A)
     for c in range(A.COUNT.pushes):

@@ -60,7 +60,7 @@ def rest_threshold(A: Scene, root: int, MINE: IntArray, with_supports: int, loss
         MINE: its bodies.  with_supports: number of bodies, with those of the islands that support it.
         lossy: whether any shape of the island has an elasticity below 1.
     """
-    if t > 0.0 or A.PAR.pulled == 0.0 or A.COUNT.together > 0 or A.RULE.shape[0] > 0:
+    if t > 0.0 or A.PAR.pulled == 0.0 or A.COUNT.together > 0:
         return 0.0
     if not motionless(A, MINE):
         if A.MEMBER[root].hits > 0:

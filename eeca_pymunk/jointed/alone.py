@@ -7,7 +7,7 @@ from ..compiled import nonallocating
 from ..islands.local import open_until
 from ..joints.ledger import clear_interval
 from ..model.joint_steps import ELASTIC
-from ..model.joints import MOTOR, ROTARY_SPRING, SPRING, Joints
+from ..model.joints import Joints
 from ..model.parameters.intervals import INTERVAL_RETRY
 from ..model.scene import Scene
 from ..pairs.rules import barred
@@ -45,40 +45,12 @@ def meets_no_other(A: Scene, root: int) -> bool:
 
 
 @nonallocating
-def lies_still(A: Scene, J: Joints, s: int) -> bool:
-    """Whether component s has neither velocities nor accelerations, and its joints gave nothing when they were solved
-    last, and have not been touched since: the same step again does nothing."""
-    C, n = J.COMPONENT[s], A.BODY.shape[0]
-    for i in range(C.first_body, C.end_body):
-        body = J.JOINED[i].body
-        b = A.BODY[body] if body < n else J.PARTNER[body - n]
-        if b.vx != 0.0 or b.vy != 0.0 or b.spin != 0.0:
-            return False
-        if body < n and (A.PULL[body, 0] != 0.0 or A.PULL[body, 1] != 0.0 or A.PULL[body, 2] != 0.0):
-            return False
-    for k in range(C.first_joint, C.end_joint):
-        joint = J.JOINT[J.COUPLING[k].joint]
-        if joint.kind in (SPRING, ROTARY_SPRING, MOTOR) or joint.touched != 0 or joint.last_step == 0.0:
-            return False
-        if joint.impulse[0] != 0.0 or joint.impulse[1] != 0.0:
-            return False
-    return True
-
-
-@nonallocating
 def begin_alone(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) -> float:
     """Begin an interval of length h, without contacts, of an island that `is_component` at instant t, at which all its
     bodies are. Returns 0; or, with nothing done, how many times too long it is, never in the `last` attempt."""
     s = J.OF[root]
     keep_joints(J, s)
     clear_interval(J.STEPPED[s])
-    if lies_still(A, J, s):
-        i = root
-        while i >= 0:
-            stay(A, i)
-            i = A.MEMBER[i].following
-        open_until(A, root, t + h)
-        return 0.0
     step_in_scratch(J, s, h, gather_alone(A, J, s, t, h), True)
     far = 0.0 if last else 2.0 if J.STEPPED[s].status >= ELASTIC else excess_alone(A, J, s, t, h)
     if far > INTERVAL_RETRY:
@@ -102,13 +74,6 @@ def account_turning(A: Scene, J: Joints, s: int, body: int, angle: float, way: f
     b = A.BODY[body]
     if b.inv_inertia > 0.0 and A.PULL[body, 2] != 0.0:
         J.STEPPED[s].turned_work += A.PULL[body, 2] * (way - (angle - b.angle)) / b.inv_inertia
-
-
-@nonallocating
-def stay(A: Scene, body: int) -> None:
-    """Set the correction of a body without velocity and acceleration to none."""
-    rest = A.RESTING[body]
-    rest.lift_x = rest.lift_y = rest.lift_angle = rest.lift_vx = rest.lift_vy = rest.lift_spin = 0.0
 
 
 @nonallocating

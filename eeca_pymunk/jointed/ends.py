@@ -17,6 +17,7 @@ from ..model.scene import Scene
 from ..pairs.lists import mark_pair
 from .gathered import restore_joints
 from .ledger import account_component
+from .rest import end_rest
 from .solve import try_interval
 
 
@@ -58,6 +59,7 @@ def shorten(A: Scene, J: Joints, root: int, t: float) -> int:
     over."""
     if not under_way(A, root):
         return 0
+    end_rest(A, root)
     before = A.COUNT.pushes
     take_back(A, root)
     began, A.RESTING[root].strays = A.BODY[root].since, 0.0
@@ -74,6 +76,7 @@ def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
     """End the interval of an island at instant t, its own end: account for it, and move its bodies there."""
     if not under_way(A, root):
         return
+    end_rest(A, root)
     for c in range(A.COUNT.pushes):
         if A.PUSHED_BY[c].root == root:
             account_contact(A, c, t)

@@ -15,10 +15,11 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..contacts.memory import key_of, shapes_of
 from ..geometry.flight import norm
-from ..geometry.sides import depth_limit
+from ..geometry.sides import depth_limit, smaller
 from ..islands.depths import closes_too_far, too_deep_at_end
 from ..model.joints import Joints
-from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_WAY, UNSOLVED_DEPTH
+from ..model.parameters.events import RESOLUTION
+from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_WAY, SAGITTA, UNSOLVED_DEPTH
 from ..model.scene import Scene
 from ..pairs.lists import far_apart
 from ..pairs.rules import barred
@@ -86,6 +87,22 @@ def excess_alone(A: Scene, J: Joints, s: int, t: float, h: float) -> float:
             wx, wy, turned = local.pose[0] - b.x, local.pose[1] - b.y, local.pose[2] - b.angle
             far = max(far, strays(A, i, wx, wy, turned, local.v0, A.PULL[i], t, h, A.BLOCK, 0))
     return far
+
+
+@nonallocating
+def within_sagitta(A: Scene, found: IntArray, t: float) -> float:
+    """Length of an interval from instant t: to the end of the step, or until points of a wall that turns have left
+    their chord by SAGITTA of a body that it touches, in one of the pairs `found` (p, 2): R (w h)^2 / 8 at a distance R
+    from its middle. What friction and joints hold on such a wall creeps by as much."""
+    most = 0.0
+    for c in range(found.shape[0]):
+        small = smaller(A, found[c, 0], found[c, 1])
+        for s in (found[c, 0], found[c, 1]):
+            wall = A.BODY[A.LINK[s].owner]
+            if wall.inv_mass == 0.0 and A.LINK[s].vertices > 1:
+                most = max(most, wall.spin * wall.spin * wall.extent / (8.0 * SAGITTA * small))
+    h = A.PAR.dt - t
+    return h if most * h * h <= 1.0 else max(1.0 / math.sqrt(most), A.PAR.dt / RESOLUTION)
 
 
 @kernel

@@ -37,10 +37,11 @@ from .fitting import fit
 from .gathered import keep_joints, restore_joints
 from .groups import find_groups
 from .ledger import work_left
-from .lengths import excess, led_in, sinks, too_deep_on_way
+from .lengths import excess, led_in, sinks, too_deep_on_way, within_sagitta
 from .lifting import lift_island
 from .losses import lost, slip_of
 from .press import press
+from .rest import rest_if_still
 
 
 @kernel
@@ -67,6 +68,8 @@ def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
         if status != AGAIN:
             if status == DONE:
                 rest.longest = max(INTERVAL_RETRY * h, 0.0 if h < whole else rest.longest)
+                if t == 0.0 and h == whole:
+                    rest_if_still(A, J, root)
             return status
     return DONE
 
@@ -119,6 +122,10 @@ def try_interval(A: Scene, J: Joints, root: int, t: float, h: float, last: bool)
         clear_places(A, MINE)
         far = begin_alone(A, J, root, t, h, last)
         return (AGAIN, h / far) if far > 0.0 else (DONE, h)
+    shorter = within_sagitta(A, found, t)
+    if shorter < h and not last:
+        clear_places(A, MINE)
+        return AGAIN, shorter
     if needs_memory(A, p):
         clear_places(A, MINE)
         return PUSHES_FULL, h

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import pymunk
@@ -136,6 +137,54 @@ def test_a_body_that_hits_it_hits_it_in_the_same_step() -> None:
     assert bodies[2].velocity.x < -1e-2
     assert report.ledger is not None
     assert abs(report.ledger.residual) < 1e-11
+
+
+def test_what_a_handler_decides_wakes_it_when_it_decides_otherwise() -> None:
+    """A box on a slope, whose friction is a handler's: it is at rest as long as that holds it, and slides without it by
+    g sin a dt in each step."""
+    space, slope = pymunk.Space(), 0.3
+    space.gravity = (G * math.sin(slope), -G * math.cos(slope))
+    floor, box = pymunk.Segment(space.static_body, (-9.0, 0.0), (9.0, 0.0), 0.0), pymunk.Body(1.0, 1 / 6)
+    box.position = (0.0, 0.5)
+    shape = pymunk.Poly.create_box(box, (1.0, 1.0))
+    shape.collision_type = 1
+    space.add(floor, box, shape)
+    friction = [0.5]
+
+    def decide(arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:
+        arbiter.friction = friction[0]
+
+    space.on_collision(1, None, pre_solve=decide)
+    stepper = ep.EECA(space)
+    for _ in range(5):
+        report = stepper.step(DT)
+    assert report.iterations == 0
+    friction[0] = 0.0
+    stepper.step(DT)
+    assert box.velocity.x == pytest.approx(G * math.sin(slope) * DT, rel=1e-9)
+    friction[0] = 0.5
+    for _ in range(60):
+        report = stepper.step(DT)
+    assert report.iterations == 0
+    assert box.velocity.length == 0.0
+
+
+def test_spaces_in_which_jointed_bodies_do_not_collide_rest() -> None:
+    """The joint's `collide_bodies` is a law of a pair that stays the same."""
+    space, bodies, _ = stack(3)
+    for k in range(2):
+        ball = pymunk.Body(1.0, 1.0)
+        ball.position = (5.0 + 0.5 * k, 0.5)
+        space.add(ball, pymunk.Circle(ball, 0.5))
+        bodies.append(ball)
+    pin = pymunk.PinJoint(*bodies[3:])
+    pin.collide_bodies = False
+    space.add(pin)
+    stepper = ep.EECA(space)
+    for _ in range(5):
+        report = stepper.step(DT)
+    assert report.iterations == 0
+    assert sum(report.impulse) == pytest.approx(8.0 * G * DT, rel=1e-9)
 
 
 def test_without_weight_nothing_comes_to_a_stand() -> None:

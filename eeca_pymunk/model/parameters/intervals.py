@@ -13,6 +13,9 @@ SOLVES_BEFORE_HASTE = heuristic(3, "solves of every body in a step",
     "Work after which large islands are neither hit nor joined in the step.")
 IMPACT_SPEED = accuracy(2.0, "of |a| h",
     "Approach speed from which a contact that closes in an interval is an impact; what is slower may freeze.")
+SAGITTA = accuracy(0.01, "of the smaller body",
+    "How far points of a turning wall leave their chord in one interval with joints. Larger: jointed bodies creep on "
+    "such walls.")
 NORMAL_TURN = accuracy(0.1, "rad", "Rotation of a normal in one interval. Larger: longer intervals, coarser rolling.")
 EXACT_CONTACTS = heuristic(12, "contacts",
     "Number up to which an interval ends where a slipping contact begins to stick or a normal has rotated.")

@@ -1,0 +1,162 @@
+"""Rest of islands with joints.
+
+Joints and contacts that have left an island as it was over a whole step hold it in every following step, until
+something changes: their forces are static. So an island is put to rest whose bodies have no velocity at the start of
+such an interval, nor at its end, up to REST_SPEED of what the forces that balance would give them: it keeps its poses,
+and contacts and joints their forces (`..islands.at_rest`). It is solved again when a joint is edited, when the law of a
+spring changes, when what joints hold it to moves, and in all cases in which an island without joints is.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..compiled import nonallocating
+from ..islands.at_rest import mark_changed, put_to_rest
+from ..joints.ledger import clear_interval
+from ..model.bodies import AT_REST, CHANGED
+from ..model.joint_steps import EXACT
+from ..model.joints import GEAR, Joints
+from ..model.parameters.rest import REST_SPEED
+from ..model.scene import Scene
+from ..pairs.rules import law
+from ..rows.equilibrium import point_speed
+from .gathered import keep_joints
+
+
+@nonallocating
+def reach_of(A: Scene, i: int) -> float:
+    """Length by which the spin of body i adds to its speed: that of its shapes, or its radius of gyration."""
+    body = A.BODY[i]
+    gyration = math.sqrt(body.inv_mass / body.inv_inertia) if body.inv_inertia > 0.0 else 0.0
+    return float(max(body.extent, gyration))
+
+
+@nonallocating
+def balanced(A: Scene, J: Joints, i: int) -> float:
+    """Speed that what acts on body i, on its own, gives its points in this step: accelerations, or its component's
+    joints, if it is the first body of one."""
+    found = (math.hypot(A.PULL[i, 0], A.PULL[i, 1]) + abs(A.PULL[i, 2]) * reach_of(A, i)) * A.PAR.dt
+    s = J.OF[i]
+    if A.MEMBER[i].tied != i:
+        return float(found)
+    for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
+        joint = J.JOINT[J.COUPLING[k].joint]
+        push = abs(joint.impulse[0]) + abs(joint.impulse[1])
+        for end in range(2):
+            if joint.body[end] < A.BODY.shape[0]:
+                body = A.BODY[joint.body[end]]
+                per = body.inv_mass if joint.kind < GEAR else body.inv_inertia * reach_of(A, joint.body[end])
+                found = max(found, push * per)
+    return float(found)
+
+
+@nonallocating
+def is_still(A: Scene, J: Joints, root: int) -> bool:
+    """Whether the bodies of an island, whose interval is the whole step, are without velocity at its start and at its
+    end, and nothing in it has been hit."""
+    most, i = 0.0, root
+    while i >= 0:
+        if A.MEMBER[i].busy > 0:
+            return False
+        most = max(most, REST_SPEED * balanced(A, J, i))
+        i = A.MEMBER[i].following
+    i = root
+    while i >= 0:
+        body, rest, reach = A.BODY[i], A.RESTING[i], reach_of(A, i)
+        if point_speed(body.vx, body.vy, body.spin, reach) > most:
+            return False
+        if point_speed(rest.lift_vx, rest.lift_vy, rest.lift_spin, reach) > most:
+            return False
+        i = A.MEMBER[i].following
+    return True
+
+
+@nonallocating
+def moves(A: Scene, J: Joints, body: int) -> bool:
+    """Whether a body without mobility, in row `body` of BODY or behind these of PARTNER, moves in this step."""
+    n = A.BODY.shape[0]
+    if body < n:
+        return bool(A.BODY[body].inv_mass == 0.0 and A.MEMBER[body].rest == CHANGED)
+    partner = J.PARTNER[body - n]
+    return bool(partner.vx != 0.0 or partner.vy != 0.0 or partner.spin != 0.0)
+
+
+@nonallocating
+def holds_still(A: Scene, J: Joints, s: int) -> bool:
+    """Whether all joints of component s hold exactly, and to nothing that moves."""
+    if J.STEPPED[s].status != EXACT:
+        return False
+    for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
+        joint = J.JOINT[J.COUPLING[k].joint]
+        if joint.touched != 0 or moves(A, J, joint.body[0]) or moves(A, J, joint.body[1]):
+            return False
+    return True
+
+
+@nonallocating
+def presses_still(A: Scene, root: int) -> bool:
+    """Whether no contact of an island is on a body without mobility that moves, or on a surface that does."""
+    for c in range(A.COUNT.pushes):
+        if A.PUSHED_BY[c].root != root:
+            continue
+        _, _, surface_x, surface_y = law(A, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b)
+        if surface_x != 0.0 or surface_y != 0.0:
+            return False
+        for shape in (A.PUSHED_BY[c].a, A.PUSHED_BY[c].b):
+            body = A.BODY[A.LINK[shape].owner]
+            if body.inv_mass == 0.0 and (body.vx != 0.0 or body.vy != 0.0 or body.spin != 0.0):
+                return False
+    return True
+
+
+@nonallocating
+def rest_if_still(A: Scene, J: Joints, root: int) -> None:
+    """Put an island to rest whose interval, which is the whole step and has been solved, moves nothing."""
+    if A.COUNT.together > 0 or A.COUNT.unmet > 0 or A.MEMBER[root].hits > 0:
+        return
+    if not (is_still(A, J, root) and presses_still(A, root)):
+        return
+    i = root
+    while i >= 0:
+        if A.MEMBER[i].tied == i and not holds_still(A, J, J.OF[i]):
+            return
+        i = A.MEMBER[i].following
+    i = root
+    while i >= 0:
+        rest = A.RESTING[i]
+        rest.lift_x = rest.lift_y = rest.lift_angle = rest.lift_vx = rest.lift_vy = rest.lift_spin = 0.0
+        if A.MEMBER[i].tied == i:
+            clear_interval(J.STEPPED[J.OF[i]])
+            keep_joints(J, J.OF[i])  # where the interval begins again if the island is hit
+        i = A.MEMBER[i].following
+    put_to_rest(A, root)
+
+
+@nonallocating
+def disturbed(A: Scene, J: Joints, s: int) -> bool:
+    """Whether the joints of component s, at rest, are others than in the last step, or hold it to what moves."""
+    for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
+        j = J.COUPLING[k].joint
+        joint, kept = J.JOINT[j], J.KEPT[j]
+        # The program's functions change the laws of springs without an edit.
+        if joint.push != kept.push or joint.stiffness != kept.stiffness or joint.rest != kept.rest:
+            return True
+        if joint.touched != 0 or moves(A, J, joint.body[0]) or moves(A, J, joint.body[1]):
+            return True
+    return False
+
+
+@nonallocating
+def wake_disturbed(A: Scene, J: Joints) -> None:
+    """At the start of a step: set the islands at rest CHANGED whose joints no longer hold them as in the last step."""
+    for i in range(A.BODY.shape[0] - 1):
+        if A.MEMBER[i].tied == i and A.MEMBER[i].rest == AT_REST and disturbed(A, J, J.OF[i]):
+            A.MEMBER[A.STATE[i].island].rest = CHANGED
+
+
+@nonallocating
+def end_rest(A: Scene, root: int) -> None:
+    """End the rest of an island with joints that is hit in this step: it is in an interval that has begun with it."""
+    if A.MEMBER[root].rest == AT_REST:
+        mark_changed(A, root)
