@@ -38,7 +38,7 @@ def rewind_joints(J: Joints, s: int) -> None:
         if J.COUPLING[k].kind == RATCHET:
             J.JOINT[j].notch = J.KEPT[j].notch
         J.JOINT[j].side, J.JOINT[j].touched = J.KEPT[j].side, J.KEPT[j].touched
-        J.JOINT[j].owed, J.JOINT[j].compliance = J.KEPT[j].owed, J.KEPT[j].compliance
+        J.JOINT[j].compliance = J.KEPT[j].compliance
 
 
 @nonallocating

@@ -80,6 +80,17 @@ def kinetic(local: Rows[BodyStep], bodies: int, kept: bool) -> float:
 
 
 @nonallocating
+def saved_energy(local: Rows[BodyStep], bodies: int) -> float:
+    """Kinetic energy of what joints can move, of the velocities that were saved."""
+    total = 0.0
+    for i in range(bodies):
+        for c in range(3):
+            if local[i].mobility[c] > 0.0:
+                total += 0.5 * local[i].saved_velocity[c] ** 2 / local[i].mobility[c]
+    return total
+
+
+@nonallocating
 def fitting_loss(local: Rows[BodyStep], bodies: int, ledger: JointLedger) -> float:
     """The loss in the change of velocities, from `v_kept` to `v0`, that made them fit their joints.
 

@@ -28,6 +28,7 @@ from ..model.parameters.joints import (
 from ..newton.effort import work_of_iteration
 from ..newton.motion import go_back
 from ..newton.solve import drop_impulses
+from .correct import kinetic, saved_energy
 from .foresight import foretell, forget, recalls, remember
 from .ledger import clear_ledger
 from .limits import step_with_limits
@@ -108,21 +109,16 @@ def take_parts(W: Workspace, h: float, length: float, rung: int, parts: int, giv
 
 @nonallocating
 def repaid(W: Workspace, own: bool) -> bool:
-    """Whether exact rows give no more energy than they have taken, or little, which is taken back.
+    """Whether exact rows give no energy, or little, which is taken back.
 
     What an earlier step left apart (`own`) closes at once, and gives little beside what moved before, or the step
     fails. Other rows hold to round-off e of their places, and give e times their impulse over h: the shorter, the more.
     """
     part = W.J.PART
-    gain, had = part.closed - W.J.JOINT[W.link[0].joint].owed, 0.0
-    gain -= 0.0 if own else max(part.limited, 0.0)  # a limit in such a step loses as much more
+    gain = part.closed - (0.0 if own else max(part.limited, 0.0))  # a limit in such a step loses as much more
     if not gain > 0.0 or not supports_rest(W.J.LOCAL, W.bodies):
         return True
-    for i in range(W.bodies):
-        for c in range(3):
-            if W.J.LOCAL[i].mobility[c] > 0.0:
-                v, after = W.J.LOCAL[i].saved_velocity[c], 0.0 if own else W.J.LOCAL[i].v0[c]
-                had += 0.5 * (v * v + after * after) / W.J.LOCAL[i].mobility[c]
+    had = saved_energy(W.J.LOCAL, W.bodies) + (0.0 if own else kinetic(W.J.LOCAL, W.bodies, False))
     if own and not gain <= REPAID * had:
         return False
     if own or gain > JOINT_GAIN * had:

@@ -1,9 +1,8 @@
 """One step of a component without contacts.
 
 Joints that are apart, by the user or by earlier steps, are closed; the ladder (`ladder`) takes the step, or one linear
-system where it fails (`unheld`); joints keep what the next step begins with. Energy that elastic joints take and give
-back enters the ledger as `closed`, and they give back no more than they took; what linear rows gain is taken from what
-moves (`lock`).
+system where it fails (`unheld`); joints keep what the next step begins with. What elastic and linear joints gain is
+taken from what moves (`lock`).
 """
 
 from __future__ import annotations
@@ -96,11 +95,8 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
     before = step_linearly(W, h, length) if status == LINEAR else 0.0
     if status >= ELASTIC:
         status = take_gain(W, h, status, before)
-    else:
-        if abs(W.J.PART.closed) > kinetic(local, W.bodies, False):  # works that cancel but for round-off
-            close_ledger(local, W.bodies, W.J.PART)
-        if not touched:
-            W.J.JOINT[W.link[0].joint].owed = 0.0
+    elif abs(W.J.PART.closed) > kinetic(local, W.bodies, False):  # works that cancel but for round-off
+        close_ledger(local, W.bodies, W.J.PART)
     ledger.gave = max(farthest(W) - apart, 0.0) if status >= ELASTIC else 0.0
     add(ledger, W.J.PART)
     write_joints(W, h, GIVES_WAY if status == ELASTIC else LEFT_APART if status == LINEAR else 0)

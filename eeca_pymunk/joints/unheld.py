@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from ..compiled import nonallocating
-from ..model.joint_steps import ELASTIC, LINEAR
+from ..model.joint_steps import LINEAR
 from ..model.joints import Workspace
-from ..model.parameters.joints import LINEAR_APART
+from ..model.parameters.joints import JOINT_GAIN, LINEAR_APART
 from ..newton.motion import advance, go_back, move
 from ..newton.solve import drop_impulses
 from .closing import farthest
+from .correct import kinetic, saved_energy
 from .foresight import forget
 from .ladder import restore, undo_impulses
 from .ledger import clear_ledger, close_ledger
@@ -56,21 +57,22 @@ def stop_joints(W: Workspace, h: float) -> None:
 
 @nonallocating
 def take_gain(W: Workspace, h: float, status: int, before: float) -> int:
-    """Close the ledger of a step that was ELASTIC or LINEAR, and take what it has gained beyond what is `owed` from the
-    motion; the status. Where that is not enough, or linear rows have moved joints apart, which were `before`, all
-    bodies move as one. What elastic joints hold they may give back; linear rows hold nothing."""
-    local, part, first, stopped = W.J.LOCAL, W.J.PART, W.J.JOINT[W.link[0].joint], False
+    """Close the ledger of a step that was ELASTIC or LINEAR, and take what it has gained from the motion; the status.
+    Where that is not enough, or linear rows have moved joints apart, which were `before`, all bodies move as one.
+
+    Joints that close within a short h make bodies fast: such a gain is large beside what bodies had, and what is left
+    of it, the work of the way that they have gone, may be small beside the gain. So it is measured by what they had.
+    """
+    local, part, stopped = W.J.LOCAL, W.J.PART, False
     close_ledger(local, W.bodies, part)
-    if part.closed > first.owed:
-        gain = part.closed - first.owed
-        taken = lock_energy(local, W.bodies, gain)
-        close_ledger(local, W.bodies, part)  # anew, as a gain may be large beside what is left of it
-        if gain - taken > 1e-9 * gain + 1e-12 * first.owed and supports_rest(local, W.bodies):
+    if part.closed > 0.0:
+        lock_energy(local, W.bodies, part.closed)
+        close_ledger(local, W.bodies, part)
+        had = saved_energy(local, W.bodies) + kinetic(local, W.bodies, False)
+        if part.closed > JOINT_GAIN * had and supports_rest(local, W.bodies):
             status, stopped = LINEAR, True
     if status == LINEAR and not farthest(W) <= before + LINEAR_APART:
         stopped = supports_rest(local, W.bodies)
     if stopped:
         stop_joints(W, h)
-    spent = part.closed if status == ELASTIC else max(part.closed, 0.0)
-    first.owed = max(first.owed - spent, 0.0)
     return status

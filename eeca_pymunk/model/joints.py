@@ -56,8 +56,8 @@ class Joint(Record):
     known_step: float
     past_led: Annotated[FloatArray, 6, 6]  # accelerations of bodies a and b along their three ways in parts of a step
     past_push: Annotated[FloatArray, 2, 6]  # impulses along two rows, over the lengths of the parts
-    owed: float  # of the first joint of a component: energy that steps whose joints did not hold have taken
-    compliance: float  # likewise: with which compliance (time²) joints gave way in the last step, 0 if they held
+    compliance: float  # of the first joint of a component: with which compliance (time²) joints gave way in the last
+    # step, 0 if they held
 
 
 # Kinds of joints.
@@ -71,7 +71,7 @@ EDITED, APART, LEFT_APART, GIVES_WAY = 1, 2, 3, 4
 # Fields that steps change.
 OF_STEPS = (
     "side", "impulse", "struck", "last_step", "work", "led", "known_parts", "known_step", "past_led", "past_push",
-    "owed", "compliance",
+    "compliance",
 )  # fmt: skip
 
 
