@@ -6,7 +6,8 @@ from 1 mm to 50 m, steps of 1/240 to 1/10 s, with gravity or without; joints and
 * all is finite; the ledger closes to 1e-11 of the scale of energy, and its losses are not negative by more than that;
 * in a container that rests energy never rises without joints that drive;
 * what comes from outside is no more than what acts from there can do (`outside.py`);
-* nobody leaves the container, by more than a part of his size, but whom joints lead out (`led.py`);
+* nobody leaves the container, by more than a part of his size, but whom joints lead out (`led.py`), or have led so far
+  that his centre is beyond a wall, which then keeps him outside;
 * a step of up to 1/30 s takes no longer than 20 ms of processor time, or 100 native steps; a longer one as much for
   each 1/30 s. Steps that do are repeated, as the machine may have been busy, and scenes that have one are counted: a
   soak prints their number, tests measure no times. Events spend their budget only;
@@ -41,7 +42,7 @@ OVERSPENT = 1.5  # work of a step whose budget is spent, over the budget: the la
 STANDS = 5
 ROUND_OFF = 2.3e-16
 SPRING_ROUND_OFF = 16.0 * ROUND_OFF
-OUT = 0.5  # of a body's least size
+OUT, BEYOND = 0.5, 1e-3  # of a body's least size: how far it may be outside; how far the wall does not keep it inside
 
 
 class Broken(AssertionError):
@@ -339,9 +340,9 @@ class Composition:
         for body, size in zip(self.bodies, self.sizes, strict=True):
             x, y = self.box.world_to_local(body.position)
             out = max(abs(x), abs(y)) - self.half - self.rounding
-            if out <= OUT * size:
+            if out <= BEYOND * size:
                 self.led.discard(body)
-            elif body not in self.led:
-                if not led_out(self.space, self.box, body, self.length):
-                    raise Broken(f"step {k}: {next(iter(body.shapes))} is {out / size:.2g} of its size outside")
+            elif body not in self.led and led_out(self.space, self.box, body, self.length):
                 self.led.add(body)
+            if out > OUT * size and body not in self.led:
+                raise Broken(f"step {k}: {next(iter(body.shapes))} is {out / size:.2g} of its size outside")

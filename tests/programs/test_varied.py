@@ -350,3 +350,9 @@ def test_what_is_solved_again_for_a_cut_interval_takes_no_body_through_a_wall() 
     """A plank in a corner, under bodies that fall 98 of its lengths in a step: an interval that has given energy is
     solved again where it is cut, and on its new path the plank would have met a wall before."""
     Varied(13500963).play(30)
+
+
+def test_what_joints_have_led_beyond_a_wall_the_wall_keeps_outside() -> None:
+    """A groove's end holds an arm that cannot turn on a box that does: its centre is led through a wall, which from
+    then on pushes it outward, off the end of the groove."""
+    Varied(16001825, True).play(88)
