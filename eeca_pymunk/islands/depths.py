@@ -15,7 +15,7 @@ from ..geometry.gap import gap_at
 from ..geometry.sides import depth_limit, half_width, held_side, remembers, smaller
 from ..model.contacts import Row
 from ..model.islands import Island, IslandContacts
-from ..model.parameters.intervals import INTERVAL_DEPTH_LEAST, INTERVAL_RETRY
+from ..model.parameters.intervals import INTERVAL_DEPTH, INTERVAL_DEPTH_LEAST, INTERVAL_RETRY
 from ..model.scene import Scene
 from ..rows.build import normal_rate
 from .candidates import excess_way
@@ -133,11 +133,29 @@ def deep_at_end(A: Scene, isle: Island, END: FloatArray, ROWS: Rows[Row], m: int
     return max((way + root) / (2.0 * room), 1.01 * INTERVAL_RETRY)
 
 
+@nonallocating
+def rises_too_far(A: Scene, ROWS: Rows[Row], L: FloatArray, VN: FloatArray, m: int, h: float) -> float:
+    """How many times too long an interval h is within which one of m contacts is too far open; 0 if it is not.
+
+    A contact that pushes, opens with u at the start, and closes with u+ at the end, comes back in truth from a height
+    u^2/2a. Under a force that is constant it comes back by the end, from (1/2) h u^2 / (u - u+). Cut before, its bodies
+    have the energy of that height, and are elsewhere if they are solved again.
+    """
+    far = 0.0
+    for z in range(m):
+        before, after = ROWS[z].un, normal_rate(ROWS[z], VN)
+        if before > 0.0 and after < 0.0 and L[z, 0] > 0.0:
+            a, b = shapes_of(A, ROWS[z])
+            far = max(far, 0.5 * h * before * before / ((before - after) * INTERVAL_DEPTH * smaller(A, a, b)))
+    return far
+
+
 @kernel
 def times_too_long(A: Scene, isle: Island, contacts: IslandContacts, m: int, h: float) -> float:
     """How many times too long a solved interval h of m contacts is, if more than INTERVAL_RETRY."""
     ROWS, VN = contacts.ROWS, contacts.VN
     far = max(excess_way(A, ROWS, isle.V, VN, m, h), closes_too_far(A, isle, ROWS, VN, m, h))
+    far = max(far, rises_too_far(A, ROWS, contacts.L, VN, m, h))
     if far <= INTERVAL_RETRY and len(A.SIDE) > 0:
         END = isle.POSE + 0.5 * h * (isle.V + VN)
         far = too_deep_at_end(A, isle, END, ROWS, m, h, False)

@@ -3,9 +3,9 @@
 Forces of an interval are right for the whole of it: a soft landing pushes before the shapes touch. Cut after s, an
 impulse J with the mean relative velocity u has lost D = -J.u, and has given energy if that is negative. Then the island
 is solved again, from the start of its interval to the cut, whose impulses lose energy, or none. Where that is no
-interval (bodies would move too far, or too far from the paths on which impacts were predicted), all impulses are scaled
-by one q instead. With E = sum J.u > 0 and the energy C = sum m w^2 / 2 of the changes of velocity w that they cause,
-they give q (E - C) + q^2 C, which is 0 for q = 1 - E / C.
+interval (bodies would move too far, or too far from the paths on which impacts were predicted), all impulses of bodies
+that touch are scaled by one q instead. With E = sum J.u > 0 and the energy C = sum m w^2 / 2 of the changes of velocity
+w that they cause, they give q (E - C) + q^2 C, which is 0 for q = 1 - E / C.
 """
 
 from __future__ import annotations
@@ -75,34 +75,67 @@ def leave_paths(A: Scene, MINE: IntArray, VN: FloatArray, s: float) -> bool:
     return False
 
 
-@nonallocating
+@kernel
+def touching_groups(A: Scene, MINE: IntArray, first: int, end: int) -> IntArray:
+    """Of the bodies MINE, which have their places: the groups that contacts [first, end) connect, as the least place of
+    each."""
+    GROUP = np.arange(len(MINE))
+    for c in range(first, end):
+        one, two = A.PLACE[A.LINK[A.PUSHED_BY[c].a].owner], A.PLACE[A.LINK[A.PUSHED_BY[c].b].owner]
+        if one >= 0 and two >= 0:
+            least, other = min(GROUP[one], GROUP[two]), max(GROUP[one], GROUP[two])
+            for q in range(len(MINE)):
+                if GROUP[q] == other:
+                    GROUP[q] = least
+    return GROUP
+
+
+@kernel
 def scale_impulses(A: Scene, root: int, t: float) -> None:
     """Scale the impulses of an island, whose bodies are at the start of its interval, so that they give no energy up to
-    instant t: q in the docstring of the module, or 0."""
-    BODY, PULL, lost, square = A.BODY, A.PULL, 0.0, 0.0
+    instant t: q in the docstring of the module, or 0, for each group of bodies that touch. The energy is that of a
+    height, so that bodies sink by it: those whose contacts have given none keep their impulses."""
     first, end = contacts_of(A, root)
     start = A.PUSHED[first].start
+    MINE = number_bodies(A, root)
+    n = len(MINE)
+    GROUP, LOST, SQUARE, Q = touching_groups(A, MINE, first, end), np.zeros(n), np.zeros(n), np.ones(n)
     for c in range(first, end):
         normal, tangential = losses(A, c, t)
-        lost = lost + normal + tangential
-    i = root
-    while i >= 0:
-        x, y, turn = BODY[i].ax - PULL[i, 0], BODY[i].ay - PULL[i, 1], BODY[i].angular - PULL[i, 2]
-        square += 0.5 * (x * x + y * y) * (t - start) ** 2 / BODY[i].inv_mass
-        if BODY[i].inv_inertia > 0.0:
-            square += 0.5 * (turn * (t - start)) ** 2 / BODY[i].inv_inertia
-        i = A.MEMBER[i].following
-    q, _ = scale_to_lose(lost + square, square, 0.0, False)
-    i = root
-    while i >= 0:
-        BODY[i].ax = PULL[i, 0] + q * (BODY[i].ax - PULL[i, 0])
-        BODY[i].ay = PULL[i, 1] + q * (BODY[i].ay - PULL[i, 1])
-        BODY[i].angular = PULL[i, 2] + q * (BODY[i].angular - PULL[i, 2])
-        i = A.MEMBER[i].following
+        LOST[group_of(A, GROUP, c)] += normal + tangential
+    for q in range(n):
+        body, pull = A.BODY[MINE[q]], A.PULL[MINE[q]]
+        x, y, turn = body.ax - pull[0], body.ay - pull[1], body.angular - pull[2]
+        SQUARE[GROUP[q]] += 0.5 * (x * x + y * y) * (t - start) ** 2 / body.inv_mass
+        if body.inv_inertia > 0.0:
+            SQUARE[GROUP[q]] += 0.5 * (turn * (t - start)) ** 2 / body.inv_inertia
+    for g in range(n):
+        if LOST[g] < 0.0:
+            Q[g], _ = scale_to_lose(LOST[g] + SQUARE[g], SQUARE[g], 0.0, False)
+    for q in range(n):
+        body, pull, part = A.BODY[MINE[q]], A.PULL[MINE[q]], Q[GROUP[q]]
+        if part != 1.0:
+            body.ax = pull[0] + part * (body.ax - pull[0])
+            body.ay = pull[1] + part * (body.ay - pull[1])
+            body.angular = pull[2] + part * (body.angular - pull[2])
     for c in range(first, end):
-        R = A.PUSHED[c]
-        R.normal, R.tangential, R.work, R.change = q * R.normal, q * R.tangential, q * R.work, q * R.change
-        R.un_before, R.un_after, R.ut_before, R.ut_after = 0.0, 0.0, 0.0, 0.0
+        R, part = A.PUSHED[c], Q[group_of(A, GROUP, c)]
+        if part != 1.0:
+            R.normal, R.tangential, R.work, R.change = (
+                part * R.normal,
+                part * R.tangential,
+                part * R.work,
+                part * R.change,
+            )
+            R.un_before, R.un_after, R.ut_before, R.ut_after = 0.0, 0.0, 0.0, 0.0
+    clear_places(A, MINE)
+
+
+@nonallocating
+def group_of(A: Scene, GROUP: IntArray, c: int) -> int:
+    """The group of contact c."""
+    one, two = A.PLACE[A.LINK[A.PUSHED_BY[c].a].owner], A.PLACE[A.LINK[A.PUSHED_BY[c].b].owner]
+    return int(GROUP[one] if one >= 0 else GROUP[two])
 
 
 @kernel
