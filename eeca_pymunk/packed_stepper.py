@@ -72,6 +72,8 @@ class PackedStepper(HookedStepper):
         changed = sleep.changed()
         if not changed and sleep.nothing_moves():
             sleep.step(dt)
+            if world.joints is not None:
+                world.joints.go_on(dt)
             self.time += dt
             if self.sync:
                 self._sync.call_back()

@@ -47,6 +47,10 @@ class ConstraintImpulses:
                     pymunk.Constraint.impulse = _OWN  # type: ignore[method-assign]
             self._checked = ConstraintImpulses.shows
 
+    def shown_at(self, stamp: int) -> bool:
+        """Whether they are those after this number of pymunk's own steps."""
+        return self._stamp == stamp
+
     def read(self, j: int) -> float | None:
         """The impulse of row j, mass length/time; of rotary joints mass length²/time. That of springs has a sign
         (positive pushes the bodies apart), others are >= 0. None if pymunk has taken a step since."""

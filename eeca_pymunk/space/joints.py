@@ -232,3 +232,15 @@ class JointRows(Listing):
                 item.angle = float(self.joint[j].notch)
                 self._edits.forget(j)
         self._impulses.show(self.items, self._timestamp())
+
+    def go_on(self, dt: float) -> None:
+        """After a step in which all bodies sleep, let `constraint.impulse` return the impulses of the last forces, not
+        those of pymunk's solver. If pymunk has taken none, nothing has changed (`Sleep.step`)."""
+        if self._impulses.shown_at(self._timestamp()):
+            return
+        last, impulse = self.joint["last_step"], self.joint["impulse"]
+        held = last > 0.0
+        impulse[held] *= (dt / last[held])[:, None]
+        last[held] = dt
+        self.joint["struck"] = 0.0
+        self._impulses.show(self.items, self._timestamp())

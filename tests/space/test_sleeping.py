@@ -185,6 +185,27 @@ def test_what_hangs_at_rest_sleeps_and_an_impulse_wakes_it() -> None:
     assert body.velocity.x == pytest.approx(math.cos(DT), abs=3e-3)
 
 
+def test_joints_go_on_holding_what_sleeps() -> None:
+    """Their impulses are the weight times dt also in steps in which everything sleeps; pymunk's solver has others."""
+    space = pymunk.Space()
+    space.gravity, space.sleep_time_threshold = (0.0, -10.0), 0.1
+    body = pymunk.Body(2.0, 0.1)
+    body.position = 0.0, -1.0
+    joints = [
+        pymunk.PivotJoint(space.static_body, body, (0.0, 0.0)),
+        pymunk.GearJoint(space.static_body, body, 0.0, 1.0),
+    ]
+    space.add(body, pymunk.Circle(body, 0.1), *joints)
+    stepper = ep.EECA(space)
+    for _ in range(12):
+        stepper.step(DT)
+    assert body.is_sleeping
+    for dt in (DT, 0.1, 0.1, 1 / 240, DT):
+        stepper.step(dt)
+        assert body.is_sleeping
+        assert [joint.impulse for joint in joints] == pytest.approx([20.0 * dt, 0.0], abs=1e-9)
+
+
 def test_what_is_jointed_sleeps_on_beside_others() -> None:
     """Also where joints, of bodies that sleep and of others, have forces, laws and functions of their own."""
     space = pymunk.Space()
