@@ -25,6 +25,7 @@ from ..model.parameters.intervals import (
     CORRECTION_SHARE,
     CORRECTION_STEP,
     CORRECTION_SWEEPS,
+    CORRECTION_TRIES,
     CORRECTION_WORK,
     OVERLAP_LEFT,
 )
@@ -60,37 +61,40 @@ def lifting(
     MU, near = np.zeros(m), 0.1 * OVERLAP_LEFT * size
     if lift(problem, GAPS, MU, D, near, CORRECTION_SWEEPS + CORRECTION_WORK // m) > near:
         keep_walls(problem, n, GAPS, MU, D)
-    part = admissible(D, EXTENT, n, size)
-    if part < 1.0:
-        for i in range(n):
-            for c in range(3):
-                D[i, c] *= part
-    work = -against(ACC, IM, II, n, D)
+    scale(D, n, min(admissible(D, EXTENT, n, size), 1.0))
     END, NEW = moved(POSE, VN, 0.5 * h), np.empty((n, 3))
-    turn = x = y = square = 0.0
+    turn = x = y = 0.0
     touched = np.zeros(n, np.uint8)
-    if len(IM) == n:
+    for i in range(m if len(IM) == n else 0):
         # Bodies without contacts leave the island.
-        for i in range(m):
-            touched[ROWS[i].a] = 1
-            touched[ROWS[i].b] = 1
-        place(END, D, n, NEW)
-        turn, x, y, spin, inertia = unturn(NEW, D, VN, IM, II, touched)
-        work += turn * spin
-        square = 0.5 * inertia * turn * turn
-    if work + square > budget + CORRECTION_ROUND_OFF * against(np.abs(ACC), IM, II, n, np.abs(D)):
-        part = CORRECTION_SHARE * budget / (max(work, 0.0) + square)
-        for i in range(n):
-            for c in range(3):
-                D[i, c] *= part
-        if turn != 0.0:
+        touched[ROWS[i].a] = 1
+        touched[ROWS[i].b] = 1
+    for tries in range(CORRECTION_TRIES):
+        work, square = -against(ACC, IM, II, n, D), 0.0
+        if len(IM) == n:
             place(END, D, n, NEW)
-            turn, x, y, _, _ = unturn(NEW, D, VN, IM, II, touched)
+            turn, x, y, spin, inertia = unturn(NEW, D, VN, IM, II, touched)
+            work, square = work + turn * spin, 0.5 * inertia * turn * turn
+        if not work + square > budget + CORRECTION_ROUND_OFF * against(np.abs(ACC), IM, II, n, np.abs(D)):
+            break
+        # The spin is that with what D adds to the angular momentum: with the moment of inertia as it is, p D cost
+        # p linear - p^2 square.
+        linear, most = work + 2.0 * square, CORRECTION_SHARE * budget
+        part = 2.0 * most / (linear + math.sqrt(max(linear * linear - 4.0 * square * most, 0.0)))
+        scale(D, n, part if tries + 2 < CORRECTION_TRIES else 0.0)
     for i in range(n):
         for c in range(3):
             JUMP[i, c] = D[i, c]
     if turn != 0.0:
         turn_by(NEW, touched, turn, x, y, JUMP, 3)
+
+
+@nonallocating
+def scale(D: FloatArray, n: int, part: float) -> None:
+    """Scale the displacements D of n bodies."""
+    for i in range(n if part != 1.0 else 0):
+        for c in range(3):
+            D[i, c] *= part
 
 
 @nonallocating

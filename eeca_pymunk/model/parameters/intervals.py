@@ -78,5 +78,7 @@ WALL_SWEEPS = work(8, "sweeps",
 CORRECTION_ROUND_OFF = round_off(1e-14, "of its work", "Round-off of the work of a correction.")
 CORRECTION_SHARE = accuracy(0.99, "of a budget that does not suffice",
     "Part of the energy lost that a correction uses; the rest covers changes of moments of inertia.")
+CORRECTION_TRIES = work(5, "number",
+    "How often a correction is made smaller, as moments of inertia change with it; the last one is none.")
 REPAY_ROUND_OFF = round_off(1e-13, "of the energies",
     "Energy gain of a shortened interval below which its forces are not scaled.")
