@@ -128,7 +128,7 @@ def rest_if_still(A: Scene, J: Joints, root: int) -> None:
         rest.lift_x = rest.lift_y = rest.lift_angle = rest.lift_vx = rest.lift_vy = rest.lift_spin = 0.0
         if A.MEMBER[i].tied == i:
             clear_interval(J.STEPPED[J.OF[i]])
-            keep_joints(J, J.OF[i])  # where the interval begins again if the island is hit
+            keep_joints(J, J.OF[i])
         i = A.MEMBER[i].following
     put_to_rest(A, root)
 
@@ -151,8 +151,11 @@ def disturbed(A: Scene, J: Joints, s: int) -> bool:
 def wake_disturbed(A: Scene, J: Joints) -> None:
     """At the start of a step: set the islands at rest CHANGED whose joints no longer hold them as in the last step."""
     for i in range(A.BODY.shape[0] - 1):
-        if A.MEMBER[i].tied == i and A.MEMBER[i].rest == AT_REST and disturbed(A, J, J.OF[i]):
-            A.MEMBER[A.STATE[i].island].rest = CHANGED
+        if A.MEMBER[i].tied == i and A.MEMBER[i].rest == AT_REST:
+            if disturbed(A, J, J.OF[i]):
+                A.MEMBER[A.STATE[i].island].rest = CHANGED
+            else:
+                keep_joints(J, J.OF[i])  # where the interval begins again if the island is hit
 
 
 @nonallocating

@@ -175,6 +175,31 @@ def test_a_hit_moves_it_as_if_it_had_been_awake() -> None:
     np.testing.assert_allclose(paths[0], paths[1], rtol=0.0, atol=1e-6)
 
 
+def test_a_state_set_back_rests_on_or_is_solved_as_before() -> None:
+    stepper = rested(chain())
+    bodies, state = list(stepper.space.bodies), stepper.get_state()
+    paths = []
+    for _ in range(2):
+        stepper.set_state(state)
+        for k in range(20):
+            if k == 3:
+                bodies[2].apply_impulse_at_local_point((0.0, 2.0))
+            stepper.step(DT if k < 10 else 0.5 * DT)
+        paths.append([(*body.position, body.angle, *body.velocity) for body in bodies])
+    assert paths[0] == paths[1]
+
+
+def test_a_state_set_back_feels_what_was_edited_since() -> None:
+    stepper = rested(lamp(), 5)
+    state, (pin, spring) = stepper.get_state(), joints(stepper)
+    assert isinstance(spring, pymunk.DampedSpring)
+    spring.stiffness = 5.0
+    stepper.step(DT)
+    stepper.set_state(state)
+    stepper.step(DT)
+    assert pin.impulse == pytest.approx(0.0, abs=1e-9 * G * DT)
+
+
 def test_a_pickled_stepper_rests_on() -> None:
     stepper = rested(chain())
     copy = pickle.loads(pickle.dumps(stepper))
