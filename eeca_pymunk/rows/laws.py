@@ -37,7 +37,7 @@ def solve_columns(
     if problem.m > COLUMN_CONTACTS:
         return iterate(problem, L, V, tolerance, most)[1]
     worst = iterate(problem, L, V, tolerance, sweeps)[1] if sweeps > 0 else breach(problem, L, V)
-    best, L0, V0, before = worst, L.copy(), V.copy(), np.inf
+    best, L0, V0, before, earlier = worst, L.copy(), V.copy(), np.inf, np.inf
     for _ in range(COLUMN_HOMOTOPIES):
         if worst <= tolerance:
             return worst
@@ -58,9 +58,10 @@ def solve_columns(
         if worst < best:
             best = worst
             restore(L0, V0, L, V)
-        if abs(worst - before) <= 0.1 * worst:
+        # Where laws have no solution, homotopies lead to the same state, or from one of two to the other.
+        if min(abs(worst - before), abs(worst - earlier)) <= 0.1 * worst:
             break
-        before = worst
+        before, earlier = worst, before
     if worst > tolerance:
         restore(L, V, L0, V0)
         before = breach(problem, L, V)
