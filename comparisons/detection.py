@@ -117,7 +117,7 @@ class Lists:
     def renew(self, which: IntArray) -> None:
         """Make the lists of some shapes anew, where they are now."""
         for s in which.tolist():
-            if grid.renew(self.near, s, 0.0, 0.0) < 0:
+            if grid.renew_circle(self.near, s, 0.0, 0.0) < 0:
                 self.near = setup.with_more_room(self.near, 0.0)
                 return
 

@@ -62,17 +62,6 @@ class Memory:
         """An array that begins at this byte."""
         return np.ndarray(shape, dtype, self.bytes, at)
 
-    def side_by_side(self, *wanted: tuple[tuple[int, ...], npt.DTypeLike]) -> list[Any]:
-        """Arrays of zeros of these shapes and dtypes, each aligned to a cache line; the last ones are lost."""
-        places: list[tuple[tuple[int, ...], np.dtype[Any], int]] = []
-        total = 0
-        for shape, kind in wanted:
-            dtype = np.dtype(kind)
-            places.append((shape, dtype, total))
-            total += -(-math.prod(shape) * dtype.itemsize // LINE) * LINE
-        self.provide(total, total)
-        return [self.array(*place) for place in places]
-
     def _allot(self, total: int) -> None:
         """New memory, zeros, with room for so many bytes."""
         huge = total >= _PAGE // 2
@@ -87,8 +76,16 @@ class Memory:
 
 
 def side_by_side(*wanted: tuple[tuple[int, ...], npt.DTypeLike]) -> list[Any]:
-    """Arrays of zeros in one piece of memory of their own, see `Memory`."""
-    return Memory().side_by_side(*wanted)
+    """Arrays of zeros of these shapes and dtypes in one piece of memory of their own, each aligned to a cache line."""
+    places: list[tuple[tuple[int, ...], np.dtype[Any], int]] = []
+    total = 0
+    for shape, kind in wanted:
+        dtype = np.dtype(kind)
+        places.append((shape, dtype, total))
+        total += -(-math.prod(shape) * dtype.itemsize // LINE) * LINE
+    memory = Memory()
+    memory.provide(total, total)
+    return [memory.array(*place) for place in places]
 
 
 def rotated(vectors: FloatArray, angle: FloatArray) -> FloatArray:

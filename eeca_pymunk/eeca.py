@@ -8,7 +8,7 @@ from weakref import ref
 
 from .closures.time_of_impact import TimeOfImpact
 from .runs import RunningStepper
-from .saved import Saved, Sides, sides_of
+from .saved import Saved, sides_of
 from .space.arbiters import Touches, show_contacts, touches_of
 from .space.world import World
 from .stepper import Method
@@ -60,31 +60,19 @@ class EECA(RunningStepper):
     def make_method(self, world: World) -> Method:
         return self.closure.prepare(world)
 
-    def start(self, world: World) -> None:
-        self._show_contacts()
-        saved, self._saved = self._saved, None
-        if saved is not None and saved.resume(world, self.decisions):
-            self._use(saved.method)
+    def choose_method(self, world: World, past: World | None) -> None:
+        loop = None if past is None else self.event_loop
+        sides = None if past is None or loop is None else sides_of(past, loop)
+        if past is world:
+            if loop is not None:
+                loop.release()
+            world.load()
         else:
-            self._use_new_method(world, None)
-
-    def restart(self, world: World, past: World) -> None:
-        self._show_contacts()
-        self._use_new_method(world, self._sides(past))
-
-    def rebuild(self, world: World) -> None:
-        sides = self._sides(world)
-        if (loop := self.event_loop) is not None:
-            loop.release()
-        world.load()
-        self._use_new_method(world, sides)
-
-    def _sides(self, world: World) -> Sides | None:
-        """The sides of the thin shapes of a world, by the present method."""
-        return None if (loop := self.event_loop) is None else sides_of(world, loop)
-
-    def _use_new_method(self, world: World, sides: Sides | None) -> None:
-        """Step this world by a new method, whose thin shapes are on these sides of each other."""
+            self._show_contacts()
+        saved, self._saved = self._saved, None
+        if past is None and saved is not None and saved.resume(world, self.decisions):
+            self._use(saved.method)
+            return
         self._use(self.make_method(world))
         loop = self.event_loop
         if self._patches and world.joints is None and loop is not None:

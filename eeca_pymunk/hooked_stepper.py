@@ -108,22 +108,19 @@ class HookedStepper(PackedSpace):
         | call `pre_solve` of constraints, then velocity functions | `Hooks.before`, `Hooks.velocity_changes` |
         | call collision handlers; their decisions are the rules of this step | `Rehearsal.run`, `Rehearsal.rules` |
         | move the arrays | `advance` |
-        | change the end: by damping 0, post_solve and separate of handlers, position functions | `World.alter_end` |
+        | change the end: by damping 0, post_solve and separate of handlers, position functions | `_alter_end` |
         | write the states, and call `post_solve` of constraints | `_write_hooked_end` |
-
-        `called`: whether functions may have changed bodies. `alters`: whether the end is changed; `lost`: the energy
-        that damping 0 takes then.
         """
         world = self._start_hooked(world)
-        half_damping, lost, hooks, called = world.half_damping(dt), 0.0, world.hooks, True
+        half_damping = world.half_damping(dt)
         try:
             if world.joints is not None:
                 world.joints.refresh()
                 if world.joints.before:
-                    hooks.before(dt)
+                    world.hooks.before(dt)
                     world.gather()
-            if hooks.steered:
-                world.set_accelerations(hooks.velocity_changes(dt), dt)
+            if world.hooks.steered:
+                world.set_accelerations(world.hooks.velocity_changes(dt), dt)
             if world.collisions:
                 sync = None if self._sleep is not None or self.decisions.laws else self._sync
                 if (status := world.rehearsal.run(dt, half_damping, sync)) < 0:
@@ -131,25 +128,14 @@ class HookedStepper(PackedSpace):
                 if self._sleep is not None and self._sleep.woken():
                     world = self._reread_awoken(world)
                 world.rules = world.rehearsal.rules(self.decisions)
-                hooks = world.hooks
-                called = hooks.any_body or not world.rehearsal.left_out
-            bits = status = self.advance(world, dt, half_damping)
+            status = self.advance(world, dt, half_damping)
             if status < 0:
                 self._raise_failure(world, dt, status)
             outcome = self._outcome(world, dt)
+            hooks = world.hooks
             alters = world.damping == 0.0 or hooks.moved > 0 or (world.collisions and world.rehearsal.after)
-            if alters:
-                bits, lost = world.alter_end(world.damping == 0.0)
-                if bits < 0:
-                    self._raise_failure(world, dt, bits)
-                if hooks.moved:
-                    hooks.positions(world.state, world.STATES[WRITTEN], dt)
-                    world.bodies.check_finite(world.ended(), TOO_FAR)
-                    bits = world.write_whole()
-            elif called:
-                bits = world.write_whole()
-            # If nothing was called, bodies and their forces in the space are still those that were read.
-            if alters or status & FORCES or (called and (hooks.any_body or world.joints is not None)):
+            bits, lost = self._alter_end(world, dt) if alters else (world.write_whole(), 0.0)
+            if alters or status & FORCES or hooks.any_body or world.joints is not None:
                 world.reset_forces()
             status = status & EVENTS | bits
             self._write_hooked_end(world, dt, status)
@@ -160,6 +146,17 @@ class HookedStepper(PackedSpace):
             self._undo(world, world.start)
             raise
         return world, self._finish(world, dt, status, outcome, lost)
+
+    def _alter_end(self, world: World, dt: float) -> tuple[int, float]:
+        """Change the end of the step in the arrays; returns its status bits, and the energy lost by damping 0."""
+        bits, lost = world.alter_end(world.damping == 0.0)
+        if bits < 0:
+            self._raise_failure(world, dt, bits)
+        if world.hooks.moved:
+            world.hooks.positions(world.state, world.STATES[WRITTEN], dt)
+            world.bodies.check_finite(world.ended(), TOO_FAR)
+            bits = world.write_whole()
+        return bits, lost
 
     def _reread_awoken(self, world: World) -> World:
         """The world read again after a rehearsal in which pymunk has woken bodies, as it does if they touch a kinematic

@@ -103,17 +103,9 @@ class PackedSpace(Stepper):
     def make_method(self, world: World) -> Method:
         """A method for a world, without results of earlier steps."""
 
-    def start(self, world: World) -> None:
-        """Choose the method of a world that was read for the first time, or after `refresh`."""
-        self._use(self.make_method(world))
-
-    def restart(self, world: World, past: World) -> None:
-        """Choose the method of a world that was read again. `past`: the world before, whose method is the present
-        one."""
-        self._use(self.make_method(world))
-
-    def rebuild(self, world: World) -> None:
-        """Choose another method for the present world, whose joints or rows have changed."""
+    def choose_method(self, world: World, past: World | None) -> None:
+        """Choose the method of a world. `past`: the world of the present method, which is the same one if its joints or
+        rows have changed; None for a world that was read for the first time, or after `refresh`."""
         self._use(self.make_method(world))
 
     def _use(self, method: Method) -> None:
@@ -168,10 +160,8 @@ class PackedSpace(Stepper):
         slept, self._slept = self._slept, None
         if self._sleep is not None and slept is not None:
             self._sleep.recall(dict(zip(slept[0], slept[1].tolist(), strict=True)), slept[3])
-        if past is None:
-            self.start(world)
-        else:
-            self.restart(world, past)
+        self.choose_method(world, past)
+        if past is not None:
             past.end()
         if self._sleep is not None and (book := self._method.outcome()[0]) is not None:
             self._idle_book = [0.0] * len(book)
@@ -192,7 +182,7 @@ class PackedSpace(Stepper):
             self._sleep = Sleep(world, None)
             self._sync.renews = False  # see `EECA._show_contacts`
         if world.joints is not joints:
-            self.rebuild(world)
+            self.choose_method(world, world)
             self.patches += 1
         return self._adopt(world)
 

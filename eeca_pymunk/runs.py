@@ -129,7 +129,7 @@ class RunningStepper(PackedStepper):
         loop, surfaces = self.event_loop, self._sleep is not None
         if world.joints is not None:
             if found := world.patch(surfaces):
-                self.rebuild(world)
+                self.choose_method(world, world)
             return found is not None
         if loop is None or not hasattr(loop, "fresh"):
             # From now on each new loop keeps a copy of its scene, from which patches start. This edit is not patched.

@@ -56,7 +56,7 @@ def rests(
 
 
 @kernel
-def touches(LOG: Rows[Impulse], OWNER: IntArray, ASLEEP: IntArray, STILL: IntArray, count: int) -> int:
+def touches_sleeper(LOG: Rows[Impulse], OWNER: IntArray, ASLEEP: IntArray, STILL: IntArray, count: int) -> int:
     """Whether one of the first `count` impulses is between a sleeping body and one that moves. OWNER (k,): bodies of
     shapes. ASLEEP (N,): 1 for sleeping bodies. STILL (N,): 1 for sleeping and static ones."""
     for e in range(count):

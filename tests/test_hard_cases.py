@@ -68,7 +68,7 @@ BROKEN = {
         "bead in a groove",
     ),
     "limits a millionth too late": (
-        "bounds.gap",
+        "bounds.limit_gap",
         "lambda of: lambda *a: of(*a) + 1e-6",
         "ratchet",
     ),

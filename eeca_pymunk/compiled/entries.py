@@ -77,7 +77,7 @@ ENTRIES = {
     "rehearsing:alter_end": "{Reading} i8",
     "sleepers:rests": "f8[3] i8[2] i8[1] f8[1] f8[1] i8[1] f8 f8 f8",
     "sleepers:approaches": "f8[3] i8[1] f8[1] f8[1] f8[2] i8[1] f8 f8",
-    "sleepers:touches": "Impulse[1] i8[1] i8[1] i8[1] i8",
+    "sleepers:touches_sleeper": "Impulse[1] i8[1] i8[1] i8[1] i8",
     "world_rows:write_rows": "{Reading}",
     "world_rows:read_space": "{Reading} i8",
     "rehearsing:record_changes": "{Reading} i8",
@@ -91,7 +91,7 @@ ENTRIES = {
     "joints.pinned:find_pinned": "Body[1] Body[1] Joint[1] i8[1] Shape[1] Link[1] i8[1] i8[2]",
     # Only tests call this, which solves single islands: some hundred times slower as plain Python.
     "contacts.interval:step_island": "{Scene} {Island} {IslandContacts} i8 f8 i8 f8 f8 f8",
-    "contacts.memory:forget": "i8[1] Force[1] Count i8[1] Force[1] f8",
+    "contacts.memory:copy_recent": "i8[1] Force[1] Count i8[1] Force[1] f8",
 }
 
 _CODES = {"f8": "<f8", "i8": "<i8", "i4": "<i4", "u1": "|u1"}

@@ -30,8 +30,8 @@ from ..model.parameters.intervals import (
     OVERLAP_LEFT,
 )
 from ..rows.build import conserves, normal_rate
-from ..rows.lifting import keep_walls, lift
-from .works import against, moved
+from ..rows.lifting import lift_above_walls
+from .works import against
 
 
 @kernel
@@ -58,11 +58,10 @@ def lifting(
     if deepest >= -OVERLAP_LEFT * size or not budget >= 0.0:
         return
     D = np.zeros((len(IM), 3))
-    MU, near = np.zeros(m), 0.1 * OVERLAP_LEFT * size
-    if lift(problem, GAPS, MU, D, near, CORRECTION_SWEEPS + CORRECTION_WORK // m) > near:
-        keep_walls(problem, n, GAPS, MU, D)
-    scale(D, n, min(admissible(D, EXTENT, n, size), 1.0))
-    END, NEW = moved(POSE, VN, 0.5 * h), np.empty((n, 3))
+    lift_above_walls(problem, n, GAPS, D, 0.1 * OVERLAP_LEFT * size, CORRECTION_SWEEPS + CORRECTION_WORK // m)
+    D = min(admissible(D, EXTENT, n, size), 1.0) * D
+    END = POSE + 0.5 * h * VN
+    NEW = END + D
     turn = x = y = 0.0
     touched = np.zeros(n, np.uint8)
     for i in range(m if len(IM) == n else 0):
@@ -72,7 +71,7 @@ def lifting(
     for tries in range(CORRECTION_TRIES):
         work, square = -against(ACC, IM, II, n, D), 0.0
         if len(IM) == n:
-            place(END, D, n, NEW)
+            NEW = END + D
             turn, x, y, spin, inertia = unturn(NEW, D, VN, IM, II, touched)
             work, square = work + turn * spin, 0.5 * inertia * turn * turn
         if not work + square > budget + CORRECTION_ROUND_OFF * against(np.abs(ACC), IM, II, n, np.abs(D)):
@@ -81,20 +80,12 @@ def lifting(
         # p linear - p^2 square.
         linear, most = work + 2.0 * square, CORRECTION_SHARE * budget
         part = 2.0 * most / (linear + math.sqrt(max(linear * linear - 4.0 * square * most, 0.0)))
-        scale(D, n, part if tries + 2 < CORRECTION_TRIES else 0.0)
+        D = (part if tries + 2 < CORRECTION_TRIES else 0.0) * D
     for i in range(n):
         for c in range(3):
             JUMP[i, c] = D[i, c]
     if turn != 0.0:
         turn_by(NEW, touched, turn, x, y, JUMP, 3)
-
-
-@nonallocating
-def scale(D: FloatArray, n: int, part: float) -> None:
-    """Scale the displacements D of n bodies."""
-    for i in range(n if part != 1.0 else 0):
-        for c in range(3):
-            D[i, c] *= part
 
 
 @nonallocating
@@ -122,14 +113,6 @@ def budget_of(ROWS: Rows[Row], m: int, lost: float, owed: float) -> float:
     """Energy that `lifting` may spend: the losses `lost` of m contacts, less the energy `owed`. Elastic contacts have
     none; what they seem to lose is round-off."""
     return -1.0 if conserves(ROWS, m) else lost - owed
-
-
-@nonallocating
-def place(END: FloatArray, D: FloatArray, n: int, NEW: FloatArray) -> None:
-    """Set poses NEW = END + D, all (k, 3), for n bodies."""
-    for i in range(n):
-        for c in range(3):
-            NEW[i, c] = END[i, c] + D[i, c]
 
 
 @nonallocating

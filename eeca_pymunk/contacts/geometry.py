@@ -31,7 +31,7 @@ from .turning import follow_rotation, spin_of_wall, way_about
 
 
 @kernel
-def gather(
+def gather_contacts(
     A: Scene, isle: Island, contacts: IslandContacts, MIDDLE: FloatArray, REACH: FloatArray, h: float, free: bool
 ) -> int:  # fmt: skip
     """Write the ROWS of all contacts of an island's pairs whose gap is at most the sum of both bodies' REACH.

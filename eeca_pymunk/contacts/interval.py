@@ -29,13 +29,12 @@ from ..rows.energy import lock, works
 from ..rows.gentle import excessive, unwedge
 from ..rows.inplace import copy
 from ..rows.sweeps import velocities
-from .geometry import gather
+from .geometry import gather_contacts
 from .memory import find, remember_loads
 from .relaxation import relax
 from .statics import find_static_forces
 from .targets import target
 from .walls import stop_at_walls
-from .works import moved
 
 
 @nonallocating
@@ -130,12 +129,11 @@ def step_island(
     k = len(IM)
     REACH = np.empty(k)
     slow, fast, pull = speeds(V, ACC, EXTENT, IM, n, h, REACH)
-    for i in range(k):
-        REACH[i] = max(REACH[i], least)
-    m = gather(A, isle, contacts, moved(isle.POSE, V, 0.5 * h), REACH, h, k == n)
+    REACH = np.maximum(REACH, least)
+    m = gather_contacts(A, isle, contacts, isle.POSE + 0.5 * h * V, REACH, h, k == n)
     if m < 0 or 2 * (A.COUNT.remembered + m) > len(A.KEYS):
         return -1
-    FREE = moved(V, ACC, h)
+    FREE = V + h * ACC
     copy(VN, FREE)
     contacts.JUMP[:] = 0.0
     if m > 0:
@@ -167,7 +165,7 @@ def step_island(
         )
         quick, exactly = fast + pull * h, few and m <= COLUMN_CONTACTS
         if not exactly:
-            stop_at_walls(A, problem, n, L, VN)
+            stop_at_walls(A, problem, n, np.zeros(m, np.int64), L, VN)
         # Velocities are computed again from the impulses, without the round-off of many sweeps.
         velocities(problem, L, FREE, VN)
         wedged = exactly and (worst > WEDGED * scale or excessive(L, m, IM, n, quick))

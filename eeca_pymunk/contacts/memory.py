@@ -1,7 +1,7 @@
 """The memory of contact forces across steps: a hash table from keys to forces, with open addressing.
 
 KEYS (c,) int64, -1 where free, c a power of 2; FORCES (c,): the forces. Rows of steps before the last do not count, and
-are removed by `forget` when the table fills. COUNT.remembered: rows in use.
+are removed by `copy_recent` when the table fills. COUNT.remembered: rows in use.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def find(KEYS: IntArray, key: int) -> int:
 
 
 @nonallocating
-def remember(
+def remember_force(
     KEYS: IntArray, FORCES: Rows[Force], COUNT: Count, key: int, normal: float, tangential: float, load: float,
     length: float, stamp: float,
 ) -> None:  # fmt: skip
@@ -65,11 +65,11 @@ def remember_loads(A: Scene, ROWS: Rows[Row], L: FloatArray, m: int, h: float) -
         if L[i, 0] > 0.0:
             stopped = max(max(ROWS[i].target, 0.0) - ROWS[i].un, 0.0) * ROWS[i].k_n
             load = max(L[i, 0] - stopped, 0.0)
-            remember(A.KEYS, A.FORCES, A.COUNT, ROWS[i].key, L[i, 0] / h, L[i, 1] / h, load / h, h, A.PAR.stamp)
+            remember_force(A.KEYS, A.FORCES, A.COUNT, ROWS[i].key, L[i, 0] / h, L[i, 1] / h, load / h, h, A.PAR.stamp)
 
 
 @nonallocating
-def forget(
+def copy_recent(
     KEYS: IntArray, FORCES: Rows[Force], COUNT: Count, KEYS_2: IntArray, FORCES_2: Rows[Force], stamp: float
 ) -> None:
     """Copy rows with a stamp >= `stamp` to empty tables KEYS_2, FORCES_2 (of any size), and count them in COUNT."""
@@ -78,7 +78,7 @@ def forget(
     for row in range(len(KEYS)):
         if KEYS[row] >= 0 and FORCES[row].stamp >= stamp:
             force = FORCES[row]
-            remember(
+            remember_force(
                 KEYS_2, FORCES_2, COUNT, KEYS[row], force.normal, force.tangential, force.load, force.length,
                 force.stamp,
             )  # fmt: skip

@@ -26,7 +26,7 @@ from ..model.parameters.intervals import (
     SWEEPS_AFTER,
 )
 from ..model.parameters.joints import COLUMN_CONTACTS
-from ..rows.conjugate import iterate
+from ..rows.conjugate import sweep_conjugate
 from ..rows.direct import refine_and_sweep
 from ..rows.laws import solve_few
 from ..rows.sweeps import sweep
@@ -53,7 +53,7 @@ def relax(
     """
     if rounds == 0 or STATE.wait > 0.0:
         STATE.wait = max(STATE.wait - 1.0, 0.0)
-        sweeps, worst = iterate(problem, L, V, max(fine, coarse), most)
+        sweeps, worst = sweep_conjugate(problem, L, V, max(fine, coarse), most)
         out.sweeps += sweeps
         return worst
     sweeps, worst = 0, np.inf

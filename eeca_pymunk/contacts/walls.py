@@ -9,45 +9,26 @@ from __future__ import annotations
 
 from math import inf
 
-from ..arrays import FloatArray
-from ..compiled import Choice, inlined, nonallocating
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel
 from ..geometry.sides import depth_limit
-from ..model.contacts import AnyProblem, JointedProblem, Problem
-from ..model.parameters.intervals import WALL_SWEEPS
+from ..model.contacts import AnyProblem
 from ..model.scene import Scene
-from ..rows.build import normal_rate
-from ..rows.lifting import meet_gap
+from ..rows.lifting import keep_walls
 from .memory import shapes_of
 
 
-@inlined
-def is_out_free(problem: Problem, i: int) -> bool:
-    """Whether no impulse moves contact i."""
-    return False
-
-
-@inlined
-def is_out_jointed(problem: JointedProblem, i: int) -> bool:
-    """Whether no impulse moves contact i."""
-    return bool(problem.C.OUT[i] != 0)
-
-
-is_out = Choice(is_out_free, is_out_jointed)
-
-
-@nonallocating
-def stop_at_walls(A: Scene, problem: AnyProblem, n: int, L: FloatArray, V: FloatArray) -> None:
+@kernel
+def stop_at_walls(A: Scene, problem: AnyProblem, n: int, OUT: IntArray, L: FloatArray, V: FloatArray) -> None:
     """Let no contact with a body without mobility, one of those from number n on, close at velocities V (k, 3) faster
     than its law says, if it is deeper than an interval allows. Adds normal impulses to L, so that frictions remain
-    within their limits."""
-    for _ in range(WALL_SWEEPS):
-        met = True
-        for i in range(problem.m):
-            row = problem.ROWS[i]
-            if max(row.a, row.b) < n or row.wake < inf or is_out(problem, i):
-                continue
+    within their limits. OUT (m,): not 0 for contacts that no impulse moves."""
+    LACK = np.full(problem.m, inf)
+    for i in range(problem.m):
+        row = problem.ROWS[i]
+        if max(row.a, row.b) >= n and row.wake == inf and OUT[i] == 0:
             a, b = shapes_of(A, row)
-            if row.gap < -depth_limit(A, a, b) and normal_rate(row, V) < row.target:
-                met = meet_gap(problem, -row.target, L[:, 0], V, i) == 0.0 and met
-        if met:
-            break
+            LACK[i] = -row.target if row.gap < -depth_limit(A, a, b) else inf
+    keep_walls(problem, n, LACK, np.zeros(problem.m), L[:, 0], V)

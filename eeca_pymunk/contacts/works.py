@@ -1,4 +1,4 @@
-"""Works over an interval, kinetic energy, and displaced poses. The works of an island close by identity, as impulses
+"""Works over an interval, and kinetic energy. The works of an island close by identity, as impulses
 times means of velocities before and after:
 
     change of energy = forces + carried + lifted - restitution - friction,
@@ -10,10 +10,8 @@ cause its accelerations. `restitution` and `friction` are >= 0. `lifted` is the 
 
 from __future__ import annotations
 
-import numpy as np
-
 from ..arrays import FloatArray
-from ..compiled import kernel, nonallocating
+from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Row
 
@@ -77,13 +75,3 @@ def gained_energy(V: FloatArray, BEFORE: FloatArray, IM: FloatArray, II: FloatAr
             if mobility > 0.0:
                 total += 0.5 * (V[q, c] - BEFORE[q, c]) * (V[q, c] + BEFORE[q, c]) / mobility
     return total
-
-
-@kernel
-def moved(X: FloatArray, V: FloatArray, s: float) -> FloatArray:
-    """X + s V, (k, 3) as X and V: poses or velocities after a time s at the rates V."""
-    Y = np.empty_like(X)
-    for i in range(len(X)):
-        for c in range(3):
-            Y[i, c] = X[i, c] + s * V[i, c]
-    return Y

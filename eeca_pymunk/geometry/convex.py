@@ -25,7 +25,7 @@ from ..model.scene import Scene
 
 
 @nonallocating
-def place(A: Scene, s: int, x: float, y: float, angle: float, OUT: FloatArray) -> int:
+def place_vertices(A: Scene, s: int, x: float, y: float, angle: float, OUT: FloatArray) -> int:
     """Write vertices and outward normals of shape s, with its body at (x, y, angle), to OUT (.., 4); returns the number
     of vertices.
 

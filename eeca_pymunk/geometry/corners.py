@@ -56,13 +56,13 @@ def find_corners(LINK: Rows[Link], VERTEX: FloatArray, CORNER: Rows[Corner]) -> 
     for s in range(LINK.shape[0]):
         for j in range(LINK.shape[0] if LINK[s].vertices == 2 else 0):
             if j != s and LINK[j].vertices == 2 and LINK[s].owner == LINK[j].owner:
-                if may_meet(VERTEX, LINK[s].first, LINK[j].first):
+                if boxes_overlap(VERTEX, LINK[s].first, LINK[j].first):
                     note_meeting(LINK, VERTEX, CORNER, s, 0, j)
                     note_meeting(LINK, VERTEX, CORNER, s, 1, j)
 
 
 @nonallocating
-def may_meet(VERTEX: FloatArray, mine: int, its: int) -> bool:
+def boxes_overlap(VERTEX: FloatArray, mine: int, its: int) -> bool:
     """Whether the boxes of two segments overlap, with more room than corners have."""
     ax, ay, bx, by = VERTEX[mine, 0], VERTEX[mine, 1], VERTEX[mine + 1, 0], VERTEX[mine + 1, 1]
     px, py, qx, qy = VERTEX[its, 0], VERTEX[its, 1], VERTEX[its + 1, 0], VERTEX[its + 1, 1]

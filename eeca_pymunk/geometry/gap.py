@@ -16,13 +16,13 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import Table, nonallocating
 from ..model.parameters.detection import CORNER_ROUND_OFF, GAP_ROUND_OFF
 from ..model.scene import Scene, scene_of
-from .convex import place, point_core
+from .convex import place_vertices, point_core
 from .flight import pose
 from .sides import closest_on_side
 
 
 @nonallocating
-def centre(A: Scene, s: int, x: float, y: float, angle: float) -> tuple[float, float]:
+def disk_centre(A: Scene, s: int, x: float, y: float, angle: float) -> tuple[float, float]:
     """World position of the one vertex of disk s; that of the body, to the last digit, if it is the centre of mass."""
     px, py = A.VERTEX[A.LINK[s].first, 0], A.VERTEX[A.LINK[s].first, 1]
     if px == 0.0 and py == 0.0:
@@ -41,20 +41,20 @@ def ordered_gap(
     LINK, P, Q = A.LINK, A.CORE[0], A.CORE[1]
     r_a, r_b = A.SHAPE[a].rounding, A.SHAPE[b].rounding
     if LINK[a].vertices == 1 and LINK[b].vertices == 1:
-        x, y = centre(A, a, x_a, y_a, angle_a)
-        px, py = centre(A, b, x_b, y_b, angle_b)
+        x, y = disk_centre(A, a, x_a, y_a, angle_a)
+        px, py = disk_centre(A, b, x_b, y_b, angle_b)
         dx, dy = px - x, py - y
         d = math.sqrt(dx * dx + dy * dy)
         nx, ny = 1.0, 0.0
         if d > 0.0:
             nx, ny = dx / d, dy / d
     elif LINK[a].vertices == 1:
-        x, y = centre(A, a, x_a, y_a, angle_a)
-        q = place(A, b, x_b, y_b, angle_b, Q)
+        x, y = disk_centre(A, a, x_a, y_a, angle_a)
+        q = place_vertices(A, b, x_b, y_b, angle_b, Q)
         d, nx, ny, _, _, _ = point_core(x, y, Q, q)
     else:
-        p = place(A, a, x_a, y_a, angle_a, P)
-        q = place(A, b, x_b, y_b, angle_b, Q)
+        p = place_vertices(A, a, x_a, y_a, angle_a, P)
+        q = place_vertices(A, b, x_b, y_b, angle_b, Q)
         d, nx, ny, x, y, _, _, _, _, _ = closest_on_side(A, P, p, Q, q, a, b)
     g = d - r_a - r_b
     away = r_a + 0.5 * g

@@ -15,7 +15,7 @@ from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..model.parameters.detection import FACE_WIDTH
 from ..model.scene import Scene
-from .convex import place, prefers_second
+from .convex import place_vertices, prefers_second
 from .gap import ordered_gap
 from .sides import closest_on_side
 
@@ -92,8 +92,8 @@ def ordered_manifold(
         g, nx, ny, px, py = ordered_gap(A, s, x_a, y_a, angle_a, r, x_b, y_b, angle_b)
         OUT[0, 0], OUT[0, 1], OUT[0, 2], OUT[0, 3], OUT[0, 4] = nx, ny, px, py, g
         return 1 if g <= reach else 0
-    p = place(A, s, x_a, y_a, angle_a, P)
-    q = place(A, r, x_b, y_b, angle_b, Q)
+    p = place_vertices(A, s, x_a, y_a, angle_a, P)
+    q = place_vertices(A, r, x_b, y_b, angle_b, Q)
     d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q = closest_on_side(A, P, p, Q, q, s, r)
     g = d - r_s - r_r
     if g > reach:

@@ -7,10 +7,10 @@ from ..compiled import kernel, nonallocating
 from ..contacts.counts import note_unmet
 from ..islands.accounting import close_interval
 from ..islands.building import build_islands
-from ..islands.intervals import begin_interval, lift_here
-from ..islands.local import contacts_of
+from ..islands.intervals import begin_interval, find_lifts_at_cut
+from ..islands.local import contact_range
 from ..jointed.ends import shorten, under_way
-from ..jointed.lifting import lift_here as lift_joined
+from ..jointed.lifting import lift_at_cut
 from ..jointed.meet import end_before
 from ..jointed.partners import carry
 from ..jointed.rest import wake_disturbed
@@ -86,7 +86,7 @@ def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
     # beyond t, count as there at t.
     for k in range(A.BODY.shape[0] - 1):
         if A.STATE[k].island == k and A.MEMBER[k].rest != AT_REST and A.MEMBER[k].jointed == 0 and A.MEMBER[k].open > 0:
-            first, after = contacts_of(A, k)
+            first, after = contact_range(A, k)
             close_interval(A, k, max(A.PUSHED[first].start, t) if first < after else t)
     for k in range(A.BODY.shape[0] - 1 if J.TALLY.components > 0 else 0):
         ahead = A.MEMBER[k].open == 0 or A.BODY[k].since > t
@@ -101,7 +101,7 @@ def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
         if A.STATE[k].island != k or A.MEMBER[k].rest == AT_REST:
             continue
         if A.MEMBER[k].jointed == 0:
-            lift_here(A, k, t)
+            find_lifts_at_cut(A, k, t)
         elif under_way(A, k):
             shorten(A, J, k, t)
             end_before(A, J, k, t, False, False)
@@ -109,5 +109,5 @@ def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
             A.BLOCK[count] = k
             count += 1
     for c in range(count):
-        lift_joined(A, J, A.BLOCK[c], t)
+        lift_at_cut(A, J, A.BLOCK[c], t)
     return DONE

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
-from ..jointed.columns import fill_group
+from ..jointed.columns import fill_group, push_group
 from ..jointed.component import answer, fit_speeds, ready, size_joints
 from ..jointed.gathered import find_places, gather_component
 from ..jointed.groups import Groups
@@ -24,7 +24,7 @@ from .simultaneous import Block
 
 
 @nonallocating
-def carried_along(J: Joints, s: int) -> bool:
+def has_prescribed_motion(J: Joints, s: int) -> bool:
     """Whether what impulses do not change moves a part of component s: a moving partner, or a spin of infinite moment;
     its bodies are in the scratch of `..joints`."""
     for i in range(J.COMPONENT[s].end_body - J.COMPONENT[s].first_body):
@@ -45,7 +45,7 @@ def begin_impact(J: Joints, groups: Groups) -> None:
 
 
 @nonallocating
-def hold_limits(A: Scene, J: Joints, block: Block, groups: Groups, t: float) -> bool:
+def activate_limits(A: Scene, J: Joints, block: Block, groups: Groups, t: float) -> bool:
     """Let limits on their bounds into which the velocities of the block move take part in the impact at instant t;
     whether there are any that did not before."""
     more = False
@@ -72,7 +72,7 @@ def answer_impact(A: Scene, J: Joints, block: Block, groups: Groups, C: Columns,
         length = gather_component(A, J, s, block.POSE, V, np.zeros_like(V), block.IM, block.II, t, 0.0)
         size = find_places(A, J, s, INDEX)
         PUSH = np.zeros((size, 3))
-        along = carried_along(J, s)
+        along = has_prescribed_motion(J, s)
         driven = driven or along
         if along:
             fit_speeds(J, s, length)
@@ -124,20 +124,14 @@ def bear(A: Scene, J: Joints, block: Block, groups: Groups, L: FloatArray, FREE:
         if s < 0:
             continue
         gather_component(A, J, s, block.POSE, FREE, np.zeros_like(FREE), block.IM, block.II, t, 0.0)
-        along = carried_along(J, s)
+        along = has_prescribed_motion(J, s)
         PUSH = np.zeros((find_places(A, J, s, INDEX), 3))
         if not ready(J, s, 2.0, False):
             continue
         if not along:
             put_momenta(block, groups, g, len(FREE), FREE, INDEX, PUSH)
         for i in range(len(ROWS)):
-            for q, side in ((ROWS[i].a, -1.0), (ROWS[i].b, 1.0)):
-                if groups.GROUP[q] == g:
-                    row, n, f = ROWS[i], side * L[i, 0], side * L[i, 1]
-                    arm_n, arm_t = (row.arm_nb, row.arm_tb) if side > 0.0 else (row.arm_na, row.arm_ta)
-                    PUSH[INDEX[q], 0] += n * row.nx - f * row.ny
-                    PUSH[INDEX[q], 1] += n * row.ny + f * row.nx
-                    PUSH[INDEX[q], 2] += n * arm_n + f * arm_t
+            push_group(groups, g, INDEX, ROWS[i], L[i, 0], L[i, 1], PUSH)
         answer(J, s, False, PUSH)
         W = workspace(J, s)
         for k in range(W.joints):

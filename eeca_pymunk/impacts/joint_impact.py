@@ -14,10 +14,10 @@ from ..contacts.works import carried, gained_energy, kinetic_energy
 from ..islands.building import comes_to_rest
 from ..islands.local import clear_places, set_places
 from ..islands.membership import jointed, members
-from ..jointed.columns import count_operations, fill_free, make_columns, weigh
+from ..jointed.columns import count_operations, fill_free, make_columns, set_effective_masses
 from ..jointed.ends import shorten, under_way
 from ..jointed.groups import find_groups
-from ..jointed.meet import end_before, meet
+from ..jointed.meet import end_before, locate_impact
 from ..model.bodies import AT_REST
 from ..model.contacts import SOLVED, JointedProblem, Row, Solved
 from ..model.joints import Joints
@@ -33,9 +33,9 @@ from ..rows.energy import offset_gain, scale_to_lose
 from ..rows.gentle import excessive, sweep_gently
 from ..rows.inplace import copy
 from ..rows.sweeps import velocities
-from .joint_answers import answer_impact, bear, begin_impact, hold_limits
-from .resolution import finish, rejoin
-from .simultaneous import Block, energy_owed, gather, make_block
+from .joint_answers import activate_limits, answer_impact, bear, begin_impact
+from .resolution import finish_block, rejoin
+from .simultaneous import Block, energy_owed, gather_block, make_block
 
 
 @nonallocating
@@ -123,12 +123,12 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     `resolution.strike`, at PAR.now, the instant at which they meet on their paths with joints."""
     k = A.SHAPE.shape[0]
     i, j = A.LINK[a].owner, A.LINK[b].owner
-    t, apart = meet(A, J, a, b, t)
+    t, apart = locate_impact(A, J, a, b, t)
     A.PAR.now = t
     A.COUNT.work += EVENT_LOOKS
     if apart:
         return list_ended(A, list_apart(A, i, j))
-    n, m, PAIRS = gather(A, a, b, t)
+    n, m, PAIRS = gather_block(A, a, b, t)
     again = True
     while again:
         again = False
@@ -140,7 +140,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
                 again = True
         if again:
             clear_places(A, A.BLOCK[:n])
-            n, m, PAIRS = gather(A, a, b, t)
+            n, m, PAIRS = gather_block(A, a, b, t)
     rest = comes_to_rest(A, a, b, t)
     owed, _ = energy_owed(A, n)
     block = make_block(A, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
@@ -161,9 +161,9 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
         # Only the part of the velocities that joints allow takes part in the impact.
         driven = answer_impact(A, J, block, groups, C, n, t)
         FITTED = V.copy()
-        weigh(groups, C, ROWS, rows)
+        set_effective_masses(groups, C, ROWS, rows)
         status = solve_block(problem, L, V, owed, False, OUT)
-        if solution + 1 == IMPACT_LIMITS or not hold_limits(A, J, block, groups, t):
+        if solution + 1 == IMPACT_LIMITS or not activate_limits(A, J, block, groups, t):
             break
         copy(V, BEFORE)
         L[:] = 0.0
@@ -192,7 +192,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     settle_energy(A, block, n, L, BEFORE, FITTED if fits else BEFORE, driven, owed, exact, OUT)
     bear(A, J, block, groups, L, BEFORE if fits else 0.0 * BEFORE, t)
     lost = OUT[0].restitution + OUT[0].friction - owed
-    finish(A, block, n, m, L, OUT, status, t)
+    finish_block(A, block, n, m, L, OUT, status, t)
     spend(A, n, m, 0.0)  # besides what its solutions take
     count_operations(J, C)
     A.STATE[i].version += 1

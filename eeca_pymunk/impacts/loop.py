@@ -20,10 +20,10 @@ from ..model.joints import Joints
 from ..model.parameters.events import AHEAD, EVENT_LOOKS, RESOLUTION
 from ..model.scene import Scene
 from ..model.step import BLOCK_DUE, DONE, HITS, IMPACTS, LOG_FULL, POOL_FULL, PUSHES_FULL
-from ..pairs.grid import renew
+from ..pairs.grid import renew_circle
 from ..pairs.lists import mark_pair
-from ..prediction.disks import body_of, go_on
-from ..prediction.heap import pop, push, sweep_out
+from ..prediction.disks import body_of, continue_path
+from ..prediction.heap import pop, push_event, sweep_out
 from ..prediction.next_event import has_left
 from ..prediction.scheduling import look_ahead, predict_next
 from ..prediction.turning import search
@@ -50,7 +50,7 @@ def met_too_often(A: Scene, i: int, j: int) -> bool:
 
 
 @nonallocating
-def run(A: Scene, may_rest: bool, most: float) -> int:
+def run_events(A: Scene, may_rest: bool, most: float) -> int:
     """Process events up to the end of the step, or up to the next one that the loop does not process itself (BLOCK_DUE)
     or that needs more memory.
 
@@ -82,14 +82,14 @@ def run(A: Scene, may_rest: bool, most: float) -> int:
             return BLOCK_DUE
         if o == LEAVE:
             if i < disks and STATE[i].island < 0:
-                room = go_on(A, i, t, end)
+                room = continue_path(A, i, t, end)
             else:
                 one, room = i, True
                 if has_left(A, s, t):
-                    room = renew(A, s, t, AHEAD) >= 0
+                    room = renew_circle(A, s, t, AHEAD) >= 0
             if not room:
                 A.PAR.now = t
-                COUNT.heap = push(TIME, OF, COUNT.heap, t, i)
+                COUNT.heap = push_event(TIME, OF, COUNT.heap, t, i)
                 return POOL_FULL
             continue
         j = body_of(A, o) if o >= 0 else i
@@ -146,7 +146,7 @@ def follow(A: Scene, J: Joints, may_rest: bool) -> int:
     while True:
         status = start_waiting(A, J) if COUNT.waiting > 0 else DONE
         if status == DONE:
-            status = run(A, may_rest, most_looks(A, J))
+            status = run_events(A, may_rest, most_looks(A, J))
         if status != BLOCK_DUE:
             return status
         t, i = A.PAR.now, COUNT.struck
@@ -154,7 +154,7 @@ def follow(A: Scene, J: Joints, may_rest: bool) -> int:
         if COUNT.work > most_looks(A, J):
             return cut_short(A, J, i, t)
         if COUNT.logged + COUNT.pushes + 8 * STATE.shape[0] > A.LOG.shape[0]:
-            COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
+            COUNT.heap = push_event(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
             return LOG_FULL
         j = i if o == RENEW else A.LINK[o].owner
         met = o != RENEW
@@ -180,7 +180,7 @@ def follow(A: Scene, J: Joints, may_rest: bool) -> int:
             return cut_short(A, J, i, t)
         if joints and not has_room(A):
             COUNT.waiting = 0
-            COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
+            COUNT.heap = push_event(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
             return PUSHES_FULL
         if not met:
             COUNT.waiting = end_of_interval(A, J, i, t)

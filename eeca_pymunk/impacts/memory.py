@@ -19,7 +19,7 @@ OF_SCENE = (
     "CORE", "SIDE",
 )  # fmt: skip
 # Those that are made larger on the way.
-ROOM = ("LOG", "PUSHED_BY", "PUSHED", "KEYS", "FORCES")
+GROWN_ARRAYS = ("LOG", "PUSHED_BY", "PUSHED", "KEYS", "FORCES")
 
 
 def gathered(*parts: tuple[Any, tuple[str, ...]]) -> tuple[list[Any], IntArray]:
@@ -47,10 +47,7 @@ def _piece(arrays: list[AnyArray]) -> IntArray:
 
 
 # Of a state: fields of `Scene` that keep their lengths; those of BODY that no step changes.
-_WHOLE = (
-    "BODY", "STATE", "MARK", "CELL", "LIST", "HEAD", "GRID", "PLACE", "MEMBER", "RESTING", "SIDE", "PAR",
-    "COUNT", "PULL", "BEGAN",
-)  # fmt: skip
+_WHOLE = ("BODY", "PULL", "BEGAN", *(name for name in OF_SCENE if name not in ("POOL", "FLAG", "CORE")))
 _CONSTANT = ("inv_mass", "inv_inertia", "extent", "elasticity", "friction")
 
 

@@ -20,7 +20,7 @@ from ..model.step import Count, Step
 from ..pairs.grid import relist
 from ..pairs.setup import refilled
 from ..report import Outcome
-from .memory import OF_SCENE, ROOM, gathered, recalled, remembered
+from .memory import GROWN_ARRAYS, OF_SCENE, gathered, recalled, remembered
 from .scene_memory import SceneMemory
 
 _STEP, _COUNT = Step.TYPE.names or (), Count.TYPE.names or ()
@@ -140,7 +140,7 @@ class Remembering:
         if self.table is not self._first:
             # The first arrays again, not larger ones: memory then grows at the same steps as in a new loop.
             first = scene_of(self._first)
-            self.scene = self.scene._replace(**{name: getattr(first, name) for name in ROOM})
+            self.scene = self.scene._replace(**{name: getattr(first, name) for name in GROWN_ARRAYS})
             self._first = self.table
         scene = self.scene
         scene.KEYS.fill(-1)

@@ -14,18 +14,20 @@ from ..contacts.counts import looks_of, note_lock, note_unmet, spend
 from ..contacts.memory import shapes_of
 from ..contacts.single import note
 from ..contacts.works import carried
-from ..islands.building import spread
+from ..islands.building import join_reachable
 from ..islands.local import clear_places
 from ..islands.membership import jointed, members, unite
 from ..model.contacts import SOLVED, Problem, Solved
 from ..model.scene import Scene
 from ..model.step import IMPACT
 from ..rows.blocks import CONVERGED, solve_block
-from .simultaneous import Block, energy_owed, gather, make_block
+from .simultaneous import Block, energy_owed, gather_block, make_block
 
 
 @nonallocating
-def finish(A: Scene, block: Block, n: int, m: int, L: FloatArray, OUT: Rows[Solved], status: int, t: float) -> None:
+def finish_block(
+    A: Scene, block: Block, n: int, m: int, L: FloatArray, OUT: Rows[Solved], status: int, t: float
+) -> None:
     """Write the velocities of a block of n bodies and m pairs after the impulses L (c, 2) of its c contacts to BODY,
     and enter losses and impulses in ledger and log. status, OUT: result and report of `..rows.blocks.solve_block`."""
     BODY, COUNT = A.BODY, A.COUNT
@@ -72,7 +74,7 @@ def strike(A: Scene, a: int, b: int, t: float, rest: bool) -> int:
         rest: whether the contact of a and b persists from now on.
     """
     k = A.SHAPE.shape[0]
-    n, m, PAIRS = gather(A, a, b, t)
+    n, m, PAIRS = gather_block(A, a, b, t)
     if holds_joints(A, n):
         clear_places(A, A.BLOCK[:n])
         return -1
@@ -83,7 +85,7 @@ def strike(A: Scene, a: int, b: int, t: float, rest: bool) -> int:
     problem = Problem(block.ROWS, block.IM, block.II, block.POSE, n, rows)
     status = solve_block(problem, L, block.V, owed, piled, OUT)
     lost = OUT[0].restitution + OUT[0].friction - owed
-    finish(A, block, n, m, L, OUT, status, t)
+    finish_block(A, block, n, m, L, OUT, status, t)
     spend(A, n, m, looks_of(rows, OUT[0]))
     return rejoin(A, a, b, t, n, rest, lost)
 
@@ -109,7 +111,7 @@ def rejoin(A: Scene, a: int, b: int, t: float, n: int, rest: bool, lost: float) 
                 QUEUE[queued] = i
                 queued += 1
             root = unite(A, i, i if root < 0 else root)
-    spread(A, QUEUE, queued, t)
+    join_reachable(A, QUEUE, queued, t)
     root = STATE[root].island
     A.RESTING[root].lost += lost
     A.MEMBER[root].hits += 1

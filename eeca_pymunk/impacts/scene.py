@@ -12,7 +12,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import Table, replaced
 from ..compiled.library import result_of
 from ..compiled.records import R, Rows, columns, from_bytes, put, rows
-from ..contacts.memory import forget
+from ..contacts.memory import copy_recent
 from ..islands.accounting import flag_pairs
 from ..joints.pinned import NO_PINNED, pinned_bodies
 from ..layout import READ
@@ -192,7 +192,7 @@ class EventLoop(Remembering):
         """Copy the forces of the last step to tables of `size` rows; older ones are dropped."""
         scene = self.scene
         KEYS, TABLE = np.full(size, -1, np.int64), rows(Force, size)
-        forget(scene.KEYS, scene.FORCES, scene.COUNT, KEYS, TABLE, float(scene.PAR.stamp) - 1.0)
+        copy_recent(scene.KEYS, scene.FORCES, scene.COUNT, KEYS, TABLE, float(scene.PAR.stamp) - 1.0)
         self.scene = scene._replace(KEYS=KEYS, FORCES=TABLE)
 
     def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:

@@ -20,7 +20,7 @@ from ..geometry.flight import pose, rate
 from ..geometry.manifold import face
 from ..geometry.sides import note_side
 from ..islands.accounting import end_interval
-from ..islands.membership import budget_spent, fixed_support, in_large_island, remembered
+from ..islands.membership import budget_spent, fixed_support, in_large_island, remembered_force
 from ..model.contacts import ROW, Row
 from ..model.parameters.impulses import BLOCK_BODIES
 from ..model.scene import Scene
@@ -41,7 +41,7 @@ def takes_part(A: Scene, s: int, o: int, t: float) -> bool:
     i, j = A.LINK[s].owner, A.LINK[o].owner
     if A.STATE[i].island < 0 or not (A.STATE[j].island == A.STATE[i].island or fixed_support(A, j)):
         return False
-    return remembered(A, s, o, A.PAR.stamp)[0] > 0.0
+    return remembered_force(A, s, o, A.PAR.stamp)[0] > 0.0
 
 
 @nonallocating
@@ -71,7 +71,7 @@ def add_component(A: Scene, i: int, n: int, t: float) -> int:
 
 
 @kernel
-def gather(A: Scene, a: int, b: int, t: float) -> tuple[int, int, IntArray]:
+def gather_block(A: Scene, a: int, b: int, t: float) -> tuple[int, int, IntArray]:
     """Collect the block of an impact of shapes a and b at instant t: n bodies in A.BLOCK, which move to that instant,
     with their places in A.PLACE; and m pairs as numbers a k + b (k shapes) in increasing order. Returns n, m and the
     pairs."""
@@ -182,7 +182,7 @@ def make_block(A: Scene, n: int, m: int, PAIRS: IntArray, hit: int, rest: bool, 
         e, mu, sx, sy = law(A, sa, sb)
         if rest and PAIRS[z] == hit:
             e = 0.0
-        load = remembered(A, sa, sb, A.PAR.stamp - 1.0)[1]
+        load = remembered_force(A, sa, sb, A.PAR.stamp - 1.0)[1]
         count = face(A, sa, sb, POSE, p, q, face_tolerance(A, sa, sb), found)
         if count > 0:
             note_side(A, sa, sb, found[0, 0], found[0, 1], True)

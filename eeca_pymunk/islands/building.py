@@ -81,7 +81,7 @@ def join_neighbours(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
 
 
 @nonallocating
-def spread(A: Scene, QUEUE: IntArray, queued: int, t: float) -> int:
+def join_reachable(A: Scene, QUEUE: IntArray, queued: int, t: float) -> int:
     """Call `join_neighbours` for the bodies of QUEUE, `queued` so many, and for those that join; returns their
     number."""
     q = 0
@@ -123,7 +123,7 @@ def build_islands(A: Scene) -> int:
         if STATE[i].island >= 0 and A.MEMBER[i].rest != AT_REST:
             QUEUE[queued] = i
             queued += 1
-    queued = spread(A, QUEUE, queued, 0.0)
+    queued = join_reachable(A, QUEUE, queued, 0.0)
     kept, wanted = 0, 0
     for c in range(COUNT.pushes):
         kept += 1 if A.PUSHED_BY[c].root >= 0 else 0

@@ -21,14 +21,14 @@ from ..model.parameters.intervals import (
     LARGE_SWEEPS_HIT,
     NORMAL_TURN,
     SMALL_SWEEPS,
-    STICK,
+    STICK_TOLERANCE,
     TOUCH,
 )
 from ..model.scene import Scene
 from ..pairs.lists import far_apart
 from ..pairs.rules import barred, law
 from ..rows.build import tangent_rate
-from .membership import approach, fixed_support, persists, remembered
+from .membership import approach, fixed_support, persists, remembered_force
 
 
 @nonallocating
@@ -73,7 +73,7 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                     continue
                 force, load = 0.0, 0.0
                 if lossy and not together:
-                    force, load = remembered(A, s, o, A.PAR.stamp - 1.0)
+                    force, load = remembered_force(A, s, o, A.PAR.stamp - 1.0)
                 # In a large island all loaded contacts remain candidates: a hit acts on a few bodies at once, and
                 # reaches the others through the interval.
                 if n < LARGE_ISLAND or force <= 0.0:
@@ -209,16 +209,16 @@ def stick_time(ROWS: Rows[Row], L: FloatArray, FREE: FloatArray, VN: FloatArray,
         before = abs(ROWS[z].ut)
         # The slip of contacts that stick throughout is round-off, or the error of what a turning body carries along.
         change = most / ROWS[z].k_t
-        if most == 0.0 or before <= max(STICK * change, ROWS[z].unsure):
+        if most == 0.0 or before <= max(STICK_TOLERANCE * change, ROWS[z].unsure):
             continue
-        if abs(tangent_rate(ROWS[z], VN)) > STICK * before:
+        if abs(tangent_rate(ROWS[z], VN)) > STICK_TOLERANCE * before:
             continue
         sign = 1.0 if ROWS[z].ut > 0.0 else -1.0
         limit += most
         beta -= sign * L[z, 1]
         if before > slip:
             slip, others = before, sign * (tangent_rate(ROWS[z], FREE) - ROWS[z].ut)
-    if beta <= STICK * limit or beta >= (1.0 - STICK) * limit:
+    if beta <= STICK_TOLERANCE * limit or beta >= (1.0 - STICK_TOLERANCE) * limit:
         return h
     rate = (slip + others) * limit / beta - others
     return h * slip / rate if rate > slip else h

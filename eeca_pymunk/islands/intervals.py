@@ -10,9 +10,8 @@ from ..arrays import FlagArray, FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..contacts.correction import budget_of, lifting
 from ..contacts.counts import count_solve, note_lock, note_unmet
-from ..contacts.geometry import gather
+from ..contacts.geometry import gather_contacts
 from ..contacts.interval import make_contacts, step_island
-from ..contacts.works import moved
 from ..model.bodies import MOVED
 from ..model.contacts import Problem
 from ..model.islands import Island, IslandContacts
@@ -157,7 +156,7 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
             return AGAIN, h / far
         if m > 0 and OUT[0].at_rest == 0 and not before_end(A, t + h):
             # An interval that ends within the step is followed by another one, which corrects the penetration.
-            middle, lost = moved(isle.POSE, V, 0.5 * h), OUT[0].restitution + OUT[0].friction
+            middle, lost = isle.POSE + 0.5 * h * V, OUT[0].restitution + OUT[0].friction
             payable = find_lifts(A, isle, contacts, n, m, middle, VN, h, lost, A.RESTING[root].lost, payable)
         note_lock(A, OUT[0])
     at_rest = OUT[0].at_rest > 0
@@ -190,12 +189,12 @@ def contacts_at(A: Scene, root: int, t: float) -> tuple[Island, IslandContacts, 
     found = pairs_within(A, root, t, 0.0, True, MINE)
     isle = local_island(A, MINE, found, t)
     k, contacts = len(isle.WHO), make_contacts(len(found), len(isle.WHO))
-    m = gather(A, isle, contacts, isle.POSE, np.zeros(k), 0.0, k == n)
+    m = gather_contacts(A, isle, contacts, isle.POSE, np.zeros(k), 0.0, k == n)
     return isle, contacts, MINE, m
 
 
 @kernel
-def lift_here(A: Scene, root: int, t: float) -> None:
+def find_lifts_at_cut(A: Scene, root: int, t: float) -> None:
     """Set the penetration correction of an island whose interval has been cut at instant t, at which its bodies are;
     `accounting.apply_correction` applies it. It may cost as much energy as the island has lost in the step; where a
     moving body without mobility is deep in the island (`depths.driven`) that does the work beyond."""

@@ -149,7 +149,7 @@ def write_contacts(
 
 
 @nonallocating
-def contacts_of(A: Scene, root: int) -> tuple[int, int]:
+def contact_range(A: Scene, root: int) -> tuple[int, int]:
     """First row, and row after the last, of the contacts of an island in PUSHED; (0, 0) if it has none."""
     first, count = 0, 0
     for c in range(A.COUNT.pushes):

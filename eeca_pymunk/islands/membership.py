@@ -121,7 +121,7 @@ def lossy(A: Scene, root: int) -> bool:
 
 
 @nonallocating
-def remembered(A: Scene, a: int, b: int, since: float) -> tuple[float, float]:
+def remembered_force(A: Scene, a: int, b: int, since: float) -> tuple[float, float]:
     """Normal force and load (mass length/time²) of a pair of shapes a and b, summed over its points, as of the steps
     from number `since` on; 0 if there is none."""
     key = key_of(A.SHAPE.shape[0], a, b)
@@ -135,7 +135,7 @@ def remembered(A: Scene, a: int, b: int, since: float) -> tuple[float, float]:
 
 
 @nonallocating
-def turning(A: Scene, i: int, j: int, nx: float, ny: float, h: float) -> float:
+def turning_acceleration(A: Scene, i: int, j: int, nx: float, ny: float, h: float) -> float:
     """Acceleration (length/time²) with which bodies i and j close along n, from i to j, as one without mobility turns:
     w² n.(x - c) - 2 w t.(v - v_c), with its spin w and centre c, and n to the other one. The path of i begins now, that
     of j a time h earlier."""
@@ -154,8 +154,8 @@ def turning(A: Scene, i: int, j: int, nx: float, ny: float, h: float) -> float:
 @nonallocating
 def approach(A: Scene, a: int, b: int, t: float) -> tuple[float, float, float, float, float]:
     """Gap (length) of shapes a and b at instant t, its rate u (length/time, negative when closing), the accelerations
-    (length/time²) with which it closes without contacts and on the present paths, both with `turning`, and the
-    effective mass of the contact. The path of a's body begins at t; that of b's body may begin earlier, and is
+    (length/time²) with which it closes without contacts and on the present paths, both with `turning_acceleration`, and
+    the effective mass of the contact. The path of a's body begins at t; that of b's body may begin earlier, and is
     extrapolated to t without its acceleration."""
     BODY, PULL, i, j = A.BODY, A.PULL, A.LINK[a].owner, A.LINK[b].owner
     h = t - BODY[j].since
@@ -171,7 +171,7 @@ def approach(A: Scene, a: int, b: int, t: float) -> tuple[float, float, float, f
     closing += arm_i * PULL[i, 2] - arm_j * PULL[j, 2]
     present = nx * (BODY[i].ax - BODY[j].ax) + ny * (BODY[i].ay - BODY[j].ay)
     present += arm_i * BODY[i].angular - arm_j * BODY[j].angular
-    turns = turning(A, i, j, nx, ny, h)
+    turns = turning_acceleration(A, i, j, nx, ny, h)
     of_spins = BODY[i].inv_inertia * arm_i * arm_i + BODY[j].inv_inertia * arm_j * arm_j
     mass = 1.0 / (BODY[i].inv_mass + BODY[j].inv_mass + of_spins)
     return g, u, closing + turns, present + turns, mass
@@ -189,7 +189,7 @@ def persists(A: Scene, a: int, b: int, t: float, lossy: bool) -> bool:
     g, u, closing, present, mass = approach(A, a, b, t)
     h = A.PAR.dt - t
     small = smaller(A, a, b)
-    force, load = remembered(A, a, b, A.PAR.stamp - 1.0)
+    force, load = remembered_force(A, a, b, A.PAR.stamp - 1.0)
     if e >= 1.0 and not lossy:
         limit = (ELASTIC_REST_ON if force > 0.0 else ELASTIC_REST) * A.PAR.pulled * A.PAR.dt
         i, j = A.LINK[a].owner, A.LINK[b].owner

@@ -25,7 +25,7 @@ from ..pairs.lists import mark_pair
 from ..rows.energy import scale_to_lose
 from .candidates import sweeps_of
 from .depths import times_too_long
-from .local import clear_places, contacts_of, local_island, number_bodies, write_contacts
+from .local import clear_places, contact_range, local_island, number_bodies, write_contacts
 
 
 @inlined
@@ -95,7 +95,7 @@ def scale_impulses(A: Scene, root: int, t: float) -> None:
     """Scale the impulses of an island, whose bodies are at the start of its interval, so that they give no energy up to
     instant t: q in the docstring of the module, or 0, for each group of bodies that touch. The energy is that of a
     height, so that bodies sink by it: those whose contacts have given none keep their impulses."""
-    first, end = contacts_of(A, root)
+    first, end = contact_range(A, root)
     start = A.PUSHED[first].start
     MINE = number_bodies(A, root)
     n = len(MINE)
@@ -142,7 +142,7 @@ def group_of(A: Scene, GROUP: IntArray, c: int) -> int:
 def repay(A: Scene, root: int, t: float) -> None:
     """Before the interval of an island ends at instant t: if its contacts have given energy up to t, solve them again
     for the time up to t; if they become more, or move too far for one interval, scale their impulses."""
-    first, end = contacts_of(A, root)
+    first, end = contact_range(A, root)
     if not gives(A, first, end, t):
         return
     found = pairs_of(A, first, end)

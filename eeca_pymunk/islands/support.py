@@ -17,7 +17,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import empty
-from ..contacts.memory import find, key_of, remember
+from ..contacts.memory import find, key_of, remember_force
 from ..model.bodies import AT_REST
 from ..model.contacts import ROW, Problem
 from ..model.parameters.rest import REST_SPEED, SUPPORT_FACTORS, SUPPORT_ROUNDS
@@ -27,7 +27,7 @@ from ..rows.build import place_row
 from ..rows.equilibrium import equilibrium
 from .accounting import wake
 from .intervals import begin_interval
-from .local import clear_places
+from .local import clear_places, contact_range
 from .membership import members_of
 from .rest import candidate_speed, postpone_test, spins_freely
 
@@ -72,16 +72,14 @@ def supports_load(A: Scene, root: int) -> bool:
         for c in range(3):
             START[q, c] = dt * A.PULL[i, c]
     support_loads(A, root, START)
-    room = 0
-    for c in range(A.COUNT.pushes):
-        room += 1 if A.PUSHED_BY[c].root == root else 0
-    ROWS, L, OF = empty(room, ROW), np.empty((room, 2)), np.empty(room, np.int64)
+    first, end = contact_range(A, root)
+    ROWS, L, OF = empty(end - first, ROW), np.empty((end - first, 2)), np.empty(end - first, np.int64)
     open_to, m = 0.5 * candidate_speed(A.MEMBER[root].with_supports) * A.PAR.pulled * dt * dt, 0
-    for c in range(A.COUNT.pushes):
+    for c in range(first, end):
         R = A.PUSHED[c]
         # Contacts without an impulse take part if their gap is no larger than the way in which a body may stop when it
         # is put to rest.
-        if A.PUSHED_BY[c].root != root or not (R.normal > 0.0 or R.gap <= open_to):
+        if not (R.normal > 0.0 or R.gap <= open_to):
             continue
         a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
         p, q = A.PLACE[A.LINK[a].owner], A.PLACE[A.LINK[b].owner]
@@ -116,7 +114,7 @@ def remember_forces(A: Scene, c: int) -> None:
     if find(A.KEYS, key) >= 0 or 2 * (A.COUNT.remembered + 1) <= A.KEYS.shape[0]:
         R = A.PUSHED[c]
         force = R.normal / R.length
-        remember(A.KEYS, A.FORCES, A.COUNT, key, force, R.tangential / R.length, force, R.length, A.PAR.stamp)
+        remember_force(A.KEYS, A.FORCES, A.COUNT, key, force, R.tangential / R.length, force, R.length, A.PAR.stamp)
 
 
 @kernel

@@ -12,7 +12,7 @@ from ..model.parameters.intervals import INTERVAL_RETRY
 from ..model.scene import Scene
 from ..pairs.rules import barred
 from .component import step_in_scratch
-from .gathered import gather_alone, keep_joints, restore_joints
+from .gathered import gather_alone, restore_joints, save_joints
 from .lengths import excess_alone
 
 
@@ -49,7 +49,7 @@ def begin_alone(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     """Begin an interval of length h, without contacts, of an island that `is_component` at instant t, at which all its
     bodies are. Returns 0; or, with nothing done, how many times too long it is, never in the `last` attempt."""
     s = J.OF[root]
-    keep_joints(J, s)
+    save_joints(J, s)
     clear_interval(J.STEPPED[s])
     step_in_scratch(J, s, h, gather_alone(A, J, s, t, h), True)
     far = 0.0 if last else 2.0 if J.STEPPED[s].status >= ELASTIC else excess_alone(A, J, s, t, h)

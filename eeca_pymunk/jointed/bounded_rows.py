@@ -97,9 +97,7 @@ def fill_rows(J: Joints, groups: Groups, B: Bounded, g: int, first: int, INDEX: 
     """The columns of the rows from `first` on, of group g, whose component is ready to answer."""
     s = groups.COMPONENT[g]
     for i in range(first, B.USED[0]):
-        for w in range(len(PUSH)):
-            for c in range(3):
-                PUSH[w, c] = 0.0
+        PUSH[:] = 0.0
         for end in range(2):
             if B.END[i, end] >= 0:
                 for c in range(3):

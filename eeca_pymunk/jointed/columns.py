@@ -14,7 +14,7 @@ from ..compiled.records import Rows
 from ..model.contacts import Columns, Row
 from ..model.joints import Joints
 from ..rows.build import invert
-from ..rows.columns import push_column
+from ..rows.columns import push_column, put_free_body
 from .component import answer
 from .groups import Groups, least_mobility
 
@@ -56,13 +56,19 @@ def fill_free(groups: Groups, C: Columns, ROWS: Rows[Row], IM: FloatArray, II: F
             q = C.BODY[w]
             if groups.COMPONENT[groups.GROUP[q]] >= 0:
                 continue
-            on_b = q == ROWS[i].b
-            sign = 1.0 if on_b else -1.0
-            arm_n = ROWS[i].arm_nb if on_b else ROWS[i].arm_na
-            arm_t = ROWS[i].arm_tb if on_b else ROWS[i].arm_ta
-            C.N[w, 0], C.N[w, 1] = sign * IM[q] * ROWS[i].nx, sign * IM[q] * ROWS[i].ny
-            C.T[w, 0], C.T[w, 1] = -sign * IM[q] * ROWS[i].ny, sign * IM[q] * ROWS[i].nx
-            C.N[w, 2], C.T[w, 2] = sign * II[q] * arm_n, sign * II[q] * arm_t
+            put_free_body(C, w, ROWS[i], q == ROWS[i].b, IM[q], II[q])
+
+
+@nonallocating
+def push_group(groups: Groups, g: int, INDEX: IntArray, row: Row, lam: float, beta: float, PUSH: FloatArray) -> None:
+    """Add impulses lam and beta of a contact to PUSH (., 3), as far as they act on bodies of group g, at their places
+    INDEX (k,)."""
+    for q, sign, arm_n, arm_t in ((row.a, -1.0, row.arm_na, row.arm_ta), (row.b, 1.0, row.arm_nb, row.arm_tb)):
+        if groups.GROUP[q] == g:
+            n, f = sign * lam, sign * beta
+            PUSH[INDEX[q], 0] += n * row.nx - f * row.ny
+            PUSH[INDEX[q], 1] += n * row.ny + f * row.nx
+            PUSH[INDEX[q], 2] += n * arm_n + f * arm_t
 
 
 @nonallocating
@@ -78,35 +84,21 @@ def fill_group(
     """
     s = groups.COMPONENT[g]
     for i in range(m):
-        a, b = ROWS[i].a, ROWS[i].b
-        on_a, on_b = groups.GROUP[a] == g, groups.GROUP[b] == g
-        if not on_a and not on_b:
+        if groups.GROUP[ROWS[i].a] != g and groups.GROUP[ROWS[i].b] != g:
             continue
         for tangent in range(ways):
-            for w in range(len(PUSH)):
-                for c in range(3):
-                    PUSH[w, c] = 0.0
-            x, y = (ROWS[i].nx, ROWS[i].ny) if tangent == 0 else (-ROWS[i].ny, ROWS[i].nx)
-            arm_a = ROWS[i].arm_na if tangent == 0 else ROWS[i].arm_ta
-            arm_b = ROWS[i].arm_nb if tangent == 0 else ROWS[i].arm_tb
-            if on_a:
-                q = INDEX[a]
-                PUSH[q, 0], PUSH[q, 1], PUSH[q, 2] = -x, -y, -arm_a
-            if on_b:
-                q = INDEX[b]
-                PUSH[q, 0], PUSH[q, 1], PUSH[q, 2] = PUSH[q, 0] + x, PUSH[q, 1] + y, PUSH[q, 2] + arm_b
+            PUSH[:] = 0.0
+            push_group(groups, g, INDEX, ROWS[i], 1.0 - tangent, float(tangent), PUSH)
             answer(J, s, about_step, PUSH)
+            D = C.N if tangent == 0 else C.T
             for w in range(C.AT[i], C.AT[i + 1]):
                 if groups.GROUP[C.BODY[w]] == g:
                     for c in range(3):
-                        if tangent == 0:
-                            C.N[w, c] = PUSH[INDEX[C.BODY[w]], c]
-                        else:
-                            C.T[w, c] = PUSH[INDEX[C.BODY[w]], c]
+                        D[w, c] = PUSH[INDEX[C.BODY[w]], c]
 
 
 @nonallocating
-def along(C: Columns, ROWS: Rows[Row], i: int, D: FloatArray, tangent: bool) -> float:
+def column_rate(C: Columns, ROWS: Rows[Row], i: int, D: FloatArray, tangent: bool) -> float:
     """Rate of contact i along n (or t) of its own column D."""
     x, y = (-ROWS[i].ny, ROWS[i].nx) if tangent else (ROWS[i].nx, ROWS[i].ny)
     arm_a = ROWS[i].arm_ta if tangent else ROWS[i].arm_na
@@ -121,21 +113,21 @@ def along(C: Columns, ROWS: Rows[Row], i: int, D: FloatArray, tangent: bool) -> 
 
 
 @nonallocating
-def gives_way(groups: Groups, row: Row, mobility: float) -> bool:
+def is_movable(groups: Groups, row: Row, mobility: float) -> bool:
     """Whether a contact with such a mobility along n is moved by more than the error of the response."""
     return bool(mobility * row.k_n > least_mobility(groups, row.a, row.b))
 
 
 @nonallocating
-def weigh(groups: Groups, C: Columns, ROWS: Rows[Row], m: int) -> None:
+def set_effective_masses(groups: Groups, C: Columns, ROWS: Rows[Row], m: int) -> None:
     """Let K, A and W of the rows be those of the columns; leave out what hardly can be moved. Where the error of the
     response is all that impulses change of the slip at a given normal rate, tt - nt^2/nn, bodies can go one way only:
     then it is 0, and no stick is solved for."""
     for i in range(m):
-        nn, tt = along(C, ROWS, i, C.N, False), along(C, ROWS, i, C.T, True)
-        nt = 0.5 * (along(C, ROWS, i, C.N, True) + along(C, ROWS, i, C.T, False))
+        nn, tt = column_rate(C, ROWS, i, C.N, False), column_rate(C, ROWS, i, C.T, True)
+        nt = 0.5 * (column_rate(C, ROWS, i, C.N, True) + column_rate(C, ROWS, i, C.T, False))
         least = least_mobility(groups, ROWS[i].a, ROWS[i].b)
-        C.OUT[i] = 0 if gives_way(groups, ROWS[i], nn) else 1
+        C.OUT[i] = 0 if is_movable(groups, ROWS[i], nn) else 1
         if C.OUT[i] == 0:
             ROWS[i].k_n, ROWS[i].a_nn = 1.0 / nn, nn
         if C.OUT[i] == 0 and (tt - nt * nt / nn) * ROWS[i].k_t <= least:

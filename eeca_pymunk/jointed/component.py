@@ -6,8 +6,8 @@ import math
 
 from ..arrays import FloatArray
 from ..compiled import inlined, nonallocating
-from ..joints.bounds import gap, has_bound
-from ..joints.correct import correct
+from ..joints.bounds import has_bound, limit_gap
+from ..joints.correct import project
 from ..joints.start import springs_of
 from ..joints.step import take_step
 from ..joints.workspace import workspace
@@ -16,7 +16,7 @@ from ..model.joints import GEAR, Joints, Workspace
 from ..model.parameters.joints import COMPONENT_WORK, COMPONENT_WORK_BODY, CORRECTION_JOINTS
 from ..model.scene import Scene
 from ..newton.entries import acts
-from ..newton.response import prepare, respond
+from ..newton.response import prepare_response, respond
 from .gathered import gather_component
 
 
@@ -63,7 +63,7 @@ def fit_speeds(J: Joints, s: int, length: float) -> None:
     an impact at which nothing bounces. The caller accounts for the loss."""
     W = workspace(J, s)
     size_joints(W, length)
-    correct(W, SPEEDS)
+    project(W, SPEEDS)
 
 
 @nonallocating
@@ -76,7 +76,7 @@ def keep_apart(W: Workspace) -> None:
 
 
 @nonallocating
-def close_joints(
+def close_at_poses(
     A: Scene, J: Joints, s: int, OLD: FloatArray, NEW: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray,
     t: float, h: float,
 ) -> float:  # fmt: skip
@@ -88,7 +88,7 @@ def close_joints(
     stored = springs_of(W)
     keep_apart(W)
     gather_component(A, J, s, NEW, V, V, IM, II, t, h)
-    correct(W, POSES)
+    project(W, POSES)
     for i in range(W.bodies):
         if J.LOCAL[i].freedoms > 0:
             q = A.PLACE[J.JOINED[b0 + i].body]
@@ -104,7 +104,7 @@ def close_joints(
                 return math.inf
         for side in (-1, 1):
             passed = has_bound(W, k, side) and link.side != side
-            if passed and gap(W, k, side) < -small:
+            if passed and limit_gap(W, k, side) < -small:
                 return math.inf
     return stored
 
@@ -113,7 +113,7 @@ def close_joints(
 def ready(J: Joints, s: int, h: float, about_step: bool) -> bool:
     """Whether component s can answer impulses: about the step that `step_component` has just taken (its scratch is back
     at the start then), or at the poses that `gather_component` has put there."""
-    J.TALLY.answers = prepare(workspace(J, s), STEP if about_step else SPEEDS, h)
+    J.TALLY.answers = prepare_response(workspace(J, s), STEP if about_step else SPEEDS, h)
     return bool(J.TALLY.answers >= 0)
 
 

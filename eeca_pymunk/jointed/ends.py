@@ -18,7 +18,7 @@ from ..pairs.lists import mark_pair
 from .gathered import restore_joints
 from .ledger import account_component
 from .rest import end_rest
-from .solve import try_interval
+from .solve import try_jointed
 
 
 @kernel
@@ -67,7 +67,7 @@ def shorten(A: Scene, J: Joints, root: int, t: float) -> int:
     for s in components_of(A, J, root):
         restore_joints(J, s)
     if t - began > A.PAR.instant:
-        try_interval(A, J, root, began, t - began, True)
+        try_jointed(A, J, root, began, t - began, True)
     return some
 
 

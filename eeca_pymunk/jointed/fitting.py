@@ -16,9 +16,8 @@ from ..model.scene import Scene
 from ..rows.bounded import room_for_rows
 from ..rows.build import normal_rate
 from ..rows.inplace import add
-from ..rows.lifting import keep_walls
 from .advance import Interval, apart, find_hit, join_points
-from .columns import fill_free, fill_group, make_columns, weigh
+from .columns import fill_free, fill_group, make_columns, set_effective_masses
 from .component import fit_speeds, ready
 from .gathered import find_places, gather_component
 from .lifting import raise_gaps
@@ -26,7 +25,7 @@ from .motors import acts_at_once, is_driven
 
 
 @kernel
-def fit(A: Scene, J: Joints, interval: Interval, L: FloatArray, end: float, scale: float) -> FloatArray:
+def project_velocities(A: Scene, J: Joints, interval: Interval, L: FloatArray, end: float, scale: float) -> FloatArray:
     """Make the velocities at the end of a lossy interval fit the joints of the components that contacts push.
 
     Bodies that land leave velocities which violate joints, and those would ring for ever: a midpoint rule turns their
@@ -111,15 +110,12 @@ def stop_closing(
         if not ready(J, s, 2.0, False):
             return np.zeros(m)
         fill_group(J, groups, C, g, INDEX, False, KEEP, pushing, np.empty((size, 3)), 1)
-    weigh(groups, C, KEEP, pushing)
+    set_effective_masses(groups, C, KEEP, pushing)
     RATES = np.empty(pushing)
     for i in range(pushing):
         RATES[i] = normal_rate(KEEP[i], motion.V)
     D, before = np.zeros_like(motion.V), kinetic_energy(motion.V, isle.IM, isle.II, n)
-    problem = JointedProblem(KEEP, C, room_for_rows(0, 0), pushing)
-    MU, worst = raise_gaps(problem, RATES, D, fine)
-    if worst > fine:
-        keep_walls(problem, n, RATES, MU, D)
+    MU = raise_gaps(JointedProblem(KEEP, C, room_for_rows(0, 0), pushing), n, RATES, D, fine)
     HELD, loss = np.zeros(m), 0.0
     for i in range(pushing):
         HELD[PUSHING[i]] = MU[i]

@@ -13,7 +13,7 @@ from ..newton.motion import read_body, seat, size_up
 
 
 @nonallocating
-def keep_joints(J: Joints, s: int) -> None:
+def save_joints(J: Joints, s: int) -> None:
     """Remember the joints of component s as they are, at a new start."""
     J.COMPONENT[s].parts = 0
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
@@ -23,7 +23,7 @@ def keep_joints(J: Joints, s: int) -> None:
 
 @nonallocating
 def restore_joints(J: Joints, s: int) -> None:
-    """What `keep_joints` remembers; nothing is done."""
+    """What `save_joints` remembers; nothing is done."""
     clear_interval(J.STEPPED[s])
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         j = J.COUPLING[k].joint
@@ -32,7 +32,7 @@ def restore_joints(J: Joints, s: int) -> None:
 
 @nonallocating
 def rewind_joints(J: Joints, s: int) -> None:
-    """What `keep_joints` remembers, but for impulses, with which the next solution begins."""
+    """What `save_joints` remembers, but for impulses, with which the next solution begins."""
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         j = J.COUPLING[k].joint
         if J.COUPLING[k].kind == RATCHET:

@@ -12,20 +12,19 @@ from ..model.scene import Scene
 from ..rows.gentle import sweep_gently
 from .advance import Interval, advance, align
 from .bounded_rows import with_bounded
-from .columns import count_operations, fill_free, weigh
+from .columns import count_operations, fill_free, set_effective_masses
 
 
 @kernel
 def solve_gently(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, free: bool) -> None:
     """Impulses L (m, 2) by sweeps from none, about the motion without any; and the motion under them."""
     isle, groups, ROWS, _, C, m, _, _, _ = interval
-    for k in range(m):
-        L[k, 0] = L[k, 1] = 0.0
+    L[:m] = 0.0
     advance(A, J, interval, L, B, True, np.empty((0, 3)))
     if free:
         align(interval, True)
     fill_free(groups, C, ROWS, isle.IM, isle.II, m)
-    weigh(groups, C, ROWS, m)
+    set_effective_masses(groups, C, ROWS, m)
     V, BOTH = interval.motion.MEAN.copy(), with_bounded(B, L, m)
     problem = JointedProblem(ROWS, C, B, m)
     sweep_gently(problem, BOTH, V)

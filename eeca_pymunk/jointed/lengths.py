@@ -30,7 +30,7 @@ _CUBIC = 4.0 / 27.0  # largest value of s^2 (1 - s)
 
 
 @nonallocating
-def may_meet(A: Scene, i: int, way: float, t: float, h: float, KEY: IntArray, m: int) -> bool:
+def may_meet_others(A: Scene, i: int, way: float, t: float, h: float, KEY: IntArray, m: int) -> bool:
     """Whether body i, whose points go no farther than `way` in an interval h from instant t, may leave its margin
     circles, or meet what is not among the m contacts KEY."""
     for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
@@ -73,7 +73,7 @@ def strays(
         if A.LINK[s].vertices > 1:
             far = max(far, turned / INTERVAL_WAY)
     way = norm(x + h * b.vx, y + h * b.vy) + bend + A.PAR.pulled * h * h + min(turned, math.pi) * b.extent
-    return far if far > INTERVAL_RETRY and may_meet(A, i, way, t, h, KEY, m) else 0.0
+    return far if far > INTERVAL_RETRY and may_meet_others(A, i, way, t, h, KEY, m) else 0.0
 
 
 @nonallocating

@@ -21,10 +21,10 @@ from ..model.scene import Scene
 from ..rows.bounded import room_for_rows
 from ..rows.build import conserves, normal_rate
 from ..rows.inplace import copy
-from ..rows.lifting import keep_walls, lift
+from ..rows.lifting import lift_above_walls
 from .advance import Interval, Motion
-from .columns import fill_free, fill_group, make_columns, weigh
-from .component import close_joints, ready
+from .columns import fill_free, fill_group, make_columns, set_effective_masses
+from .component import close_at_poses, ready
 from .gathered import find_places, gather_component
 from .groups import find_groups, hangs
 from .motors import keeps_speed
@@ -32,15 +32,13 @@ from .motors import keeps_speed
 
 @kernel
 def raise_gaps(
-    problem: JointedProblem, GAPS: FloatArray, D: FloatArray, tolerance: float
-) -> tuple[FloatArray, float]:  # fmt: skip
-    """Displacements D (k, 3) = Y mu, 0 <= mu _|_ g + G D >= 0, of contacts that are not left out; mu (m,), and the
-    largest change of a gap in the last sweep."""
-    MU = np.zeros(problem.m)
+    problem: JointedProblem, n: int, GAPS: FloatArray, D: FloatArray, tolerance: float
+) -> FloatArray:  # fmt: skip
+    """Displacements D (k, 3) = Y mu, 0 <= mu _|_ g + G D >= 0, of contacts that are not left out; mu (m,)."""
     for i in range(problem.m):
         if problem.C.OUT[i] != 0:
             GAPS[i] = np.inf
-    return MU, lift(problem, GAPS, MU, D, tolerance, JOINTED_CORRECTION_SWEEPS)
+    return lift_above_walls(problem, n, GAPS, D, tolerance, JOINTED_CORRECTION_SWEEPS)
 
 
 @kernel
@@ -51,7 +49,7 @@ def lift_island(A: Scene, J: Joints, interval: Interval, root: int, end: float, 
     isle, groups, ROWS, _, _, m, n, _, _ = interval
     raised = driven(A, isle, ROWS, n, m)
     budget = lost + A.RESTING[root].lost
-    spent = correct(A, J, interval, end, math.inf if raised else budget, anew)
+    spent = correct_overlaps(A, J, interval, end, math.inf if raised else budget, anew)
     if len(groups.JOINTED) > 0:
         paid, one = min(spent, max(budget, 0.0)) if raised else spent, J.STEPPED[groups.JOINTED[0]]
         one.lifted += paid
@@ -59,8 +57,8 @@ def lift_island(A: Scene, J: Joints, interval: Interval, root: int, end: float, 
 
 
 @kernel
-def lift_here(A: Scene, J: Joints, root: int, t: float) -> None:
-    """`..islands.intervals.lift_here` of an island with joints, whose interval is over at instant t."""
+def lift_at_cut(A: Scene, J: Joints, root: int, t: float) -> None:
+    """`..islands.intervals.find_lifts_at_cut` of an island with joints, whose interval is over at instant t."""
     isle, contacts, MINE, m = contacts_at(A, root, t)
     n, k, ROWS = len(MINE), len(isle.WHO), contacts.ROWS
     if not conserves(ROWS, m):
@@ -79,7 +77,7 @@ def lift_here(A: Scene, J: Joints, root: int, t: float) -> None:
 
 
 @kernel
-def correct(A: Scene, J: Joints, interval: Interval, end: float, budget: float, anew: bool) -> float:
+def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget: float, anew: bool) -> float:
     """Lift the poses at the end of an island's motion by at most what `budget` pays; the energy that it costs.
 
     The cost is -m a.D for displacements D, turns included, and what springs hold more. Joints hold: D goes along them,
@@ -106,12 +104,9 @@ def correct(A: Scene, J: Joints, interval: Interval, end: float, budget: float, 
             if ready(J, s, 2.0, False):
                 fill_group(J, groups, C, g, INDEX, False, ROWS, m, np.empty((places, 3)), 1)
     KEEP = ROWS[:m].copy()
-    weigh(groups, C, KEEP, m)
+    set_effective_masses(groups, C, KEEP, m)
     D = np.zeros_like(V)
-    problem, near = JointedProblem(KEEP, C, room_for_rows(0, 0), m), 1e-3 * -deepest
-    MU, worst = raise_gaps(problem, GAPS, D, near)
-    if worst > near:
-        keep_walls(problem, n, GAPS, MU, D)
+    raise_gaps(JointedProblem(KEEP, C, room_for_rows(0, 0), m), n, GAPS, D, 1e-3 * -deepest)
     cost, part = -against(isle.ACC, isle.IM, isle.II, n, D), admissible(D, isle.EXTENT, n, size)
     if cost * part > 0.5 * budget:
         part = 0.5 * budget / cost
@@ -120,10 +115,7 @@ def correct(A: Scene, J: Joints, interval: Interval, end: float, budget: float, 
     ALL = np.ones(n if len(isle.IM) == n and not hangs(groups, J.COMPONENT, J.JOINED) else 0, np.uint8)
     for _ in range(4):
         spent = 0.0
-        NEW = END.copy()
-        for q in range(n):
-            for c in range(3):
-                NEW[q, c] += part * D[q, c]
+        NEW = END + part * D
         for g in range(len(groups.COMPONENT)):
             s = groups.COMPONENT[g]
             moves = 0.0
@@ -131,7 +123,7 @@ def correct(A: Scene, J: Joints, interval: Interval, end: float, budget: float, 
                 for c in range(3):
                     moves = max(moves, abs(D[groups.BODY[w], c]))
             if s >= 0 and moves > 0.0:
-                STORED[g] = close_joints(A, J, s, END, NEW, V, isle.IM, isle.II, end, h)
+                STORED[g] = close_at_poses(A, J, s, END, NEW, V, isle.IM, isle.II, end, h)
                 spent += STORED[g]
         spent -= against(isle.ACC, isle.IM, isle.II, n, NEW - END)
         turn, x, y, spin, inertia = unturn(NEW, NEW - END, V, isle.IM, isle.II, ALL)

@@ -34,7 +34,7 @@ def lost(interval: Interval, L: FloatArray) -> float:
 @nonallocating
 def work_error(interval: Interval, L: FloatArray, slow: float, pull: float, known: float) -> float:
     """Round-off of the energy that contacts lose: of the energy of the island, and of their works, of whose impulses
-    times speed it is the part `known`. `slow`, `pull`: see `press`."""
+    times speed it is the part `known`. `slow`, `pull`: see `press.solve_contacts`."""
     isle, h = interval.isle, interval.h
     energy, pressed = 0.0, 0.0
     for q in range(interval.n):
@@ -45,7 +45,7 @@ def work_error(interval: Interval, L: FloatArray, slow: float, pull: float, know
 
 
 @kernel
-def lock(
+def lock_jointed(
     A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, free: bool, elastic: bool, owed: float,
     error: float,
 ) -> None:  # fmt: skip

@@ -7,7 +7,7 @@ import math
 from ..compiled import kernel, nonallocating
 from ..geometry.flight import pose
 from ..geometry.gap import gap
-from ..islands.membership import in_large_island
+from ..islands.membership import in_large_island, members_of
 from ..model.joint_steps import LINEAR
 from ..model.joints import Joints
 from ..model.parameters.joints import (
@@ -24,7 +24,7 @@ from ..model.scene import Scene
 from .ends import end_here, left_apart, shorten, under_way
 from .ledger import work_left
 from .partners import carry
-from .paths import first_meeting, passes
+from .paths import crossing_of_paths, passes_through
 
 
 @nonallocating
@@ -52,11 +52,11 @@ def shorten_both(A: Scene, J: Joints, one: int, other: int, t: float) -> int:
 
 @nonallocating
 def too_late(A: Scene, J: Joints, roots: tuple[int, int], t: float) -> float:
-    """The instant by which one of both islands, whose intervals end at t, has come further than it can: it `passes`
-    another shape, or is `left_apart` at t; inf if none has."""
+    """The instant by which one of both islands, whose intervals end at t, has come further than it can: it
+    `passes_through` another shape, or is `left_apart` at t; inf if none has."""
     if left_apart(A, J, roots[0]) or left_apart(A, J, roots[1]):
         return t
-    return min(passes(A, roots[0], t), passes(A, roots[1], t))
+    return min(passes_through(A, roots[0], t), passes_through(A, roots[1], t))
 
 
 @kernel
@@ -69,7 +69,7 @@ def end_before(A: Scene, J: Joints, root: int, t: float, fits: bool, spent: bool
         return False
     began, then = A.BODY[root].since, t
     for tries in range(0 if fits else MEET_SECANTS):
-        if not (left_apart(A, J, root) or passes(A, root, then) < math.inf):
+        if not (left_apart(A, J, root) or passes_through(A, root, then) < math.inf):
             break
         J.TALLY.worst = LINEAR
         then = began if tries + 1 == MEET_SECANTS else 0.5 * (began + then)
@@ -77,15 +77,13 @@ def end_before(A: Scene, J: Joints, root: int, t: float, fits: bool, spent: bool
     end_here(A, J, root, then)
     if not spent:
         carry(A, J, root, t)
-    i = root
-    while i >= 0:
+    for i in members_of(A, root):
         A.BODY[i].since = then if spent else t
-        i = A.MEMBER[i].following
     return bool(then < t)
 
 
 @kernel
-def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
+def locate_impact(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
     """Bring the islands of shapes a and b, which are seen to meet at instant t, to the instant at which they do; that
     instant, and whether they are apart there.
 
@@ -107,10 +105,8 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
         root = roots[end]
         if under_way(A, root):
             least, latest = max(least, A.BODY[root].since), min(latest, A.RESTING[root].until)
-            member = root
-            while member >= 0:
+            for member in members_of(A, root):
                 least = max(least, begun(A, member))
-                member = A.MEMBER[member].following
         elif end == 0 or A.BODY[j].inv_mass > 0.0:
             least = max(least, begun(A, i if end == 0 else j))
     # Nor beyond the next event of others, which is to be met first.
@@ -130,7 +126,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
         close = MEET if loaded == 0 else MEET_LOADED if loaded <= COLUMN_CONTACTS else MEET_MANY
         crosses, through = False, t
         if g + level > close * small:
-            through, crosses = first_meeting(A, a, b, t)
+            through, crosses = crossing_of_paths(A, a, b, t)
         # Depths add up from impact to impact.
         deep = not spent and g < -MEET_MANY * small
         if ((loaded > 0 or spent) and tries + 1 >= most and not deep) or abs(g) <= close * small:
@@ -139,7 +135,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
         slope = (g - gap_before) / (t - before) if secant else gap_and_rate(A, a, b, t)[1]
         if not slope < 0.0 and g < -close * small and start >= -close * small:
             # Beyond the middle of a thin shape the way out is on its far side.
-            through, crosses = first_meeting(A, a, b, t)[0], True
+            through, crosses = crossing_of_paths(A, a, b, t)[0], True
         if crosses:
             if tries + 1 == MEET_SECANTS:
                 break
@@ -171,7 +167,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
         crossed, t = True, 0.5 * (apart + t)
         shorten_both(A, J, roots[0], roots[1], t)
         g = gap(A, a, b, t)[0] - level
-        crosses = g < -close * small or (g + level > close * small and first_meeting(A, a, b, t)[1])
+        crosses = g < -close * small or (g + level > close * small and crossing_of_paths(A, a, b, t)[1])
     if rate >= 0.0 and t - least <= A.PAR.instant:
         # Nothing closes at the start before joints act: at a limit that turns velocities into the other shape, say.
         # The more impacts the bodies have had, the longer they may, so that the step ends.

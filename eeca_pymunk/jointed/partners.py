@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..compiled import kernel, nonallocating
 from ..joints.closing import farthest
-from ..joints.correct import correct
+from ..joints.correct import project
 from ..joints.start import springs_of
 from ..joints.workspace import workspace
 from ..model.joint_steps import POSES
@@ -44,7 +44,7 @@ def carry(A: Scene, J: Joints, root: int, t: float) -> None:
         stored = springs_of(W)
         keep_apart(W)
         gather_alone(A, J, s, t, A.PAR.planned)
-        correct(W, POSES)
+        project(W, POSES)
         stored = springs_of(W) - stored
         if not farthest(W) <= LINEAR_APART:
             continue

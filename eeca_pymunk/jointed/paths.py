@@ -13,14 +13,14 @@ from ..model.parameters.joints import MEET_MANY
 from ..model.scene import Scene
 from ..pairs.lists import far_apart
 from ..pairs.rules import barred
-from ..prediction.impact_times import meet as find_meeting
+from ..prediction.impact_times import time_of_impact
 from .ends import under_way
 
 
 @nonallocating
-def first_meeting(A: Scene, a: int, b: int, t: float) -> tuple[float, bool]:
+def crossing_of_paths(A: Scene, a: int, b: int, t: float) -> tuple[float, bool]:
     """Instant before t at which the paths of shapes a and b, which are apart at t, meet, and whether there is one."""
-    through, certain = find_meeting(A, a, b, t)
+    through, certain = time_of_impact(A, a, b, t)
     return through, bool(certain and through < t)
 
 
@@ -33,7 +33,7 @@ def is_beyond(A: Scene, a: int, b: int, through: float, t: float) -> bool:
 
 
 @nonallocating
-def passes(A: Scene, root: int, t: float) -> float:
+def passes_through(A: Scene, root: int, t: float) -> float:
     """The instant by which a shape of an island has come through one that it has no contact with at t, the end of its
     interval, or t if it is deeper in it than an interval allows, and than at its start; inf if none does: the path of
     an interval that is shortened is another one, which was not searched for impacts."""
@@ -50,7 +50,7 @@ def passes(A: Scene, root: int, t: float) -> float:
                 began = max(A.BODY[i].since, A.BODY[A.LINK[o].owner].since)
                 g = math.inf if far_apart(A, s, o, t, 0.0) else gap(A, s, o, t)[0]
                 if g > 0.0:
-                    through, met = first_meeting(A, s, o, t)
+                    through, met = crossing_of_paths(A, s, o, t)
                     if met and through > began + A.PAR.instant and is_beyond(A, s, o, through, t):
                         return through
                     continue

@@ -54,10 +54,10 @@ from ..rows.inplace import copy
 from ..rows.laws import give_slips, solve_columns, solve_wedged, take_slips
 from .advance import Interval, advance, advance_aligned, align, farthest_apart
 from .bounded_rows import make_bounded, settle_bounded, with_bounded
-from .columns import count_operations, fill_free, leave_out, weigh
+from .columns import count_operations, fill_free, leave_out, set_effective_masses
 from .gentle import solve_gently
 from .groups import Groups, hangs
-from .losses import lock, lost, work_error
+from .losses import lock_jointed, lost, work_error
 from .secant import fit_columns
 
 
@@ -90,32 +90,20 @@ def aims(change: float, slow: float, fast: float, elastic: bool) -> tuple[float,
     return scale, (AGREE_REST if rests else AGREE) * scale, (PRESS_RESIDUAL_REST if rests else PRESS_RESIDUAL) * scale
 
 
-@nonallocating
-def clear(L: FloatArray) -> bool:
-    """Let impulses be 0; whether they were not."""
-    some = False
-    for k in range(L.shape[0]):
-        some = some or L[k, 0] != 0.0 or L[k, 1] != 0.0
-        L[k, 0] = L[k, 1] = 0.0
-    return some
-
-
 @kernel
-def accelerations(interval: Interval, L: FloatArray, B: Bounded, EFFECT: FloatArray) -> float:
-    """EFFECT (k, 3), out: accelerations of the bodies without contacts: those of the motion, less what the columns give
-    for its impulses L. Returns the largest one of a point."""
+def accelerations(interval: Interval, L: FloatArray, B: Bounded) -> tuple[FloatArray, float]:
+    """Accelerations (k, 3) of the bodies without contacts: those of the motion, less what the columns give for its
+    impulses L; and the largest one of a point."""
     isle, motion, h = interval.isle, interval.motion, interval.h
-    copy(EFFECT, motion.MEAN)
+    EFFECT = motion.MEAN.copy()
     push_columns(interval.C, L, interval.m, -1.0, EFFECT)
     settle_bounded(B, EFFECT)
-    for q in range(len(EFFECT)):
-        for c in range(3):
-            EFFECT[q, c] = (EFFECT[q, c] - isle.V[q, c]) / h
-    return farthest_apart(EFFECT, np.zeros_like(EFFECT), isle.EXTENT, interval.n)
+    EFFECT = (EFFECT - isle.V) / h
+    return EFFECT, farthest_apart(EFFECT, np.zeros_like(EFFECT), isle.EXTENT, interval.n)
 
 
 @kernel
-def press(
+def solve_contacts(
     A: Scene, J: Joints, interval: Interval, L: FloatArray, EXPECTED: FloatArray, slow: float, fast: float, pull: float,
     owed: float,
 ) -> bool:  # fmt: skip
@@ -183,14 +171,15 @@ def press(
         if anew and free:
             fill_free(groups, C, ROWS, isle.IM, isle.II, m)
         if outer == 0:
-            most_pull = accelerations(interval, L, B, EFFECT)
-            if most_pull * h > GUESS_SPEED * quick and clear(L):
+            EFFECT, most_pull = accelerations(interval, L, B)
+            if most_pull * h > GUESS_SPEED * quick and L.any():
+                L[:] = 0.0
                 # Its impulses are no loads: the bodies have not moved by the columns.
                 advance(A, J, interval, L, B, True, UNKNOWN)
-                most_pull = accelerations(interval, L, B, EFFECT)
+                EFFECT, most_pull = accelerations(interval, L, B)
             # Springs and motors accelerate bodies, too.
             pull = max(pull, most_pull)
-        weigh(groups, C, ROWS, m)
+        set_effective_masses(groups, C, ROWS, m)
         if outer == 0:
             scale, agree, fine = aims(pull * h, slow, fast, elastic)
             target(ROWS, m, EFFECT, EXPECTED, pull, h)
@@ -206,7 +195,7 @@ def press(
         if worst > WEDGED * scale and m <= COLUMN_CONTACTS and rubs(ROWS, m):
             worst = solve_wedged(problem, BOTH, FORESEEN, fine, most, work)
         if not exactly:
-            stop_at_walls(A, problem, n, BOTH, FORESEEN)
+            stop_at_walls(A, problem, n, C.OUT, BOTH, FORESEEN)
         count_operations(J, C)
         for i in range(m):
             L[i, 0], L[i, 1] = BOTH[i, 0], BOTH[i, 1]
@@ -233,7 +222,7 @@ def press(
         solve_gently(A, J, interval, L, B, free)
         converged, bent = False, np.inf if free else 0.0
         if excessive(L, m, isle.IM, n, quick):
-            clear(L)
+            L[:] = 0.0
             advance(A, J, interval, L, B, False, UNKNOWN)
     if bent > ARM_ERROR:
         advance_aligned(A, J, interval, L, B, free)
@@ -242,5 +231,5 @@ def press(
     if some_give(J, groups) or some_taut(J, groups):
         known = max(known, min(2.0 * reached / (slow + pull * h), PRESS_WORK_TAUT))
     copy(FORESEEN, motion.MEAN)
-    lock(A, J, interval, L, B, free, elastic, owed, work_error(interval, L, slow, pull, known))
+    lock_jointed(A, J, interval, L, B, free, elastic, owed, work_error(interval, L, slow, pull, known))
     return converged and farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n) <= max(agree, AGREE * scale)

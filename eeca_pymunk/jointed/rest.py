@@ -21,7 +21,7 @@ from ..model.parameters.rest import REST_SPEED
 from ..model.scene import Scene
 from ..pairs.rules import law
 from ..rows.equilibrium import point_speed
-from .gathered import keep_joints
+from .gathered import save_joints
 
 
 @nonallocating
@@ -128,7 +128,7 @@ def rest_if_still(A: Scene, J: Joints, root: int) -> None:
         rest.lift_x = rest.lift_y = rest.lift_angle = rest.lift_vx = rest.lift_vy = rest.lift_spin = 0.0
         if A.MEMBER[i].tied == i:
             clear_interval(J.STEPPED[J.OF[i]])
-            keep_joints(J, J.OF[i])
+            save_joints(J, J.OF[i])
         i = A.MEMBER[i].following
     put_to_rest(A, root)
 
@@ -155,7 +155,7 @@ def wake_disturbed(A: Scene, J: Joints) -> None:
             if disturbed(A, J, J.OF[i]):
                 A.MEMBER[A.STATE[i].island].rest = CHANGED
             else:
-                keep_joints(J, J.OF[i])  # where the interval begins again if the island is hit
+                save_joints(J, J.OF[i])  # where the interval begins again if the island is hit
 
 
 @nonallocating

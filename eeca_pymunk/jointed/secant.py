@@ -21,7 +21,7 @@ from ..model.parameters.joints import FIT_ROUND_OFF
 from ..rows.bounded import push_row
 from ..rows.columns import push_columns
 from .advance import Interval
-from .columns import along, gives_way
+from .columns import column_rate, is_movable
 
 
 @nonallocating
@@ -44,12 +44,7 @@ def fit_columns(
     of the motion before, impulses of bounded rows and of contacts in it; L (m, 2): those of the present motion. Whether
     all contacts that gave way still do: else these are no columns."""
     groups, ROWS, motion, C, m = interval.groups, interval.ROWS, interval.motion, interval.C, interval.m
-    ERROR, D, n = np.empty_like(V), np.empty((m, 2)), B.USED[0]
-    for q in range(len(V)):
-        for c in range(3):
-            ERROR[q, c] = motion.MEAN[q, c] - V[q, c]
-    for i in range(m):
-        D[i, 0], D[i, 1] = L[i, 0] - BEFORE[i, 0], L[i, 1] - BEFORE[i, 1]
+    ERROR, D, n = motion.MEAN - V, L[:m] - BEFORE[:m], B.USED[0]
     push_columns(C, D, m, -1.0, ERROR)
     SQUARE = np.zeros(len(groups.COMPONENT) + 1)  # d.d of each group; one more, for GROUP -1
     for i in range(m):
@@ -77,6 +72,6 @@ def fit_columns(
             for c in range(3 if square > 0.0 else 0):
                 B.N[w, c] += ERROR[B.BODY[w], c] * (B.ROWS[i].now - NOW[i]) / square
     for i in range(m):
-        if C.OUT[i] == 0 and not gives_way(groups, ROWS[i], along(C, ROWS, i, C.N, False)):
+        if C.OUT[i] == 0 and not is_movable(groups, ROWS[i], column_rate(C, ROWS, i, C.N, False)):
             return False
     return True

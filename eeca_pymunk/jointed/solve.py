@@ -1,4 +1,4 @@
-"""The interval of an island with joints: contacts (`press`), bodies lifted, velocities made to fit, paths."""
+"""The interval of an island with joints: contacts (`solve_contacts`), bodies lifted, velocities made to fit, paths."""
 
 from __future__ import annotations
 
@@ -8,10 +8,9 @@ import numpy as np
 
 from ..compiled import kernel
 from ..contacts.counts import note_unmet, spend
-from ..contacts.geometry import gather
+from ..contacts.geometry import gather_contacts
 from ..contacts.interval import make_contacts, recall, speeds
 from ..contacts.memory import remember_loads, shapes_of
-from ..contacts.works import moved
 from ..islands.candidates import before_end, pairs_within
 from ..islands.local import (
     clear_places,
@@ -33,14 +32,14 @@ from ..rows.build import conserves, normal_rate
 from .advance import Interval, Motion, advance
 from .alone import account_turning, begin_alone, is_component, meets_no_other, set_path
 from .columns import make_columns
-from .fitting import fit
-from .gathered import keep_joints, restore_joints
+from .fitting import project_velocities
+from .gathered import restore_joints, save_joints
 from .groups import find_groups
 from .ledger import work_left
 from .lengths import excess, led_in, sinks, too_deep_on_way, within_sagitta
 from .lifting import lift_island
 from .losses import lost, slip_of
-from .press import press
+from .press import solve_contacts
 from .rest import rest_if_still
 
 
@@ -64,7 +63,7 @@ def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
         if t > 0.0 and work_left(A, J) < 0.0:
             rest.longest = h  # where the next step begins
             return SPENT
-        status, h = try_interval(A, J, root, t, h, last)
+        status, h = try_jointed(A, J, root, t, h, last)
         if status != AGAIN:
             if status == DONE:
                 rest.longest = max(INTERVAL_RETRY * h, 0.0 if h < whole else rest.longest)
@@ -75,11 +74,11 @@ def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
 
 
 @kernel
-def times_too_long(A: Scene, J: Joints, interval: Interval, root: int, effort: float, held: bool, last: bool) -> float:
+def excess_length(A: Scene, J: Joints, interval: Interval, root: int, effort: float, held: bool, last: bool) -> float:
     """How many times too long the interval of an island is, whose motion took so much effort; also sets its `strays`.
 
     Args:
-        held: whether contacts are solved.  last: whether no other attempt follows, see `try_interval`.
+        held: whether contacts are solved.  last: whether no other attempt follows, see `try_jointed`.
     """
     m, n, h = interval.m, interval.n, interval.h
     far = 2.0 if not held and J.PROGRESS.effort > J.PROGRESS.share else 0.0
@@ -103,7 +102,7 @@ def times_too_long(A: Scene, J: Joints, interval: Interval, root: int, effort: f
 
 
 @kernel
-def try_interval(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) -> tuple[int, float]:
+def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) -> tuple[int, float]:
     """`begin_jointed` of length h. AGAIN, with nothing done, if that is too long, and how long it may be; not if it is
     the `last` attempt."""
     whole, A.RESTING[root].strays = is_component(A, J, root), 0.0
@@ -133,7 +132,7 @@ def try_interval(A: Scene, J: Joints, root: int, t: float, h: float, last: bool)
     k = len(isle.WHO)
     groups = find_groups(isle.WHO, isle.IM, J)
     for s in groups.JOINTED:
-        keep_joints(J, s)
+        save_joints(J, s)
     contacts, EXPECTED = make_contacts(p, k), np.zeros(2 * p + 1)
     ROWS, L = contacts.ROWS, contacts.L
     motion = Motion(
@@ -143,14 +142,14 @@ def try_interval(A: Scene, J: Joints, root: int, t: float, h: float, last: bool)
     slow, fast, pull = speeds(isle.V, isle.ACC, isle.EXTENT, isle.IM, n, h, REACH)
     m = 0
     if p > 0:
-        m = gather(A, isle, contacts, moved(isle.POSE, isle.V, 0.5 * h), REACH, h, k == n)
+        m = gather_contacts(A, isle, contacts, isle.POSE + 0.5 * h * isle.V, REACH, h, k == n)
     interval = Interval(isle, groups, ROWS, motion, make_columns(groups, ROWS, m), m, n, t, h)
     held, before = True, J.PROGRESS.effort
     J.PROGRESS.share = before + INTERVAL_SHARE * max(work_left(A, J), 0.0)
     if m > 0:
         recall(A, ROWS, m, h, m > COLUMN_CONTACTS, L, EXPECTED)
         owed = max(-A.RESTING[root].lost, 0.0)
-        held = press(A, J, interval, L, EXPECTED, slow, fast, pull, owed)
+        held = solve_contacts(A, J, interval, L, EXPECTED, slow, fast, pull, owed)
         if held or m > COLUMN_CONTACTS:
             # Of few contacts impulses that are no solution are no loads to begin with either.
             remember_loads(A, ROWS, L, m, h)
@@ -158,7 +157,7 @@ def try_interval(A: Scene, J: Joints, root: int, t: float, h: float, last: bool)
         advance(A, J, interval, L, room_for_rows(0, 0), False, np.empty((0, 3)))
     COUNT.solves += 1
     COUNT.solved += n
-    far = times_too_long(A, J, interval, root, J.PROGRESS.effort - before, held, last)
+    far = excess_length(A, J, interval, root, J.PROGRESS.effort - before, held, last)
     if far > INTERVAL_RETRY and not last:
         for s in groups.JOINTED:
             restore_joints(J, s)
@@ -179,7 +178,7 @@ def try_interval(A: Scene, J: Joints, root: int, t: float, h: float, last: bool)
     if not conserves(ROWS, m):
         if not before_end(A, t + h):
             lift_island(A, J, interval, root, t + h, lost(interval, L), False)
-        HELD = fit(A, J, interval, L, t + h, slow + pull * h)
+        HELD = project_velocities(A, J, interval, L, t + h, slow + pull * h)
     clear_places(A, MINE)
     first = COUNT.pushes
     open_interval(A, root, isle, contacts, motion.V, m, t, h)

@@ -31,7 +31,7 @@ def has_bound(W: Workspace, k: int, side: int) -> bool:
 
 
 @nonallocating
-def gap(W: Workspace, k: int, side: int) -> float:
+def limit_gap(W: Workspace, k: int, side: int) -> float:
     """How far joint k is from its bound at this side at the end of the present iterate: length or rad, below 0 beyond
     it."""
     joint = W.J.JOINT[W.link[k].joint]
@@ -40,7 +40,7 @@ def gap(W: Workspace, k: int, side: int) -> float:
 
 
 @nonallocating
-def hold_limits(W: Workspace) -> None:
+def hold_present_gaps(W: Workspace) -> None:
     """Hold joints that stand on a limit where they are, off their bound by round-off, however short the part is.
 
     To close a gap of round-off in a short part would take any force. Rows must be those of the present poses.
@@ -50,7 +50,7 @@ def hold_limits(W: Workspace) -> None:
         side, last = link[k].side, link[k].rows - 1
         if side == 0 or link[k].bounded != 0:
             continue
-        room = gap(W, k, side)
+        room = limit_gap(W, k, side)
         if abs(room) <= JOINT_TOUCH * hinge[k].size:
             at = hinge[k].measure
             bound = at + side * room
@@ -58,7 +58,7 @@ def hold_limits(W: Workspace) -> None:
 
 
 @nonallocating
-def gap_rate(joint: JointStep, rows: int, side: int, v_a: FloatArray, v_b: FloatArray) -> float:
+def limit_gap_rate(joint: JointStep, rows: int, side: int, v_a: FloatArray, v_b: FloatArray) -> float:
     """Rate of the gap at this side, below 0 where it closes, by the last of a joint's `rows` rows J, with the
     velocities v_a and v_b (3,) of its bodies."""
     return -side * along(joint, rows - 1, v_a, v_b)
@@ -66,9 +66,9 @@ def gap_rate(joint: JointStep, rows: int, side: int, v_a: FloatArray, v_b: Float
 
 @inlined
 def gap_rates(W: Workspace, k: int, side: int) -> tuple[float, float]:
-    """`gap_rate` of joint k with the velocities at the start and at the end of the present iterate."""
+    """`limit_gap_rate` of joint k with the velocities at the start and at the end of the present iterate."""
     joint, rows, a, b = W.J.HINGE[k], W.link[k].rows, W.J.LOCAL[W.link[k].body[0]], W.J.LOCAL[W.link[k].body[1]]
-    return gap_rate(joint, rows, side, a.v0, b.v0), gap_rate(joint, rows, side, a.v1, b.v1)
+    return limit_gap_rate(joint, rows, side, a.v0, b.v0), limit_gap_rate(joint, rows, side, a.v1, b.v1)
 
 
 @nonallocating
@@ -88,14 +88,14 @@ def closes_on_limit(W: Workspace, h: float) -> bool:
     for k in range(W.joints):
         if link[k].side != 0 and link[k].bounded == 0:
             a, b = W.J.LOCAL[link[k].body[0]], W.J.LOCAL[link[k].body[1]]
-            rate = gap_rate(W.J.HINGE[k], link[k].rows, link[k].side, a.v0, b.v0)
+            rate = limit_gap_rate(W.J.HINGE[k], link[k].rows, link[k].side, a.v0, b.v0)
             if -rate * h > LIMIT_WAY * W.J.HINGE[k].size:
                 return True
     return False
 
 
 @nonallocating
-def look(W: Workspace, k: int, h: float) -> None:
+def update_idle(W: Workspace, k: int, h: float) -> None:
     """Bring the rows of joint k to the present iterate if it is a limit on which it does not stand (`idle`)."""
     if idle(W.link, k):
         joint_rows(W, k, h, False)
@@ -149,7 +149,7 @@ def hops(W: Workspace, k: int, side: int, instant: float, h: float) -> bool:
     has been let go in this part: its force changes sign."""
     link, hinge = W.link, W.J.HINGE
     before, after = gap_rates(W, k, side)
-    start = gap(W, k, side) - 0.5 * h * (before + after)
+    start = limit_gap(W, k, side) - 0.5 * h * (before + after)
     way = max(start, 0.0) + 0.25 * before * instant
     return bool(link[k].let_go != side and before >= 0.0 and way <= LIMIT_HOP * hinge[k].size)
 
@@ -174,11 +174,11 @@ def first_bound(W: Workspace, h: float) -> tuple[int, int, float]:
     for k in range(W.joints):
         if link[k].side != 0 or link[k].bounded != 0 or is_far(W, k):
             continue
-        look(W, k, h)
+        update_idle(W, k, h)
         for side in (-1, 1):
             if not has_bound(W, k, side):
                 continue
-            end = gap(W, k, side)
+            end = limit_gap(W, k, side)
             if end >= -JOINT_TOUCH * hinge[k].size:
                 continue
             before, after = gap_rates(W, k, side)
@@ -194,7 +194,7 @@ def least_gap(W: Workspace, k: int, side: int, h: float) -> tuple[float, float]:
     an end. The distance of a slide is that of the chord d(s) = d0 + s (d1 - d0) from 0; the gaps of others change at
     rates that go evenly from b to a: they are smallest at s = b/(b - a), by b s h/2."""
     hinge = W.J.HINGE[k]
-    end = gap(W, k, side)
+    end = limit_gap(W, k, side)
     if W.link[k].kind == SLIDE:
         x, y = hinge.apart[0], hinge.apart[1]
         way_x, way_y = 2.0 * (hinge.measure * hinge.rows[0, 3] - x), 2.0 * (hinge.measure * hinge.rows[0, 4] - y)

@@ -12,8 +12,8 @@ from ..model.parameters.joints import JOINT_APART
 from ..newton.entries import acts
 from ..newton.motion import go_back, save
 from ..newton.rows import joint_rows
-from .bounds import gap, has_bound
-from .correct import correct, fitting_loss, speeds_fit
+from .bounds import has_bound, limit_gap
+from .correct import fitting_loss, project, speeds_fit
 from .lock import lock_energy
 from .start import closing_share, compute_rows, springs_of
 
@@ -40,7 +40,7 @@ def find_apart(W: Workspace, h: float) -> tuple[bool, bool, bool]:
             continue
         for side in (-1, 1):
             if has_bound(W, k, side):
-                room = gap(W, k, side)
+                room = limit_gap(W, k, side)
                 if room < -JOINT_APART * hinge[k].size:
                     link[k].side = side
                 elif link[k].side == side and room > JOINT_APART * hinge[k].size:
@@ -111,7 +111,7 @@ def close_joints(W: Workspace, h: float, ledger: JointLedger) -> bool:
     edited, apart, own = find_apart(W, h)
     if apart:
         before = farthest(W)
-        correct(W, POSES)
+        project(W, POSES)
         taken = springs_of(W) - stored
         cost = taken + closing_work(local, W.bodies)
         # What a step left apart closes at the cost of what moves.
@@ -126,7 +126,7 @@ def close_joints(W: Workspace, h: float, ledger: JointLedger) -> bool:
         ledger.stored += taken
         save(local, W.bodies)
     if edited and not speeds_fit(W):
-        correct(W, SPEEDS)
+        project(W, SPEEDS)
         ledger.projected += fitting_loss(local, W.bodies, ledger)
         save(local, W.bodies)
     return own

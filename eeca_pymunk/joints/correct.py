@@ -21,11 +21,11 @@ from ..model.parameters.joints import (
 )
 from ..newton.entries import acts
 from ..newton.systems import apply, back, factorise, first_iterate, linearise
-from .bounds import gap, gap_rate, has_bound
+from .bounds import has_bound, limit_gap, limit_gap_rate
 
 
 @nonallocating
-def correct(W: Workspace, what: int) -> None:
+def project(W: Workspace, what: int) -> None:
     """Make POSES or SPEEDS fit the joints, by the least change in the measure of the masses.
 
     POSES: until g is on its targets, at most CLOSINGS times. SPEEDS: those before stay at `v_kept`. Free limits whose
@@ -68,7 +68,7 @@ def correct(W: Workspace, what: int) -> None:
 
 
 @nonallocating
-def kinetic(local: Rows[BodyStep], bodies: int, kept: bool) -> float:
+def kinetic_of_component(local: Rows[BodyStep], bodies: int, kept: bool) -> float:
     """Kinetic energy of what joints can move, of the velocities at the start, or of those that were `kept`."""
     total = 0.0
     for i in range(bodies):
@@ -97,7 +97,7 @@ def fitting_loss(local: Rows[BodyStep], bodies: int, ledger: JointLedger) -> flo
     It is orthogonal to what fits, so that (1/2) dv.M dv is lost; the rest of the change of kinetic energy is the work
     of supports, which is 0 unless they move, and is added to the ledger.
     """
-    gained = kinetic(local, bodies, False) - kinetic(local, bodies, True)
+    gained = kinetic_of_component(local, bodies, False) - kinetic_of_component(local, bodies, True)
     lost, moves = 0.0, False
     for i in range(bodies):
         for c in range(3):
@@ -175,14 +175,14 @@ def hold_closing(W: Workspace, kept: bool) -> bool:
     for k in range(W.joints):
         if link[k].side == 0 and link[k].bounded == 0:
             for side in (-1, 1):
-                if not (has_bound(W, k, side) and gap(W, k, side) <= JOINT_TOUCH * hinge[k].size):
+                if not (has_bound(W, k, side) and limit_gap(W, k, side) <= JOINT_TOUCH * hinge[k].size):
                     continue
                 a, b, last = local[link[k].body[0]], local[link[k].body[1]], link[k].rows - 1
                 if kept:
-                    closes = gap_rate(hinge[k], link[k].rows, side, a.v_kept, b.v_kept) < 0.0
+                    closes = limit_gap_rate(hinge[k], link[k].rows, side, a.v_kept, b.v_kept) < 0.0
                 else:
                     least = terms(W, k, last) * JOINT_SPEED_ROUND_OFF
-                    closes = gap_rate(hinge[k], link[k].rows, side, a.v0, b.v0) < -least
+                    closes = limit_gap_rate(hinge[k], link[k].rows, side, a.v0, b.v0) < -least
                 if closes:
                     link[k].side = side
                     found = True

@@ -12,8 +12,8 @@ the sixth last; impulses over the lengths of their parts go the same way. Newton
 smaller by (h rate)^2 than with the last accelerations. It decides where Newton's method begins, not where it ends.
 
 Before each part `ladder.take_parts` tests whether six parts in steps of this length are stored (`recalls`), begins with
-the extrapolated values if so (`foretell`), and stores each part that was solved (`remember`). An edit, a limit, or
-whatever else ends the sequence calls `forget`.
+the extrapolated values if so (`predict_part`), and stores each part that was solved (`remember_part`). An edit, a
+limit, or whatever else ends the sequence calls `forget_parts`.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ WEIGHTS: FloatArray = np.array([
 
 
 @nonallocating
-def forget(W: Workspace) -> None:
+def forget_parts(W: Workspace) -> None:
     """Forget all parts, so that the next six are not foretold."""
     for k in range(W.joints):
         W.J.JOINT[W.link[k].joint].known_parts = 0
@@ -57,7 +57,7 @@ def recalls(W: Workspace, h: float) -> bool:
 
 
 @inlined
-def weigh(part: int, last: int, place: int) -> float:
+def weight_of(part: int, last: int, place: int) -> float:
     """The weight for this part of the values at a place of the ring of DEPTH parts, whose newest is at `last`."""
     return float(WEIGHTS[part, last - place if place <= last else last - place + DEPTH])
 
@@ -70,12 +70,12 @@ def extrapolate(past: FloatArray, c: int, w0: float, w1: float, w2: float, w3: f
 
 
 @nonallocating
-def foretell(W: Workspace, part: int, piece: float, loops: bool) -> None:
+def predict_part(W: Workspace, part: int, piece: float, loops: bool) -> None:
     """Set `lead` and, unless rows are redundant (`loops`), `lam` of this part (0 to 4) of length `piece`."""
     joint, link = W.J.JOINT, W.link
     last = (joint[link[0].joint].known_parts - 1) % DEPTH
-    w0, w1, w2 = weigh(part, last, 0), weigh(part, last, 1), weigh(part, last, 2)
-    w3, w4, w5 = weigh(part, last, 3), weigh(part, last, 4), weigh(part, last, 5)
+    w0, w1, w2 = weight_of(part, last, 0), weight_of(part, last, 1), weight_of(part, last, 2)
+    w3, w4, w5 = weight_of(part, last, 3), weight_of(part, last, 4), weight_of(part, last, 5)
     for k in range(W.joints):
         j = link[k].joint
         for c in range(6):
@@ -99,7 +99,7 @@ def store(W: Workspace, at: int, piece: float) -> None:
 
 
 @nonallocating
-def remember(W: Workspace, piece: float) -> None:
+def remember_part(W: Workspace, piece: float) -> None:
     """`store` the part of length `piece` that was taken after those that are known."""
     joint, link = W.J.JOINT, W.link
     count = joint[link[0].joint].known_parts

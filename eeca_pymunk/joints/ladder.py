@@ -28,8 +28,8 @@ from ..model.parameters.joints import (
 from ..newton.effort import work_of_iteration
 from ..newton.motion import go_back
 from ..newton.solve import drop_impulses
-from .correct import kinetic, saved_energy
-from .foresight import foretell, forget, recalls, remember
+from .correct import kinetic_of_component, saved_energy
+from .foresight import forget_parts, predict_part, recalls, remember_part
 from .ledger import clear_ledger
 from .limits import step_with_limits
 from .lock import lock_energy, supports_rest
@@ -50,7 +50,7 @@ def smooth(W: Workspace) -> bool:
 
 
 @nonallocating
-def gives_way(W: Workspace) -> bool:
+def has_elastic_joint(W: Workspace) -> bool:
     """Whether a joint of the component gives way elastically since an earlier step."""
     for k in range(W.joints):
         if W.J.JOINT[W.link[k].joint].touched == GIVES_WAY:
@@ -99,11 +99,11 @@ def take_parts(W: Workspace, h: float, length: float, rung: int, parts: int, giv
             W.J.HINGE[k].lam[1] *= warm
         before = piece
         if rung == ORDER_4 and recalls(W, h):
-            foretell(W, p, piece, cold)
+            predict_part(W, p, piece, cold)
         if not step_with_limits(W, False, piece, length, cold, give, rung == ORDER_4, W.J.PART):
             return False
         if rung == ORDER_4:
-            remember(W, piece)
+            remember_part(W, piece)
     return True
 
 
@@ -118,7 +118,7 @@ def repaid(W: Workspace, own: bool) -> bool:
     gain = part.closed - (0.0 if own else max(part.limited, 0.0))  # a limit in such a step loses as much more
     if not gain > 0.0 or not supports_rest(W.J.LOCAL, W.bodies):
         return True
-    had = saved_energy(W.J.LOCAL, W.bodies) + (0.0 if own else kinetic(W.J.LOCAL, W.bodies, False))
+    had = saved_energy(W.J.LOCAL, W.bodies) + (0.0 if own else kinetic_of_component(W.J.LOCAL, W.bodies, False))
     if own and not gain <= REPAID * had:
         return False
     if own or gain > JOINT_GAIN * had:
@@ -138,7 +138,7 @@ def undo_impulses(W: Workspace) -> None:
 
 
 @nonallocating
-def restore(W: Workspace) -> None:
+def restore_start(W: Workspace) -> None:
     """Back to the start of the step, without impulses."""
     go_back(W.J.LOCAL, W.bodies)
     undo_impulses(W)
@@ -156,10 +156,10 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
     """
     first, progress = W.J.JOINT[W.link[0].joint], W.J.PROGRESS
     loops = W.J.COMPONENT[W.s].loops > 0
-    cold, yields = loops and W.J.COMPONENT[W.s].taut == 0, gives_way(W)
+    cold, yields = loops and W.J.COMPONENT[W.s].taut == 0, has_elastic_joint(W)
     rung = ELASTIC_RUNG if yields else ORDER_4 if order == 4 and smooth(W) else WHOLE_STEP
     if rung != ORDER_4 or touched:
-        forget(W)
+        forget_parts(W)
     while rung < RUNGS and not progress.effort > progress.limit:
         parts = 5 if rung == ORDER_4 else 1 if rung == ELASTIC_RUNG else 1 << rung if rung < 3 else ELASTIC_PARTS
         compliance = compliance_on(rung, h, yields, first.compliance)
@@ -170,7 +170,7 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
             return EXACT if rung <= WHOLE_STEP else HALVED if rung < ELASTIC_RUNG else ELASTIC
         # A step that began with foretold values, or with impulses of redundant rows, is taken again without these.
         again = cold != loops or (rung == ORDER_4 and recalls(W, h))
-        restore(W)
-        forget(W)
+        restore_start(W)
+        forget_parts(W)
         rung, cold = rung if again else rung + 1, loops
     return LINEAR

@@ -29,7 +29,7 @@ def clear_interval(ledger: JointLedger) -> None:
 
 
 @inlined
-def add(ledger: JointLedger, part: JointLedger) -> None:
+def add_part(ledger: JointLedger, part: JointLedger) -> None:
     """Add the energies of a part of a step."""
     ledger.stored += part.stored
     ledger.damped += part.damped
@@ -42,7 +42,7 @@ def add(ledger: JointLedger, part: JointLedger) -> None:
 
 
 @nonallocating
-def book(W: Workspace, h: float, ledger: JointLedger) -> None:
+def account_part(W: Workspace, h: float, ledger: JointLedger) -> None:
     """Add the works of a solved part h of the step to `ledger`, and its impulses to `total`.
 
     The work of a joint's impulse F = J^T lam on its bodies is F . x / h. Of that the share of a body that joints cannot

@@ -26,23 +26,23 @@ from ..model.parameters.joints import (
     LIMIT_WAY,
     MEET_INSTANT,
 )
-from ..newton.motion import advance
+from ..newton.motion import accept_part
 from ..newton.solve import drop_impulses, solve, solve_linearly
 from .bounds import (
     begin_part,
     first_bound,
-    gap,
     gap_rates,
     held_till_then,
-    hold_limits,
+    hold_present_gaps,
     hops,
-    look,
+    limit_gap,
     passed_within,
     release,
     standing,
+    update_idle,
 )
-from .correct import correct, fitting_loss
-from .ledger import book
+from .correct import fitting_loss, project
+from .ledger import account_part
 from .parts import begin_as_before, begin_next, meets_limit, note_part, weaken_lead
 
 # What comes after a solve: another one, the limit that was searched, the end of the step, nothing as it fails.
@@ -62,13 +62,13 @@ def stop_at(W: Workspace, k: int, side: int, at_once: bool, stays: bool, ledger:
     link[k].side = side
     for i in range(W.joints):
         link[i].let_go = link[i].side if stays else 0
-    correct(W, SPEEDS)
+    project(W, SPEEDS)
     begin_part(link, W.joints)
     if at_once:
         link[k].side = side  # the velocity that lets go is round-off: forces press it to its bound at once
     ledger.limited += fitting_loss(W.J.LOCAL, W.bodies, ledger)
     drop_impulses(W)
-    hold_limits(W)
+    hold_present_gaps(W)
 
 
 @nonallocating
@@ -94,8 +94,8 @@ def end_part(W: Workspace, S: Parts, linear: bool, h: float, whole: bool, ledger
             return FAILS
         S.when, S.events, component.parts_within = within, S.events + 1, 0.0
         return GOES_ON
-    book(W, S.when, ledger)
-    advance(W.J.LOCAL, W.bodies, S.when)
+    account_part(W, S.when, ledger)
+    accept_part(W.J.LOCAL, W.bodies, S.when)
     if component.parts_within == h:
         note_part(W, S.part, -1, 0, S.when)
     S.left -= S.when
@@ -150,8 +150,8 @@ def seek(W: Workspace, S: Parts, gap_now: float) -> None:
 @nonallocating
 def at_limit(W: Workspace, S: Parts) -> int:
     """What comes after a solve to the instant at which a limit may be met: MEETS if it is, and no other one before."""
-    look(W, S.limit, S.when)
-    gap_now, touch = gap(W, S.limit, S.side), JOINT_TOUCH * W.J.HINGE[S.limit].size
+    update_idle(W, S.limit, S.when)
+    gap_now, touch = limit_gap(W, S.limit, S.side), JOINT_TOUCH * W.J.HINGE[S.limit].size
     S.secants += 1
     if S.foreseen > 0:  # perhaps it is not met now
         _, rate = gap_rates(W, S.limit, S.side)
@@ -188,8 +188,8 @@ def meet_limit(W: Workspace, S: Parts, h: float, ledger: JointLedger) -> None:
         near = rate < 0.0 and -S.when * min(rate, after) <= LIMIT_WAY * W.J.HINGE[S.limit].size
         at_once = near or S.when <= MEET_INSTANT * abs(h)
     if not at_once:  # round-off of places would be velocities
-        book(W, S.when, ledger)
-        advance(W.J.LOCAL, W.bodies, S.when)
+        account_part(W, S.when, ledger)
+        accept_part(W.J.LOCAL, W.bodies, S.when)
         note_part(W, S.part, S.limit, S.side, S.when)
         S.part += 1
         S.left -= S.when

@@ -26,8 +26,7 @@ def order_nodes(start: IntArray, near: IntArray, nodes: int, order: IntArray) ->
             continue
         first = seed
         for sweep in range(4):  # by breadth; each begins at the last node of the one before, the last one places
-            for i in range(nodes):
-                level[i] = -1
+            level[:] = -1
             head, tail = count, count + 1
             order[count] = first
             level[first] = 0

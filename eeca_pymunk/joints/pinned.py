@@ -11,7 +11,7 @@ from ..compiled.records import Rows, rows
 from ..model.bodies import Body
 from ..model.joints import CENTRE, FREE, GEAR, PIN, PIVOT, SLIDE, Joint, Pinned
 from ..model.shapes import Link, Shape
-from .plan import together, turning
+from .plan import find_turning, together
 from .straight import hold_chains
 from .welds import weld
 
@@ -52,15 +52,14 @@ def find_pinned(
         return 0
     bodies = together(BODY, PARTNER)
     still, spins = np.zeros(len(bodies), np.int64), np.zeros(len(bodies), np.int64)
-    for i in range(len(BODY)):
-        spins[i] = 1
+    spins[: len(BODY)] = 1
     for i in range(len(PARTNER)):
         still[len(BODY) + i] = 1 if STILL[i] > 0 else -1
     for s in range(len(LINK)):
         if SHAPE[s].friction > 0.0:
             spins[LINK[s].owner] = 0
     turns, cayley = np.zeros(len(bodies), np.int64), np.zeros(len(bodies), np.int64)
-    turning(bodies, joint, len(joint), turns, cayley)
+    find_turning(bodies, joint, len(joint), turns, cayley)
     for i in range(len(bodies)):
         pinned[i] = FREE
         spins[i] = spins[i] if turns[i] == 0 else 0

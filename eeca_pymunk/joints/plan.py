@@ -75,7 +75,7 @@ def moves_body(bodies: Rows[Body], joint: Joint) -> bool:
 
 
 @kernel
-def turning(bodies: Rows[Body], joint: Rows[Joint], joints: int, turns: IntArray, cayley: IntArray) -> None:
+def find_turning(bodies: Rows[Body], joint: Rows[Joint], joints: int, turns: IntArray, cayley: IntArray) -> None:
     """Set turns (bodies,) to 1 for bodies that joints turn, and cayley (bodies,) to 1 for those of them that turn by
     2 atan(chi/2) (`..model.joint_steps.BodyStep`): those held off their centre, and those bound to one of these by
     their angle. Both are 0 before."""
@@ -110,7 +110,7 @@ def make_plan(
     parent, component_of = np.empty(len(bodies), np.int64), np.empty(joints, np.int64)
     count = find_components(bodies, joint, parent, component_of, joints)
     turns, cayley = np.zeros(len(bodies), np.int64), np.zeros(len(bodies), np.int64)
-    turning(bodies, joint, joints, turns, cayley)
+    find_turning(bodies, joint, joints, turns, cayley)
     room = np.zeros(count + 1, np.int64)
     for j in range(joints):
         if component_of[j] >= 0:
@@ -143,7 +143,7 @@ def make_plan(
                 link[k].body[end] = place[body] - component[s].first_body
         component[s].end_body = used
         for way in range(2):
-            if way == 0 or (component[s].band > CONDENSE_BAND and not discs(joint, link, component, s)):
+            if way == 0 or (component[s].band > CONDENSE_BAND and not has_disc(joint, link, component, s)):
                 order_unknowns(component, member, link, s, way > 0)
         order_rows(component, member, link, s)
         cost = component[s].unknowns * component[s].band ** 2
@@ -159,7 +159,7 @@ def make_plan(
 
 
 @kernel
-def discs(joint: Rows[Joint], link: Rows[Coupling], component: Rows[Component], s: int) -> bool:
+def has_disc(joint: Rows[Joint], link: Rows[Coupling], component: Rows[Component], s: int) -> bool:
     """Whether a joint with two bounded impulses is in component s: their disc couples both, for which condensed systems
     have no place."""
     for k in range(component[s].first_joint, component[s].end_joint):

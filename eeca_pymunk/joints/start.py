@@ -11,8 +11,9 @@ from ..model.joints import BOUNDED, BOXED, GEAR, GROOVE, MOTOR, PIN, ROTARY_SPRI
 from ..model.parameters.joints import STALLED
 from ..newton.entries import is_limit
 from ..newton.rows import joint_rows
+from ..newton.saturation import bound_otherwise
 from ..newton.systems import first_iterate
-from .bounds import gap, gap_rate, has_bound
+from .bounds import has_bound, limit_gap, limit_gap_rate
 from .ledger import springs_hold
 
 
@@ -25,9 +26,8 @@ def mark_bounded(W: Workspace) -> None:
         finite = joint[link[k].joint].bounded != 0 and kind not in (SPRING, ROTARY_SPRING)
         link[k].bounded = BOUNDED if kind == MOTOR or finite else 0
         rows += link[k].rows if link[k].bounded != 0 else 0
-    for k in range(W.joints if rows <= W.J.COMPONENT[W.s].boxes else 0):
-        if link[k].bounded != 0:
-            link[k].bounded = BOXED
+    if rows <= W.J.COMPONENT[W.s].boxes:
+        bound_otherwise(link, W.joints, BOUNDED, BOXED)
 
 
 @nonallocating
@@ -152,9 +152,9 @@ def bounded_targets(W: Workspace, h: float) -> None:
         for side in (-1, 1):
             if not has_bound(W, k, side) or link[k].side != 0:
                 continue
-            room = gap(W, k, side)
+            room = limit_gap(W, k, side)
             a, b = W.J.LOCAL[link[k].body[0]], W.J.LOCAL[link[k].body[1]]
-            if room <= 0.0 or room + h * gap_rate(hinge[k], rows, side, a.v0, b.v0) < 0.0:
+            if room <= 0.0 or room + h * limit_gap_rate(hinge[k], rows, side, a.v0, b.v0) < 0.0:
                 link[k].side = side
                 speed = room / h if room > 0.0 else closing_share(joint, j, -room, h) * room / h
                 hinge[k].target[rows - 1] = side * speed

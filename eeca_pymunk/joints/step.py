@@ -15,13 +15,13 @@ from ..model.joints import APART, GIVES_WAY, LEFT_APART, RATCHET, Workspace
 from ..model.parameters.joints import NEARLY_HELD
 from ..newton.motion import save
 from ..newton.solve import drop_impulses
-from .bounds import closes_on_limit, hold_limits, standing
+from .bounds import closes_on_limit, hold_present_gaps, standing
 from .closing import close_joints, farthest
-from .correct import correct, fitting_loss, kinetic
+from .correct import fitting_loss, kinetic_of_component, project
 from .ladder import climb, limit_work
-from .ledger import add, clear_ledger, close_ledger
+from .ledger import add_part, clear_ledger, close_ledger
 from .start import bounded_targets, compute_rows, read_joints
-from .taut import taut
+from .taut import is_taut
 from .unheld import step_linearly, take_gain
 
 
@@ -67,7 +67,7 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
     component.factored = 0
     touched, bounded = read_joints(W, h, length)
     # Redundant rows begin without impulse, unless it is what holds bodies.
-    component.taut = 1 if component.loops > 0 and taut(W, h) else 0
+    component.taut = 1 if component.loops > 0 and is_taut(W, h) else 0
     if component.loops > 0 and component.taut == 0:
         drop_impulses(W)
     for i in range(W.bodies):
@@ -82,11 +82,11 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
         bounded_targets(W, h)
     if stands and closes_on_limit(W, h):
         # An impact on its bodies has given it velocities into a bound on which it stands: these are met at once.
-        correct(W, SPEEDS)
+        project(W, SPEEDS)
         ledger.limited += fitting_loss(local, W.bodies, ledger)
         save(local, W.bodies)
     if stands:
-        hold_limits(W)
+        hold_present_gaps(W)
     for k in range(W.joints):
         W.J.JOINT[W.link[k].joint].side = W.link[k].side  # where the ladder begins anew
     limit_work(W)
@@ -95,9 +95,9 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
     before = step_linearly(W, h, length) if status == LINEAR else 0.0
     if status >= ELASTIC:
         status = take_gain(W, h, status, before)
-    elif abs(W.J.PART.closed) > kinetic(local, W.bodies, False):  # works that cancel but for round-off
+    elif abs(W.J.PART.closed) > kinetic_of_component(local, W.bodies, False):  # works that cancel but for round-off
         close_ledger(local, W.bodies, W.J.PART)
     ledger.gave = max(farthest(W) - apart, 0.0) if status >= ELASTIC else 0.0
-    add(ledger, W.J.PART)
+    add_part(ledger, W.J.PART)
     write_joints(W, h, GIVES_WAY if status == ELASTIC else LEFT_APART if status == LINEAR else 0)
     return HALVED if status == ELASTIC and farthest(W) <= NEARLY_HELD else status

@@ -54,7 +54,7 @@ def anchor(bodies: Rows[Body], joint: Joint, end: int) -> tuple[float, float]:
 
 
 @nonallocating
-def place_points(bodies: Rows[Body], joint: Rows[Joint], X: FloatArray, HEAD: IntArray, NEXT: IntArray) -> None:
+def list_points(bodies: Rows[Body], joint: Rows[Joint], X: FloatArray, HEAD: IntArray, NEXT: IntArray) -> None:
     """Fill in the places X (2 j, 2) of the points of all joints: point 2 i of joint i on its body a, 2 i + 1 on its
     body b, so that p ^ 1 is the other point of a joint. Points of joints that may be straight are listed by body: HEAD
     (n,) the first one, NEXT (2 j,) the following one, -1 for none, which both contain."""
@@ -112,7 +112,7 @@ def hold_chains(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, spins: 
     X, LENGTH = np.empty((points, 2)), np.empty(points)
     HEAD, NEXT = np.full(n, -1, np.int64), np.full(points, -1, np.int64)
     FROM, SEEN, STACK = np.empty(points, np.int64), np.full(points, -1, np.int64), np.empty(points, np.int64)
-    place_points(bodies, joint, X, HEAD, NEXT)
+    list_points(bodies, joint, X, HEAD, NEXT)
     total, found = 0, 1
     while found > 0:
         # What is pinned holds others.

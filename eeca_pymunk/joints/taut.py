@@ -15,7 +15,7 @@ from ..newton.rows import start_joint
 
 
 @nonallocating
-def taut(W: Workspace, h: float) -> bool:
+def is_taut(W: Workspace, h: float) -> bool:
     """Whether the impulse F of some joint between points pulls so that (h/4) dF/dx > TAUT of a body's inertia, as its
     STIFF takes (`..newton.response.inertia_taken`): `turn` is -dF/dx for its angle, arm . F, `per` that across a pin or
     slide, F over its length."""

@@ -6,12 +6,12 @@ from ..compiled import nonallocating
 from ..model.joint_steps import LINEAR
 from ..model.joints import Workspace
 from ..model.parameters.joints import JOINT_GAIN, LINEAR_APART
-from ..newton.motion import advance, go_back, move
+from ..newton.motion import accept_part, go_back, move
 from ..newton.solve import drop_impulses
 from .closing import farthest
-from .correct import kinetic, saved_energy
-from .foresight import forget
-from .ladder import restore, undo_impulses
+from .correct import kinetic_of_component, saved_energy
+from .foresight import forget_parts
+from .ladder import restore_start, undo_impulses
 from .ledger import clear_ledger, close_ledger
 from .limits import step_with_limits
 from .lock import lock_energy, move_rigidly, supports_rest
@@ -29,13 +29,13 @@ def step_linearly(W: Workspace, h: float, length: float) -> float:
     if step_with_limits(W, True, h, length, True, 0.0, False, part):
         W.J.JOINT[W.link[0].joint].compliance = 0.0
     else:
-        restore(W)
-        forget(W)
+        restore_start(W)
+        forget_parts(W)
         for i in range(W.bodies):
             for c in range(3):
                 local[i].v1[c] = local[i].v0[c] + h * local[i].acceleration[c]
         move(local, W.bodies, h)
-        advance(local, W.bodies, h)
+        accept_part(local, W.bodies, h)
     clear_ledger(part)
     part.stored = springs_of(W) - stored
     return apart
@@ -68,7 +68,7 @@ def take_gain(W: Workspace, h: float, status: int, before: float) -> int:
     if part.closed > 0.0:
         lock_energy(local, W.bodies, part.closed)
         close_ledger(local, W.bodies, part)
-        had = saved_energy(local, W.bodies) + kinetic(local, W.bodies, False)
+        had = saved_energy(local, W.bodies) + kinetic_of_component(local, W.bodies, False)
         if part.closed > JOINT_GAIN * had and supports_rest(local, W.bodies):
             status, stopped = LINEAR, True
     if status == LINEAR and not farthest(W) <= before + LINEAR_APART:

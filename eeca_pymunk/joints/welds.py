@@ -68,8 +68,7 @@ def weld(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, pinned: IntArr
     while True:
         welds[:] = -1
         count, others = grow(bodies, joint, still, loose, pinned, welds), 0
-        for i in range(len(bodies)):
-            spare[i] = 0
+        spare[:] = 0
         for j in range(len(joint)):
             for end in range(2):
                 i, other, k = joint[j].body[end], joint[j].body[1 - end], 1 if joint[j].kind == GEAR else 0

@@ -42,7 +42,7 @@ from .condensed import factor, substitute
 from .dual import STRIDE
 from .entries import acts, interval_of, put_free
 
-ROOM = 8  # arrays of one number per row, beside the columns (and a right side) and a matrix with its factors
+ROW_ARRAYS = 8  # arrays of one number per row, beside the columns (and a right side) and a matrix with its factors
 
 
 @nonallocating
@@ -182,7 +182,7 @@ def direct_boxes(more: FloatArray, w: int, u: int, n: int) -> None:
 
 
 @nonallocating
-def discs(more: FloatArray, u: int, n: int) -> int:
+def count_discs(more: FloatArray, u: int, n: int) -> int:
     """How many of the n rows begin a disc, over which sweeps are more work."""
     count = 0
     for i in range(n):
@@ -235,7 +235,7 @@ def bound_impulses(W: Workspace, n: int, h: float, fresh: bool) -> None:
     w = STRIDE * component.dual_size + (n + 1) * (component.unknowns + component.impulses)
     u = w + 3 * n * n
     measure_boxes(W, w, u, n, h, fresh)
-    sweep = BOX_WORK * n * n + DISC_WORK * discs(W.J.MORE, u, n)
+    sweep = BOX_WORK * n * n + DISC_WORK * count_discs(W.J.MORE, u, n)
     W.J.PROGRESS.effort += sweep * solve_boxes(W.J.MORE, w, u, n)
     W.J.PROGRESS.effort += BOX_COLUMN_WORK * n * (component.unknowns + component.impulses)
     apply_boxes(W, u, n)

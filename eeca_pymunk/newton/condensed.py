@@ -130,7 +130,7 @@ def put_row(W: Workspace, k: int, r: int, slopes: bool, system: int) -> None:
 
 
 @inlined
-def spread(W: Workspace, k: int, r: int, amount: float, right: FloatArray, at: int) -> None:
+def add_column(W: Workspace, k: int, r: int, amount: float, right: FloatArray, at: int) -> None:
     """Add `amount` of the frozen column J^T of row r of joint k to right[at :]."""
     for end in range(2):
         body = W.J.LOCAL[W.link[k].body[end]]
@@ -163,7 +163,7 @@ def back_condensed(
         for r in range(link[k].rows):
             row = link[k].first_row + r
             if hinge[k].weight[r] < 0.0:
-                spread(W, k, r, right[row], right, room)
+                add_column(W, k, r, right[row], right, room)
             elif hinge[k].weight[r] > 0.0:
                 hinge[k].missing[r] = right[row]
                 right[row] = 0.0
@@ -171,7 +171,7 @@ def back_condensed(
         for k in range(W.joints):
             for r in range(link[k].rows):
                 if hinge[k].weight[r] > 0.0:
-                    spread(W, k, r, hinge[k].weight[r] * hinge[k].missing[r], right, room)
+                    add_column(W, k, r, hinge[k].weight[r] * hinge[k].missing[r], right, room)
         substitute(matrix, size, band, right, room)
         for k in range(W.joints):
             for r in range(link[k].rows):

@@ -93,7 +93,7 @@ def find_turned(body: BodyStep) -> None:
 
 
 @inlined
-def settle(local: Rows[BodyStep], bodies: int, h: float) -> None:
+def balance_velocities(local: Rows[BodyStep], bodies: int, h: float) -> None:
     """Set the velocities v1 from the balance of momentum, which then holds to round-off: v0 + h a + M^-1 J^T lam, of
     `impulse`; and what follows from them (`move`)."""
     for i in range(bodies):
@@ -104,7 +104,7 @@ def settle(local: Rows[BodyStep], bodies: int, h: float) -> None:
 
 
 @inlined
-def advance(local: Rows[BodyStep], bodies: int, h: float) -> None:
+def accept_part(local: Rows[BodyStep], bodies: int, h: float) -> None:
     """Make the end of a part h of the step the start of the next: poses and velocities move on, `travel` and `mean`
     are summed, and `lead` keeps the accelerations by joints in this part."""
     per = 1.0 / h

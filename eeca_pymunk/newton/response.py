@@ -13,13 +13,13 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..compiled import nonallocating
-from ..compiled.records import Rows
 from ..model.joint_steps import FULL_BEND, NO_BEND, STEP
-from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, GEAR, GROOVE, Coupling, Workspace
+from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, GEAR, GROOVE, Workspace
 from ..model.parameters.joints import CONDENSED_PASSES, REDUNDANT_EPSILON, RESPONSE_PASSES, TAUT
 from .entries import acts
 from .motion import move
 from .rows import joint_rows, start_joint
+from .saturation import bound_otherwise
 from .systems import assemble, back, decompose, first_iterate
 
 
@@ -78,35 +78,22 @@ def bend_rows(W: Workspace, k: int, h: float) -> None:
 
 
 @nonallocating
-def prepare(W: Workspace, what: int, h: float) -> int:
+def prepare_response(W: Workspace, what: int, h: float) -> int:
     """Compute the factors that `respond` needs, in MATRIX and PIVOTS; returns their system, -1 if there are none.
 
     `what` is STEP, after `take_step` (whose start becomes that of `local` again), or SPEEDS, at the present poses.
     """
-    link = W.link
-    boxed = unbox(link, W.joints)
+    # Boxed rows are in the matrix meanwhile: those inside of their bounds hold.
+    boxed = bound_otherwise(W.link, W.joints, BOXED, BOUNDED)
     system = factor_response(W, what, h)
-    for k in range(W.joints if boxed else 0):
-        if link[k].bounded == BOUNDED:
-            link[k].bounded = BOXED
+    if boxed:
+        bound_otherwise(W.link, W.joints, BOUNDED, BOXED)
     return int(system)
 
 
 @nonallocating
-def unbox(link: Rows[Coupling], joints: int) -> bool:
-    """Let rows that are BOXED be BOUNDED, and so in the matrix: those inside of their bounds hold. Whether there are
-    any."""
-    some = False
-    for k in range(joints):
-        if link[k].bounded == BOXED:
-            link[k].bounded = BOUNDED
-            some = True
-    return some
-
-
-@nonallocating
 def factor_response(W: Workspace, what: int, h: float) -> int:
-    """`prepare`, of a component without boxed rows."""
+    """`prepare_response`, of a component without boxed rows."""
     link, local, component = W.link, W.J.LOCAL, W.J.COMPONENT[W.s]
     if what == STEP:
         for i in range(W.bodies):
@@ -144,10 +131,10 @@ def factor_response(W: Workspace, what: int, h: float) -> int:
 
 @nonallocating
 def respond(W: Workspace, system: int, push: FloatArray, gives: bool) -> None:
-    """Replace impulses on the bodies by the changes of velocity that they cause, with the factors of `prepare`.
+    """Replace impulses on the bodies by the changes of velocity that they cause, by the factors of `prepare_response`.
 
     Args:
-        system: that of the factors, from `prepare`.  gives: whether joints give way elastically.
+        system: that of the factors, from `prepare_response`.  gives: whether joints give way elastically.
         push: (bodies, 3) impulses (mass length/time, mass length²/time) in, velocities (length/time, 1/time) out.
     """
     local, component, right = W.J.LOCAL, W.J.COMPONENT[W.s], W.J.RIGHT

@@ -9,10 +9,21 @@ from __future__ import annotations
 import numpy as np
 
 from ..compiled import nonallocating
-from ..model.joints import CONDENSED, GROOVE, Workspace
+from ..compiled.records import Rows
+from ..model.joints import CONDENSED, GROOVE, Coupling, Workspace
 from ..model.parameters.joints import STIFFEST
 from .condensed import freeze_row, put_row
 from .entries import interval_of, put_free, put_rows
+
+
+@nonallocating
+def bound_otherwise(link: Rows[Coupling], joints: int, before: int, after: int) -> bool:
+    """Let joints whose `bounded` is `before` have it `after`; whether there are any."""
+    some = False
+    for k in range(joints):
+        if link[k].bounded == before:
+            link[k].bounded, some = after, True
+    return some
 
 
 @nonallocating

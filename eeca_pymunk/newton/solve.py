@@ -22,7 +22,7 @@ from ..model.parameters.joints import (
 )
 from .boxes import bound_impulses, boxed_rows, rows_of, unit_impulse
 from .dual import STRIDE, refresh
-from .motion import move, settle
+from .motion import balance_velocities, move
 from .systems import apply, back, factorise, first_iterate, linearise
 
 
@@ -108,7 +108,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
         at_floor = iteration > since + 1 and 0.5 * best < worst < floor
         if iteration > 0 and (worst <= max(JOINT_TOLERANCE, progress.near) or at_floor):
             component.factored = 1 if ready and system == CONDENSED and boxes == 0 else 0
-            settle(local, W.bodies, h)
+            balance_velocities(local, W.bodies, h)
             return True
         # What began next to its solution has not far to fall.
         slow = not worst <= NEWTON_PROGRESS * last and (iteration > 2 or not worst <= JOINT_ROUND_OFF)

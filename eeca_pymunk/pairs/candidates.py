@@ -15,8 +15,8 @@ from ..geometry.flight import norm
 from ..geometry.gap import gap, gap_round_off
 from ..model.parameters.detection import FARTHEST_CELL, MARGIN_OF_FAST
 from ..model.scene import Scene, scene_of
-from .grid import renew
-from .lists import centre
+from .grid import renew_circle
+from .lists import circle_centre
 
 
 @nonallocating
@@ -27,11 +27,11 @@ def cover(A: Scene, s: int, reach: float) -> bool:
     if mark.margin == math.inf:
         return True
     reach = min(reach, FARTHEST_CELL * A.GRID.cell)
-    x, y = centre(A, s, 0.0)
+    x, y = circle_centre(A, s, 0.0)
     if norm(x - mark.x, y - mark.y) + reach <= mark.margin:
         return True
     mark.margin = max(mark.usual, MARGIN_OF_FAST * reach)
-    return renew(A, s, 0.0, 0.0) >= 0
+    return renew_circle(A, s, 0.0, 0.0) >= 0
 
 
 @nonallocating

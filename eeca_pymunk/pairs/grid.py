@@ -13,7 +13,7 @@ from ..geometry.flight import norm, pose
 from ..model.scene import Scene, scene_of
 from ..model.shapes import BATCH, LEVELS
 from .cells import bucket, cell_at, draw, link, near, unlink
-from .lists import append, centre, course, may_meet, place_in, remove
+from .lists import append, circle_centre, course, may_collide, place_in, remove
 from .walls import box_wall, seek_walls
 
 _FIRST_CAPACITY = 8
@@ -22,7 +22,7 @@ _FIRST_CAPACITY = 8
 @nonallocating
 def join(A: Scene, s: int, o: int) -> bool:
     """Enter two moving shapes that may meet into each other's lists. False if the pool is full."""
-    return not may_meet(A, s, o) or (append(A, s, o) and append(A, o, s))
+    return not may_collide(A, s, o) or (append(A, s, o) and append(A, o, s))
 
 
 @nonallocating
@@ -125,7 +125,7 @@ def part(A: Scene, s: int) -> int:
 
 
 @nonallocating
-def renew(A: Scene, s: int, t: float, ahead: float) -> int:
+def renew_circle(A: Scene, s: int, t: float, ahead: float) -> int:
     """Move the margin circle of s to its position at instant t, and renew its list.
 
     If the shape goes round the body's centre of mass within a step, by more than its margin, the circle is about that
@@ -153,7 +153,7 @@ def renew(A: Scene, s: int, t: float, ahead: float) -> int:
         mark.margin = max(margin, 2.0 * arm)
         margin = mark.margin - arm
     else:
-        x, y = centre(A, s, t)
+        x, y = circle_centre(A, s, t)
     if ahead > 0.0:
         ux, uy = course(A, s, t)
         x, y = x + ahead * margin * ux, y + ahead * margin * uy
@@ -176,7 +176,7 @@ def make_lists(A: Scene, t: float) -> bool:
     for s in range(moving):
         A.LIST[s].start, A.LIST[s].capacity, A.LIST[s].number = s * _FIRST_CAPACITY, _FIRST_CAPACITY, 0
         A.CELL[s].bucket = -1
-        x, y = centre(A, s, t)
+        x, y = circle_centre(A, s, t)
         draw(A, s, x, y)
     GRID.pool_end = moving * _FIRST_CAPACITY
     everybody = moving > 0 and A.MARK[0].margin == math.inf

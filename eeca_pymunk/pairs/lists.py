@@ -18,7 +18,7 @@ from .rules import law
 
 
 @nonallocating
-def centre(A: Scene, s: int, t: float) -> tuple[float, float]:
+def circle_centre(A: Scene, s: int, t: float) -> tuple[float, float]:
     """Centre of the bounding circle of shape s at instant t."""
     BODY, i = A.BODY, A.LINK[s].owner
     h = t - BODY[i].since
@@ -36,8 +36,8 @@ def centre(A: Scene, s: int, t: float) -> tuple[float, float]:
 @nonallocating
 def far_apart(A: Scene, a: int, b: int, t: float, reach: float) -> bool:
     """Whether the bounding circles of shapes a and b are at a distance above `reach`, length, at instant t."""
-    ax, ay = centre(A, a, t)
-    bx, by = centre(A, b, t)
+    ax, ay = circle_centre(A, a, t)
+    bx, by = circle_centre(A, b, t)
     apart = A.SHAPE[a].bound + A.SHAPE[b].bound + reach
     return bool((bx - ax) * (bx - ax) + (by - ay) * (by - ay) > apart * apart)
 
@@ -53,7 +53,7 @@ def course(A: Scene, s: int, t: float) -> tuple[float, float]:
 
 
 @nonallocating
-def may_meet(A: Scene, a: int, b: int) -> bool:
+def may_collide(A: Scene, a: int, b: int) -> bool:
     """Whether two shapes may collide: they belong to two bodies, impulses move one of these, and pymunk's filters allow
     it."""
     BODY, LINK = A.BODY, A.LINK

@@ -18,7 +18,7 @@ from .grid import make_lists
 from .walls import box_wall, size_walls, wall_grid
 
 LEAST, MOST = 0.1, 20.0  # margins, in radii
-DONE, FULL = -1, -2
+LISTS_MADE, POOL_TOO_SMALL = -1, -2
 
 
 @nonallocating
@@ -36,7 +36,7 @@ def begin_lists(table: Table) -> int:
         for s in range(A.GRID.moving):
             A.MARK[s].margin = A.MARK[s].usual = math.inf
         set_cell(A)
-        return DONE if make_lists(A, 0.0) else FULL
+        return LISTS_MADE if make_lists(A, 0.0) else POOL_TOO_SMALL
     if A.BOX.shape[0] <= ALL_WALLS:
         return 0
     entries = size_walls(A.BOX, A.GRID)
@@ -71,13 +71,13 @@ def fill_lists(table: Table, BOUND: FloatArray, neighbours: float, halved: int, 
         # Margins do not fall with the bounding radius, so the shapes of median radius have the median margin.
         small, large = margin_at(A, BOUND, (A.GRID.moving - 1) // 2), margin_at(A, BOUND, A.GRID.moving // 2)
         if entries <= MOST_NEIGHBOURS * A.GRID.moving or 0.5 * (small + large) <= LEAST * middle(BOUND):
-            return DONE
+            return LISTS_MADE
         for s in range(A.GRID.moving):
             A.MARK[s].margin *= 0.5
             A.MARK[s].usual = A.MARK[s].margin
         halved += 1
         if halved == MARGIN_HALVINGS:
-            return DONE
+            return LISTS_MADE
 
 
 @nonallocating

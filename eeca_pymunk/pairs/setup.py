@@ -11,7 +11,7 @@ from ..model.parameters.detection import NEIGHBOURS
 from ..model.scene import Scene, scene_of
 from ..model.shapes import Cell, Grid, List, Mark, Shape
 from .grid import build
-from .margins import DONE, begin_lists, fill_lists
+from .margins import LISTS_MADE, begin_lists, fill_lists
 
 # Fields of `Scene` that are the near lists.
 NEAR = ("MARK", "CELL", "LIST", "POOL", "FLAG", "HEAD", "GRID", "BOX", "CSR")
@@ -55,12 +55,12 @@ def filled(table: Table, SHAPE: Rows[Shape], moving: int, found: int, CSR: IntAr
     """The table of a scene with these shapes, the first ones of which move, and with arrays NEAR as in a new one, with
     its first lists. found: the result of `begin_lists`.  CSR: that of the table, to be written if it fits."""
     if found < 0:
-        return table if found == DONE else _with_more_room(table)
+        return table if found == LISTS_MADE else _with_more_room(table)
     if found > 0 and (CSR is NO_GRID or len(CSR) != found):
         table = replaced(table, Scene, "CSR", np.zeros(found, np.int64))
     bounds = np.sort(SHAPE["bound"][:moving])
     halved = fill_lists(table, bounds, NEIGHBOURS, 0, False)
-    while halved != DONE:
+    while halved != LISTS_MADE:
         table = _with_more_room(table)
         halved = fill_lists(table, bounds, NEIGHBOURS, halved, True)
     return table

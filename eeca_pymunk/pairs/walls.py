@@ -8,7 +8,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import nonallocating
 from ..model.scene import Scene
 from ..model.shapes import Grid
-from .lists import append, may_meet, place_in
+from .lists import append, may_collide, place_in
 
 
 @nonallocating
@@ -46,7 +46,7 @@ def try_wall(A: Scene, s: int, w: int) -> bool:
     BOX, mark, o = A.BOX, A.MARK[s], A.GRID.moving + w
     dx = max(BOX[w, 0] - mark.x, mark.x - BOX[w, 2], 0.0)
     dy = max(BOX[w, 1] - mark.y, mark.y - BOX[w, 3], 0.0)
-    new = dx * dx + dy * dy <= mark.reach * mark.reach and place_in(A, s, o) < 0 and may_meet(A, s, o)
+    new = dx * dx + dy * dy <= mark.reach * mark.reach and place_in(A, s, o) < 0 and may_collide(A, s, o)
     return not new or append(A, s, o)
 
 

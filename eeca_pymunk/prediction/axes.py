@@ -24,7 +24,7 @@ from ..model.scene import Scene
 from .roots import flat
 
 
-class Motion(NamedTuple):
+class MotionState(NamedTuple):
     """Pose and velocity of a body at one instant."""
 
     x: float
@@ -46,11 +46,11 @@ class Closing(NamedTuple):
 
 
 @nonallocating
-def motion(BODY: Rows[Body], i: int, t: float) -> Motion:
+def motion(BODY: Rows[Body], i: int, t: float) -> MotionState:
     """The motion of body i at instant t."""
     x, y, angle = pose(BODY, i, t)
     vx, vy, spin = rate(BODY, i, t)
-    return Motion(x, y, angle, vx, vy, spin)
+    return MotionState(x, y, angle, vx, vy, spin)
 
 
 @nonallocating
@@ -72,7 +72,7 @@ def first_close(best: float, near: float, closing: bool, g: float, w: float, of:
 
 @nonallocating
 def fixed_axis(
-    P: FloatArray, p: int, Q: FloatArray, q: int, nx: float, ny: float, a: Motion, b: Motion, of: Closing
+    P: FloatArray, p: int, Q: FloatArray, q: int, nx: float, ny: float, a: MotionState, b: MotionState, of: Closing
 ) -> tuple[float, float, bool]:
     """`first_close` of all vertices P of a against all vertices Q of b, p and q of them, along the present normal n
     from a to b, fixed in space. P, Q: columns 0 and 1 are the vertices in space, 2 and 3 the normals of the edges."""
@@ -89,7 +89,7 @@ def fixed_axis(
 
 @nonallocating
 def turning_axis(
-    P: FloatArray, edge: int, Q: FloatArray, q: int, a: Motion, b: Motion, of: Closing
+    P: FloatArray, edge: int, Q: FloatArray, q: int, a: MotionState, b: MotionState, of: Closing
 ) -> tuple[float, float, bool]:
     """`first_close` of the q vertices Q of b against one edge of a, a row of P: rates are relative to the material
     point of a there."""

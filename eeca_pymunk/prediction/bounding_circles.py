@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from ..compiled import nonallocating
-from ..geometry.convex import place, point_core
+from ..geometry.convex import place_vertices, point_core
 from ..geometry.flight import pose, rate
 from ..model.scene import Scene
 from .circles import circle_circle, circle_outline
@@ -27,7 +27,7 @@ def circles_meet(A: Scene, a: int, b: int, start: float, duration: float, tolera
     x_a, y_a, _ = pose(BODY, i, start)
     ux_a, uy_a, _ = rate(BODY, i, start)
     if j == ground:
-        q = place(A, b, 0.0, 0.0, 0.0, A.CORE[1])
+        q = place_vertices(A, b, 0.0, 0.0, 0.0, A.CORE[1])
         extent = SHAPE[a].extent + SHAPE[b].rounding
         if point_core(x_a, y_a, A.CORE[1], q)[0] - extent <= tolerance:
             return 0.0, False

@@ -14,10 +14,10 @@ from ..model.bodies import CHECK, LEAVE, NOTHING
 from ..model.parameters.events import AHEAD, FARTHEST_MARGIN, SAME_INSTANT
 from ..model.scene import Scene
 from ..model.shapes import BATCH
-from ..pairs.grid import renew
+from ..pairs.grid import renew_circle
 from ..pairs.rules import barred
-from .heap import push
-from .impact_times import meet, misses, one_pull
+from .heap import push_event
+from .impact_times import misses, one_pull, time_of_impact
 from .next_event import has_left, leaves
 
 
@@ -29,7 +29,7 @@ def body_of(A: Scene, s: int) -> int:
 
 @nonallocating
 def first_chosen(A: Scene, i: int, chosen: int, best: float, other: int) -> tuple[float, int]:
-    """As `first_meeting`, among the first `chosen` disks in GRID.chosen, all of equal acceleration."""
+    """As `first_impact`, among the first `chosen` disks in GRID.chosen, all of equal acceleration."""
     for k in range(chosen):
         o = A.GRID.chosen[k]
         t = one_pull(A.BODY, i, o, best)
@@ -39,7 +39,7 @@ def first_chosen(A: Scene, i: int, chosen: int, best: float, other: int) -> tupl
 
 
 @nonallocating
-def first_meeting(
+def first_impact(
     A: Scene, i: int, known: int, best: float, other: int, end: float, several: bool
 ) -> tuple[float, int]:  # fmt: skip
     """Instant and shape of the first meeting of single disk i with shapes of its list from index `known` on; the given
@@ -72,7 +72,7 @@ def first_meeting(
                 best, other = first_chosen(A, i, chosen, best, other)
                 chosen = 0
             continue
-        t, certain = meet(A, i, o, end)
+        t, certain = time_of_impact(A, i, o, end)
         if t < best or (t == best and other >= 0 and o < other):
             best, other = t, (o if certain else CHECK)
     return first_chosen(A, i, chosen, best, other)
@@ -91,25 +91,25 @@ def expect(A: Scene, i: int, best: float, other: int, now: float, end: float) ->
     best = max(best, now)
     A.BODY[i].due, A.STATE[i].own, A.STATE[i].other = best, i, other
     if best < end:
-        A.COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, A.COUNT.heap, best, i)
+        A.COUNT.heap = push_event(A.HEAP_TIME, A.HEAP_BODY, A.COUNT.heap, best, i)
 
 
 @nonallocating
 def predict_disk(A: Scene, i: int, now: float, end: float, several: bool) -> None:
     """As `next_event.predict`, for a single disk."""
-    best, other = first_meeting(A, i, 0, math.inf, NOTHING, end, several)
+    best, other = first_impact(A, i, 0, math.inf, NOTHING, end, several)
     expect(A, i, best, other, now, end)
 
 
 @nonallocating
-def go_on(A: Scene, i: int, now: float, end: float) -> bool:
+def continue_path(A: Scene, i: int, now: float, end: float) -> bool:
     """Single disk i leaves its margin circle with an unchanged path: renew its list and predict its next event, for
     which only the new entries are tested. False if the pool is full."""
     BODY = A.BODY
     best, other, later, known = math.inf, NOTHING, A.LIST[i].later, A.LIST[i].number
     ahead = AHEAD
     if later >= 0 and A.STATE[body_of(A, later)].version == A.STATE[i].known:
-        best, certain = meet(A, i, later, end)
+        best, certain = time_of_impact(A, i, later, end)
         other = later if certain else CHECK
     if has_left(A, i, now):
         h = now - BODY[i].since
@@ -117,13 +117,13 @@ def go_on(A: Scene, i: int, now: float, end: float) -> bool:
             # Its path changes at its next impact, so the new circle is centred near that place.
             way = norm(BODY[i].vx + BODY[i].ax * h, BODY[i].vy + BODY[i].ay * h) * (best - now)
             ahead = min(way / A.MARK[i].margin, FARTHEST_MARGIN)
-        known = renew(A, i, now, ahead)
+        known = renew_circle(A, i, now, ahead)
         if known < 0:
             return False
     if later != NOTHING and other < 0:
         # The kept impact is void, or only a lower bound: the old entries are tested too.
         known = 0
-    best, other = first_meeting(A, i, known, best, other, end, False)
+    best, other = first_impact(A, i, known, best, other, end, False)
     expect(A, i, best, other, now, end)
     return True
 
@@ -139,12 +139,12 @@ def holds(A: Scene, i: int, end: float) -> bool:
     if other >= 0:
         if A.STATE[body_of(A, other)].version != A.STATE[i].known:
             return False
-        t, certain = meet(A, i, other, end)
+        t, certain = time_of_impact(A, i, other, end)
         if not (certain and abs(t - due) <= SAME_INSTANT * end):
             return False
         A.BODY[i].due = due = t
     elif other != LEAVE:
         return False
     if due < end:
-        A.COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, A.COUNT.heap, due, i)
+        A.COUNT.heap = push_event(A.HEAP_TIME, A.HEAP_BODY, A.COUNT.heap, due, i)
     return True

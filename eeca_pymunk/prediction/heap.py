@@ -13,7 +13,7 @@ from ..model.bodies import Body
 
 
 @nonallocating
-def push(TIME: FloatArray, OF: IntArray, n: int, time: float, body: int) -> int:
+def push_event(TIME: FloatArray, OF: IntArray, n: int, time: float, body: int) -> int:
     """Add an event of a body at an instant `time` to a heap of n."""
     k = n
     while k > 0:
@@ -45,7 +45,7 @@ def pop(TIME: FloatArray, OF: IntArray, n: int) -> int:
     if 2 * k + 1 < n:
         TIME[k], OF[k] = TIME[2 * k + 1], OF[2 * k + 1]
         k = 2 * k + 1
-    push(TIME, OF, k, TIME[n], OF[n])
+    push_event(TIME, OF, k, TIME[n], OF[n])
     return n
 
 

@@ -22,7 +22,7 @@ from .turning import general
 
 
 @nonallocating
-def passes(dx: float, dy: float, ux: float, uy: float, extent: float, duration: float) -> bool:
+def certainly_apart(dx: float, dy: float, ux: float, uy: float, extent: float, duration: float) -> bool:
     """Whether disks with the vector d from centre to centre, relative velocity u and sum of radii `extent` certainly
     part, miss each other, or are too far away to meet within the time `duration`. True for most pairs, and found
     without a root, as the first one of |d + u s| = extent is at s >= c / (2 |d.u|), c = |d|² - extent²."""
@@ -47,7 +47,7 @@ def misses(BODY: Rows[Body], i: int, j: int, ax: float, ay: float, latest: float
     meet until `latest`. Never true if `one_pull` is finite. Without branches."""
     start = max(BODY[i].since, BODY[j].since)
     dx, dy, ux, uy = between(BODY, i, j, start, ax, ay)
-    return passes(dx, dy, ux, uy, BODY[i].extent + BODY[j].extent, latest - start)
+    return certainly_apart(dx, dy, ux, uy, BODY[i].extent + BODY[j].extent, latest - start)
 
 
 @nonallocating
@@ -58,7 +58,7 @@ def one_pull(BODY: Rows[Body], i: int, j: int, latest: float) -> float:
     start = max(BODY[i].since, BODY[j].since)
     dx, dy, ux, uy = between(BODY, i, j, start, BODY[i].ax, BODY[i].ay)
     extent = BODY[i].extent + BODY[j].extent
-    if passes(dx, dy, ux, uy, extent, latest - start):
+    if certainly_apart(dx, dy, ux, uy, extent, latest - start):
         return math.inf
     fastest = abs(BODY[i].vx) + abs(BODY[i].vy) + abs(BODY[j].vx) + abs(BODY[j].vy)
     if -(dx * ux + dy * uy) < APPROACH_ROUND_OFF * extent * fastest:
@@ -100,7 +100,7 @@ def disk_wall(A: Scene, i: int, b: int, horizon: float) -> tuple[float, bool]:
 
 
 @nonallocating
-def meet(A: Scene, a: int, b: int, horizon: float) -> tuple[float, bool]:
+def time_of_impact(A: Scene, a: int, b: int, horizon: float) -> tuple[float, bool]:
     """(t, certain) of shapes a and b, see the module.
 
     Args:

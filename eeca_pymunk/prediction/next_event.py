@@ -12,12 +12,12 @@ import math
 from ..compiled import inlined, nonallocating
 from ..geometry.flight import norm, pose
 from ..model.bodies import CHECK, LEAVE, NOTHING, RENEW
-from ..model.parameters.events import ENTRY_LOOKS, INSIDE, SHAPES_LOOK
+from ..model.parameters.events import ENTRY_LOOKS, MARGIN_LEFT, SHAPES_LOOK
 from ..model.scene import Scene
-from ..pairs.lists import centre
+from ..pairs.lists import circle_centre
 from ..pairs.rules import barred
-from .heap import push
-from .impact_times import meet
+from .heap import push_event
+from .impact_times import time_of_impact
 
 
 @nonallocating
@@ -46,7 +46,7 @@ def leaves(A: Scene, i: int, s: int, now: float) -> float:
         return float(now + ((root - b) / squared if b <= 0.0 else c / (root + b)))
     # Two lower bounds, of which the later one counts: the centre of the circle moves no farther than its path is long,
     # and is never farther from the body's centre of mass than its arm, however fast it goes around that.
-    x, y = centre(A, s, now)
+    x, y = circle_centre(A, s, now)
     u, g = norm(BODY[i].vx + ax * h, BODY[i].vy + ay * h), norm(ax, ay)
     room = m - norm(x - MARK[s].x, y - MARK[s].y)
     turned = abs(BODY[i].spin + BODY[i].angular * h)
@@ -69,9 +69,9 @@ def passage(room: float, u: float, g: float) -> float:
 
 @nonallocating
 def has_left(A: Scene, s: int, now: float) -> bool:
-    """Whether shape s has used more than 1 - INSIDE of its margin."""
-    x, y = centre(A, s, now)
-    return bool(norm(x - A.MARK[s].x, y - A.MARK[s].y) > (1.0 - INSIDE) * A.MARK[s].margin)
+    """Whether shape s has used more than 1 - MARGIN_LEFT of its margin."""
+    x, y = circle_centre(A, s, now)
+    return bool(norm(x - A.MARK[s].x, y - A.MARK[s].y) > (1.0 - MARGIN_LEFT) * A.MARK[s].margin)
 
 
 @nonallocating
@@ -115,7 +115,7 @@ def predict(A: Scene, i: int, now: float, end: float, until: float) -> None:
                 continue
             if A.RULE.shape[0] > 0 and barred(A, s, o):
                 continue
-            t, certain = meet(A, s, o, min(horizon, horizon_of(A, LINK[o].owner, end)))
+            t, certain = time_of_impact(A, s, o, min(horizon, horizon_of(A, LINK[o].owner, end)))
             if t < best or (t == best and other >= 0 and (s < own or (s == own and o < other))):
                 best, own, other = t, s, (o if certain else CHECK)
     A.COUNT.work += 1 + int(ENTRY_LOOKS * entries) + (STATE[i].shapes - 1) // SHAPES_LOOK
@@ -127,7 +127,7 @@ def predict(A: Scene, i: int, now: float, end: float, until: float) -> None:
     if other >= 0:
         STATE[i].known = STATE[LINK[other].owner].version
     if i < A.COUNT.disks:
-        # No impact is kept for `disks.go_on`, which therefore tests the whole list.
+        # No impact is kept for `disks.continue_path`, which therefore tests the whole list.
         LIST[i].later = CHECK
     if best < end:
-        A.COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, A.COUNT.heap, best, i)
+        A.COUNT.heap = push_event(A.HEAP_TIME, A.HEAP_BODY, A.COUNT.heap, best, i)

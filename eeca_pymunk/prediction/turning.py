@@ -19,7 +19,7 @@ import math
 
 from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
-from ..geometry.convex import place
+from ..geometry.convex import place_vertices
 from ..geometry.flight import pose
 from ..geometry.gap import gap_round_off
 from ..geometry.manifold import common_face
@@ -38,13 +38,13 @@ from ..model.parameters.events import ADVANCES, APPROACH_ROUND_OFF, LONGEST_SEAR
 from ..model.parameters.intervals import TOUCH
 from ..model.scene import Scene
 from ..pairs.lists import face_tolerance
-from .axes import Closing, Motion, bends, fixed_axis, motion, pulled_along, speed_bound, turning_axis
+from .axes import Closing, MotionState, bends, fixed_axis, motion, pulled_along, speed_bound, turning_axis
 from .bounding_circles import carried_circles_meet, circles_meet
 from .work import most_work
 
 
 @nonallocating
-def opening(a: Motion, b: Motion, nx: float, ny: float, px: float, py: float) -> float:
+def opening(a: MotionState, b: MotionState, nx: float, ny: float, px: float, py: float) -> float:
     """Velocity (length/time) of b less that of a at the point p along n."""
     u = nx * (b.vx - b.spin * (py - b.y) - a.vx + a.spin * (py - a.y))
     return u + ny * (b.vy + b.spin * (px - b.x) - a.vy - a.spin * (px - a.x))
@@ -89,8 +89,8 @@ def begin_side(A: Scene, a: int, b: int, start: float, duration: float, toleranc
     i, j, P, Q = A.LINK[a].owner, A.LINK[b].owner, A.CORE[0], A.CORE[1]
     x_a, y_a, angle_a = pose(A.BODY, i, start)
     x_b, y_b, angle_b = pose(A.BODY, j, start)
-    p = place(A, a, x_a, y_a, angle_a, P)
-    q = place(A, b, x_b, y_b, angle_b, Q)
+    p = place_vertices(A, a, x_a, y_a, angle_a, P)
+    q = place_vertices(A, b, x_b, y_b, angle_b, Q)
     d, nx, ny, px, py, _, _, _, _, _ = closest_on_side(A, P, p, Q, q, a, b)
     if d > near_side(A, a, b):
         note_side(A, a, b, nx, ny, False)
@@ -111,7 +111,8 @@ def begin_side(A: Scene, a: int, b: int, start: float, duration: float, toleranc
 
 @nonallocating
 def face_closes(
-    A: Scene, a: int, b: int, nx: float, ny: float, x: float, y: float, d: float, one: Motion, two: Motion, still: float
+    A: Scene, a: int, b: int, nx: float, ny: float, x: float, y: float, d: float, one: MotionState, two: MotionState,
+    still: float,
 ) -> bool:  # fmt: skip
     """Whether the gap closes, faster than `still` (length/time), at a point at which an impact of shapes a < b would
     act: shapes that overlap may approach elsewhere, inside each other.
@@ -198,8 +199,8 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
         if s > mark + interval:  # progress resets the budget: fast rotation is followed for many turns
             looks, mark = 0, s
         one, two = motion(BODY, i, start + s), motion(BODY, j, start + s)
-        p = place(A, a, one.x, one.y, one.angle, P)
-        q = place(A, b, two.x, two.y, two.angle, Q)
+        p = place_vertices(A, a, one.x, one.y, one.angle, P)
+        q = place_vertices(A, b, two.x, two.y, two.angle, Q)
         d, nx, ny, px, py, _, edge_a, apart_a, edge_b, apart_b = closest_on_side(A, P, p, Q, q, a, b)
         if d > near_side(A, a, b):
             note_side(A, a, b, nx, ny, False)

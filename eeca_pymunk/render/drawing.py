@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import Collection, EllipseCollection, LineCollection, PolyCollection
 
 from eeca_pymunk.arrays import FloatArray, IntArray
-from eeca_pymunk.space.outlines import Outlines, place
+from eeca_pymunk.space.outlines import Outlines, to_world
 
 # From the colour-blind safe set of Okabe and Ito; they differ in lightness too.
 MOVING_COLOR, STATIC_COLOR, SENSOR_COLOR = "#0072b2", "#444444", "#cc79a7"
@@ -53,7 +53,7 @@ class Drawing:
     def move(self, position: FloatArray, angle: FloatArray) -> None:
         """Draw the bodies at (N, 2) positions and (N,) angles; NaN leaves a body out."""
         for part in self._moving:
-            part.draw(place(part.local, part.owner, position, angle))
+            part.draw(to_world(part.local, part.owner, position, angle))
 
 
 class _Part:

@@ -33,7 +33,7 @@ from ..model.parameters.impulses import (
 )
 from ..model.parameters.intervals import DIRECT_MOVING, INTERVAL_RESIDUAL_SPEED, SMALL_SWEEPS
 from .build import aim, conserves, largest_terms, rates, rubs
-from .conjugate import iterate
+from .conjugate import sweep_conjugate
 from .direct import refine, refine_and_sweep
 from .drift import go_along
 from .energy import lock, works
@@ -60,7 +60,7 @@ def resolve(
     sweeps, until a sweep changes no velocity by more than `tolerance`. With `drifts` a round begins with the end of a
     drift too. Rounds also end after 8 of them that do not halve the least change so far. FREE (k, 3): velocities
     without impulses. Returns the change of velocity in the last sweep; OUT: numbers of sweeps and direct solves."""
-    taken, worst = iterate(problem, L, V, tolerance, first)
+    taken, worst = sweep_conjugate(problem, L, V, tolerance, first)
     OUT[0].sweeps = taken
     OUT[0].direct = 0
     if worst <= tolerance:
@@ -85,14 +85,14 @@ def resolve(
             if stalled >= 8:
                 break
     if last > 0:
-        taken, worst = iterate(problem, L, V, tolerance, last)
+        taken, worst = sweep_conjugate(problem, L, V, tolerance, last)
         OUT[0].sweeps += taken
     for _ in range(drifts):
         if worst <= tolerance:
             break
         worst = go_along(problem, L, V, FREE, worst)
         log_R, worst = refine(problem, L, V, FREE, AUGMENTATION, 8, 0.1 * tolerance, worst)
-        taken, worst = iterate(problem, L, V, tolerance, last)
+        taken, worst = sweep_conjugate(problem, L, V, tolerance, last)
         OUT[0].sweeps += taken + 1
         OUT[0].direct += 1
     return worst
@@ -132,8 +132,7 @@ def solve_block(problem: AnyProblem, L: FloatArray, V: FloatArray, owed: float, 
     rates(ROWS, V, m)
     speed = aim(ROWS, m)
     if not speed > 0.0:
-        for i in range(m):
-            L[i, 0] = L[i, 1] = 0.0
+        L[:] = 0.0
         return CONVERGED
     FREE = V.copy()
     push(problem, L, 1.0, V)

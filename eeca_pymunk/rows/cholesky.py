@@ -15,7 +15,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Row
-from .dissection import dissect, pattern, touching
+from .dissection import contact_neighbours, dissect, pattern
 
 
 class Factor(NamedTuple):
@@ -35,7 +35,7 @@ class Factor(NamedTuple):
 @kernel
 def make_factor(ROWS: Rows[Row], m: int, n: int, used: IntArray, POSE: FloatArray) -> Factor:
     """Room for the factor of n bodies at POSE (k, 3) with the contacts with used[i] != 0, and its order."""
-    start, other = touching(ROWS, m, n, used)
+    start, other = contact_neighbours(ROWS, m, n, used)
     place = np.empty(n, np.int64)
     dissect(POSE, n, start, other, place)
     columns, rows = pattern(n, start, other, place)
@@ -53,7 +53,7 @@ def roots_of(IM: FloatArray, II: FloatArray) -> FloatArray:
 
 
 @kernel
-def assemble(
+def assemble_blocks(
     ROWS: Rows[Row], m: int, n: int, held: IntArray, stuck: IntArray, SCALE: FloatArray, R: float, factor: Factor
 ) -> None:
     """Write the blocks of B to `factor`, for the normal rows of contacts with held[i] = 1 and the tangential ones with
@@ -111,7 +111,7 @@ def assemble(
 
 
 @kernel
-def factorise(n: int, factor: Factor) -> None:
+def factor_blocks(n: int, factor: Factor) -> None:
     """Left-looking Cholesky factorisation in place: DIAGONAL gets lower triangles, BELOW the blocks under them."""
     columns, rows, D, X = factor.columns, factor.rows, factor.DIAGONAL, factor.BELOW
     head, after, where = np.full(n, -1, np.int64), np.full(n, -1, np.int64), np.full(n, -1, np.int64)
@@ -166,7 +166,7 @@ def factorise(n: int, factor: Factor) -> None:
 
 
 @nonallocating
-def substitute(n: int, factor: Factor, f: FloatArray) -> None:
+def solve_blocks(n: int, factor: Factor, f: FloatArray) -> None:
     """Replace f (n, 3), in the order of elimination, by B^-1 f."""
     columns, rows, D, X = factor.columns, factor.rows, factor.DIAGONAL, factor.BELOW
     for j in range(n):

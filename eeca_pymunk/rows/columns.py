@@ -10,28 +10,39 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..compiled import inlined, kernel, nonallocating
-from ..model.contacts import Columns, JointedProblem, Problem
+from ..model.contacts import Columns, JointedProblem, Problem, Row
 from ..model.parameters.joints import DISC_WORK, SLIP_WORK, SWEEP_ENTRY_WORK, SWEEP_WORK
 from .bounded import FIRST_OF_DISC, SINGLE, bounded_rate, push_row, room_for_rows, sweep_bounded
 from .build import normal_rate, tangent_rate
 from .coulomb import coulomb, limited_slip
 
 
+@inlined
+def put_free_body(C: Columns, w: int, row: Row, on_b: bool, mobility: float, turning: float) -> None:
+    """Write entry w of the columns of a contact, on its body a, or b if `on_b`, which no joint holds: `mobility` and
+    `turning` are its inverse mass and moment."""
+    sign = 1.0 if on_b else -1.0
+    x, y = sign * mobility * row.nx, sign * mobility * row.ny
+    C.N[w, 0], C.N[w, 1], C.T[w, 0], C.T[w, 1] = x, y, -y, x
+    C.N[w, 2] = sign * turning * (row.arm_nb if on_b else row.arm_na)
+    C.T[w, 2] = sign * turning * (row.arm_tb if on_b else row.arm_ta)
+
+
 @kernel
 def as_columns(problem: Problem) -> JointedProblem:
     """The contact problem of free bodies by columns, each on the two bodies of its contact."""
     ROWS, IM, II, _, _, m = problem
-    AT, BODY, N, T = np.empty(m + 1, np.int64), np.empty(2 * m, np.int64), np.empty((2 * m, 3)), np.empty((2 * m, 3))
+    C = Columns(
+        np.empty(m + 1, np.int64), np.empty(2 * m, np.int64), np.empty((2 * m, 3)), np.empty((2 * m, 3)),
+        np.zeros(m, np.int64), np.zeros(1),
+    )  # fmt: skip
     for i in range(m):
-        AT[i] = 2 * i
+        C.AT[i] = 2 * i
         for side in range(2):
-            w, q, sign = 2 * i + side, ROWS[i].b if side == 1 else ROWS[i].a, 2.0 * side - 1.0
-            BODY[w], x, y = q, sign * IM[q] * ROWS[i].nx, sign * IM[q] * ROWS[i].ny
-            N[w, 0], N[w, 1], T[w, 0], T[w, 1] = x, y, -y, x
-            N[w, 2] = sign * II[q] * (ROWS[i].arm_nb if side == 1 else ROWS[i].arm_na)
-            T[w, 2] = sign * II[q] * (ROWS[i].arm_tb if side == 1 else ROWS[i].arm_ta)
-    AT[m] = 2 * m
-    C = Columns(AT, BODY, N, T, np.zeros(m, np.int64), np.zeros(1))
+            q = ROWS[i].b if side == 1 else ROWS[i].a
+            C.BODY[2 * i + side] = q
+            put_free_body(C, 2 * i + side, ROWS[i], side == 1, IM[q], II[q])
+    C.AT[m] = 2 * m
     return JointedProblem(ROWS, C, room_for_rows(0, 0), m)
 
 

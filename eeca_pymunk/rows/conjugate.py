@@ -31,16 +31,16 @@ def accelerate(
         change += (L[i] - L0[i]) * (L[i] - L0[i])
     ratio = change / before if before > 0.0 else 2.0
     if ratio > 1.0:
-        renew(L, L0, PL)
-        renew(V, V0, PV)
+        restart_direction(L, L0, PL)
+        restart_direction(V, V0, PV)
     elif not last:
-        go_on(L, L0, PL, ratio)
-        go_on(V, V0, PV, ratio)
+        extend_direction(L, L0, PL, ratio)
+        extend_direction(V, V0, PV, ratio)
     return change
 
 
 @nonallocating
-def renew(X: FloatArray, X0: FloatArray, P: FloatArray) -> None:
+def restart_direction(X: FloatArray, X0: FloatArray, P: FloatArray) -> None:
     """Restart the direction P as the change from X0 to X, which becomes the next start X0."""
     for i in range(len(X0)):
         x = X[i]
@@ -49,7 +49,7 @@ def renew(X: FloatArray, X0: FloatArray, P: FloatArray) -> None:
 
 
 @nonallocating
-def go_on(X: FloatArray, X0: FloatArray, P: FloatArray, ratio: float) -> None:
+def extend_direction(X: FloatArray, X0: FloatArray, P: FloatArray, ratio: float) -> None:
     """Move X by `ratio` times the direction P, which becomes that plus the change from X0 to X; X becomes the next
     start X0."""
     for i in range(len(X0)):
@@ -61,7 +61,9 @@ def go_on(X: FloatArray, X0: FloatArray, P: FloatArray, ratio: float) -> None:
 
 
 @kernel
-def iterate(problem: AnyProblem, L: FloatArray, V: FloatArray, tolerance: float, most: int) -> tuple[int, float]:
+def sweep_conjugate(
+    problem: AnyProblem, L: FloatArray, V: FloatArray, tolerance: float, most: int
+) -> tuple[int, float]:
     """Accelerated sweeps, until one changes no contact's velocity by more than `tolerance`, at most `most`. The last is
     plain. Returns the number of sweeps, and the change in the last."""
     # Loops over flat arrays are vectorised.

@@ -22,7 +22,7 @@ from .sweeps import velocities
 
 
 @nonallocating
-def decompose(W: FloatArray, N: int, order: IntArray) -> None:
+def decompose_dense(W: FloatArray, N: int, order: IntArray) -> None:
     """LU decomposition with partial pivoting of W[:N, :N] in place; order (N,): out, its rows."""
     for j in range(N):
         order[j] = j
@@ -46,8 +46,8 @@ def decompose(W: FloatArray, N: int, order: IntArray) -> None:
 
 
 @nonallocating
-def back(W: FloatArray, N: int, order: IntArray, r: FloatArray, x: FloatArray) -> None:
-    """Set x = W^-1 r, with W of `decompose`."""
+def solve_dense(W: FloatArray, N: int, order: IntArray, r: FloatArray, x: FloatArray) -> None:
+    """Set x = W^-1 r, with W of `decompose_dense`."""
     for i in range(N):
         s = r[order[i]]
         for k in range(i):
@@ -177,7 +177,7 @@ def newton(
     N = unknowns(ROWS, L, m, held, stuck, slip, shared, at, kind)
     W, order, r, x = np.empty((N, N)), np.empty(N, np.int64), np.empty(N), np.empty(N)
     matrix(problem, slip, at, kind, N, W)
-    decompose(W, N, order)
+    decompose_dense(W, N, order)
     velocities(problem, L, FREE, V)
     worst = np.inf
     for done in range(passes + 1):
@@ -194,7 +194,7 @@ def newton(
             worst = max(worst, abs(r[k]))
         if worst <= tolerance or done == passes or not worst <= 0.5 * last:
             break
-        back(W, N, order, r, x)
+        solve_dense(W, N, order, r, x)
         for k in range(N):
             i = at[k]
             L[i, kind[k]] += x[k]

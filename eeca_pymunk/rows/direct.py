@@ -10,7 +10,7 @@ from ..model.contacts import AnyProblem, JointedProblem
 from ..model.parameters.impulses import AUGMENTATION, DENSE_CONTACTS, REFINEMENTS
 from .dense import newton
 from .polish import polish_free, segment
-from .sweeps import restore, sweep
+from .sweeps import restore_impulses, sweep
 
 
 @kernel
@@ -46,13 +46,13 @@ def refine(
         for attempt in range(2):
             # Friction that energy limits: first each contact by itself, then with the other contact of its face.
             if reached > 1e-3 * worst:
-                restore(L, V, L0, V0)
+                restore_impulses(L, V, L0, V0)
                 reached, clamped = newton(problem, L, V, FREE, REFINEMENTS, tolerance, attempt == 1)
     else:
         reached, clamped = polish(problem, L, V, FREE, 10.0**log_R, passes, tolerance)
     part = 1.0
     if not reached <= 1e3 * worst + tolerance:
-        restore(L, V, L0, V0)
+        restore_impulses(L, V, L0, V0)
         part = 0.0
     elif clamped > 0:
         # With slip the solution minimises no energy: the residual of a sweep decides; without, `segment`.
@@ -61,7 +61,7 @@ def refine(
             after = sweep(problem, L, V)
             if after < worst:
                 return log_R, after
-            restore(L, V, L1, V1)
+            restore_impulses(L, V, L1, V1)
         part = segment(problem, L, V, L0, V0)
     if part > 0.9:
         log_R = min(log_R + 2.0, AUGMENTATION)

@@ -36,7 +36,7 @@ def neighbours(EDGE: IntArray, edges: int, n: int) -> tuple[IntArray, IntArray]:
 
 
 @kernel
-def touching(ROWS: Rows[Row], m: int, n: int, used: IntArray) -> tuple[IntArray, IntArray]:
+def contact_neighbours(ROWS: Rows[Row], m: int, n: int, used: IntArray) -> tuple[IntArray, IntArray]:
     """`neighbours` of n bodies by the contacts with used[i] != 0."""
     EDGE, edges = np.empty((m, 2), np.int64), 0
     for i in range(m):
@@ -49,8 +49,8 @@ def touching(ROWS: Rows[Row], m: int, n: int, used: IntArray) -> tuple[IntArray,
 @kernel
 def dissect(POSE: FloatArray, n: int, start: IntArray, other: IntArray, place: IntArray) -> None:
     """Set place (n,), the position of each body in the order of elimination, from the poses POSE (k, 3) of the bodies
-    and their neighbours (`touching`). A set of bodies is divided at the mean of the longer side of its box; those
-    left of it with a neighbour on the right are the separator, which is eliminated after both parts."""
+    and their neighbours (`contact_neighbours`). A set of bodies is divided at the mean of the longer side of its box;
+    those left of it with a neighbour on the right are the separator, which is eliminated after both parts."""
     ids, end, count = np.empty(n, np.int64), n, 0
     for i in range(n):
         if start[i + 1] - start[i] > LATE_NEIGHBOURS:

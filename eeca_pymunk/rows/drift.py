@@ -13,7 +13,7 @@ from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..model.contacts import AnyProblem
 from ..model.parameters.impulses import DRIFT_SLIPS, DRIFT_STEADY
-from .sweeps import restore, sweep, velocities
+from .sweeps import restore_impulses, sweep, velocities
 
 
 @nonallocating
@@ -52,6 +52,6 @@ def go_along(problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray
     velocities(problem, L, FREE, V)
     after = sweep(problem, L, V)
     if after > now:
-        restore(L, V, LAST, VLAST)
+        restore_impulses(L, V, LAST, VLAST)
         return now
     return after

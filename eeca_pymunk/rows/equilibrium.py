@@ -26,7 +26,7 @@ from ..model.contacts import ROW, Edge, Problem
 from ..model.parameters.impulses import PROXIMAL_STATICS
 from ..model.parameters.rest import STATICS_GAP, STATICS_START, STATICS_STEP
 from .build import normal_rate
-from .cholesky import Factor, assemble, factorise, make_factor, roots_of, substitute
+from .cholesky import Factor, assemble_blocks, factor_blocks, make_factor, roots_of, solve_blocks
 from .cones import add_impulses, cone_edges, impulses_of
 from .inplace import copy
 
@@ -97,7 +97,7 @@ def newton_step(
     for i in range(n):
         for c in range(3):
             f[place[i], c] = PROXIMAL_STATICS * (V[i, c] - LEFT[i, c]) / SCALE[i, c] if SCALE[i, c] > 0.0 else 0.0
-    substitute(n, factor, f)
+    solve_blocks(n, factor, f)
     for i in range(n):
         for c in range(3):
             DY[i, c] = SCALE[i, c] * f[place[i], c]
@@ -129,7 +129,7 @@ def mean_product(EDGE: Rows[Edge], K: int, primal: float, dual: float) -> float:
 
 
 @nonallocating
-def take_step(EDGE: Rows[Edge], K: int, Y: FloatArray, DY: FloatArray, primal: float, dual: float) -> None:
+def update_iterate(EDGE: Rows[Edge], K: int, Y: FloatArray, DY: FloatArray, primal: float, dual: float) -> None:
     """Add the part `primal` of dx, and the part `dual` of ds and DY."""
     for e in range(K):
         EDGE[e].x += primal * EDGE[e].dx
@@ -185,8 +185,8 @@ def equilibrium(
         if done == 0 or not free:
             for e in range(K):
                 G[e].k_n = 1.0 / (EDGE[e].a_gg + (0.0 if free else EDGE[e].s / EDGE[e].x))
-            assemble(G, K, n, held, stuck, SCALE, PROXIMAL_STATICS, factor)
-            factorise(n, factor)
+            assemble_blocks(G, K, n, held, stuck, SCALE, PROXIMAL_STATICS, factor)
+            factor_blocks(n, factor)
         newton_step(problem_of_edges, EDGE, SCALE, factor, LEFT, Y, f, V, DY, 0.0, False)
         if free:
             # Without regard to the cones, the nearest balancing impulses need one linear solve: often they are inside.
@@ -195,5 +195,5 @@ def equilibrium(
             continue
         aim = centre * (mean_product(EDGE, K, step_length(EDGE, K, False), step_length(EDGE, K, True)) / centre) ** 3
         newton_step(problem_of_edges, EDGE, SCALE, factor, LEFT, Y, f, V, DY, aim, True)
-        take_step(EDGE, K, Y, DY, step_length(EDGE, K, False), step_length(EDGE, K, True))
+        update_iterate(EDGE, K, Y, DY, step_length(EDGE, K, False), step_length(EDGE, K, True))
     return found, most

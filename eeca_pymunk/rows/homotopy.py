@@ -51,7 +51,7 @@ def work_of_change(size: int) -> float:
 
 
 @kernel
-def begin(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: bool) -> Tableau:
+def start_homotopy(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: bool) -> Tableau:
     """The homotopy's start at impulses L (m + n, 2) of m contacts and n bounded rows with velocities V (k, 3); or, if
     `anew`, without impulses of contacts, and with rows at a bound. Contacts that are inactive (`Row.wake`) or left out
     (`Columns.OUT`), discs, and rows that joints hold take no part: their impulses stay."""
@@ -175,7 +175,7 @@ def set_impulses(tableau: Tableau, m: int, X: FloatArray, L: FloatArray) -> None
 
 
 @nonallocating
-def correct(problem: JointedProblem, tableau: Tableau, V: FloatArray, X: FloatArray) -> None:
+def correct_residual(problem: JointedProblem, tableau: Tableau, V: FloatArray, X: FloatArray) -> None:
     """Correct the unknowns X (size,) by the velocities V that the present states fix and that are not 0: the proximal
     term and round-off of pivots leave them."""
     ROWS, _, D, m = problem
@@ -202,7 +202,7 @@ def follow_homotopy(problem: JointedProblem, L: FloatArray, V: FloatArray, FREE:
             be longer.
     """
     m = problem.m
-    tableau = begin(problem, L, V, anew)
+    tableau = start_homotopy(problem, L, V, anew)
     T, count, size = tableau.T, len(tableau.STATE), len(tableau.T)
     X = np.empty(size)
     theta, way, changed, number = 1.0, -1.0, -1, 0
@@ -228,7 +228,7 @@ def follow_homotopy(problem: JointedProblem, L: FloatArray, V: FloatArray, FREE:
             set_impulses(tableau, m, X, L)
             velocities(problem, L, FREE, V)
             for _ in range(HOMOTOPY_REFINEMENTS):
-                correct(problem, tableau, V, X)
+                correct_residual(problem, tableau, V, X)
                 set_impulses(tableau, m, X, L)
                 velocities(problem, L, FREE, V)
             return True

@@ -14,10 +14,10 @@ from ..compiled.records import Rows
 from ..model.contacts import JointedProblem, Problem, Row, Solved
 from ..model.parameters.joints import COLUMN_CONTACTS, COLUMN_HOMOTOPIES, COLUMN_SWEEPS, COLUMN_SWEEPS_AFTER
 from .columns import as_columns, breach
-from .conjugate import iterate
+from .conjugate import sweep_conjugate
 from .coulomb import slip_freely
 from .homotopy import follow_homotopy
-from .sweeps import push, restore, sweep, velocities
+from .sweeps import push, restore_impulses, sweep, velocities
 
 
 @kernel
@@ -35,8 +35,8 @@ def solve_columns(
         the largest velocity by which a law is broken, or of a change in the last sweep if that came last.
     """
     if problem.m > COLUMN_CONTACTS:
-        return iterate(problem, L, V, tolerance, most)[1]
-    worst = iterate(problem, L, V, tolerance, sweeps)[1] if sweeps > 0 else breach(problem, L, V)
+        return sweep_conjugate(problem, L, V, tolerance, most)[1]
+    worst = sweep_conjugate(problem, L, V, tolerance, sweeps)[1] if sweeps > 0 else breach(problem, L, V)
     best, L0, V0, before, earlier = worst, L.copy(), V.copy(), np.inf, np.inf
     for _ in range(COLUMN_HOMOTOPIES):
         if worst <= tolerance:
@@ -57,18 +57,18 @@ def solve_columns(
             done += 1
         if worst < best:
             best = worst
-            restore(L0, V0, L, V)
+            restore_impulses(L0, V0, L, V)
         # Where laws have no solution, homotopies lead to the same state, or from one of two to the other.
         if min(abs(worst - before), abs(worst - earlier)) <= 0.1 * worst:
             break
         before, earlier = worst, before
     if worst > tolerance:
-        restore(L, V, L0, V0)
+        restore_impulses(L, V, L0, V0)
         before = breach(problem, L, V)
-        _, worst = iterate(problem, L, V, tolerance, most)
+        _, worst = sweep_conjugate(problem, L, V, tolerance, most)
         if not breach(problem, L, V) <= 2.0 * before:
             # Sweeps diverge where friction could open contacts.
-            restore(L, V, L0, V0)
+            restore_impulses(L, V, L0, V0)
             worst = before
     return worst
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ..arrays import FloatArray
-from ..compiled import Choice, inlined, nonallocating
+from ..compiled import Choice, inlined, kernel, nonallocating
 from ..model.contacts import AnyProblem, JointedProblem, Problem
 from ..model.parameters.intervals import WALL_SWEEPS
 from .build import normal_rate, push_contact
@@ -40,19 +42,31 @@ def meet_gap(problem: AnyProblem, GAP: float, MU: FloatArray, D: FloatArray, i: 
     return float(abs(d) / k)
 
 
-@nonallocating
-def keep_walls(problem: AnyProblem, n: int, GAPS: FloatArray, MU: FloatArray, D: FloatArray) -> None:
-    """After a `lift` that has come to no end: displace none of the n bodies that impulses move deeper into what nothing
-    moves than it is; contacts with an infinite gap are left out. In sweeps, as a body may have several such contacts:
-    what lifts one end of a face lowers the other one."""
+@kernel
+def keep_walls(problem: AnyProblem, n: int, GAPS: FloatArray, LEAST: FloatArray, MU: FloatArray, D: FloatArray) -> None:
+    """After a solve that has come to no end: let no contact of the n bodies that impulses move with what nothing moves
+    have a gap below LEAST (m,), which is GAPS without displacements; with an infinite gap it is left out. In sweeps, as
+    a body may have several such contacts: what lifts one end of a face lowers the other one."""
     for _ in range(WALL_SWEEPS):
         met = True
         for i in range(problem.m):
             if max(problem.ROWS[i].a, problem.ROWS[i].b) >= n:
-                if GAPS[i] + normal_rate(problem.ROWS[i], D) < min(GAPS[i], 0.0):
-                    met = meet_gap(problem, max(GAPS[i], 0.0), MU, D, i) == 0.0 and met
+                if GAPS[i] + normal_rate(problem.ROWS[i], D) < LEAST[i]:
+                    met = meet_gap(problem, GAPS[i] - LEAST[i], MU, D, i) == 0.0 and met
         if met:
             break
+
+
+@kernel
+def lift_above_walls(
+    problem: AnyProblem, n: int, GAPS: FloatArray, D: FloatArray, tolerance: float, most: int
+) -> FloatArray:
+    """`lift` from no mu (m,), which is returned; if it comes to no end, nothing is displaced deeper into what nothing
+    moves than it is (`keep_walls`)."""
+    MU = np.zeros(problem.m)
+    if lift(problem, GAPS, MU, D, tolerance, most) > tolerance:
+        keep_walls(problem, n, GAPS, np.minimum(GAPS, 0.0), MU, D)
+    return MU
 
 
 @nonallocating

@@ -16,13 +16,13 @@ from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import AnyProblem, Problem, Row
 from ..model.parameters.impulses import FACE_LINE
-from .build import normal_rate, tangent_rate
-from .cholesky import assemble, factorise, make_factor, roots_of, substitute
+from .build import normal_rate, push_contact, tangent_rate
+from .cholesky import assemble_blocks, factor_blocks, make_factor, roots_of, solve_blocks
 from .sweeps import velocities
 
 
 @nonallocating
-def share(ROWS: Rows[Row], L: FloatArray, m: int) -> None:
+def divide_friction(ROWS: Rows[Row], L: FloatArray, m: int) -> None:
     """Divide the friction of a face between its two points in proportion to their normal impulses: beta_k = lam_k sum
     beta / sum lam.
 
@@ -110,17 +110,17 @@ def polish_free(
         The residual velocity before the impulses were clamped, and how many were clamped.
     """
     ROWS, IM, II, _, n, m = problem
-    share(ROWS, L, m)
+    divide_friction(ROWS, L, m)
     held, stuck, slip, rest = classify(ROWS, L, V, m)
     SCALE, factor = roots_of(IM, II), make_factor(ROWS, m, n, held, problem.POSE)
-    place = factor.place
-    assemble(ROWS, m, n, held, stuck, SCALE, R, factor)
-    factorise(n, factor)
-    f, dv, r, worst = np.empty((n, 3)), np.zeros((len(IM), 3)), np.zeros((m, 2)), np.inf
+    place, ROOTS, SPINS = factor.place, SCALE[:, 0], SCALE[:, 2]
+    assemble_blocks(ROWS, m, n, held, stuck, SCALE, R, factor)
+    factor_blocks(n, factor)
+    f, F, dv, r, worst = np.empty((n, 3)), np.empty((len(IM), 3)), np.zeros((len(IM), 3)), np.zeros((m, 2)), np.inf
     for done in range(passes + 1):
         last = worst
         worst = 0.0
-        f[:] = 0.0
+        F[:] = 0.0
         for i in range(m):
             if held[i] == 0:
                 continue
@@ -132,22 +132,13 @@ def polish_free(
                 r[i, 1] = rest[i] - tangent_rate(ROWS[i], V)
                 worst = max(worst, abs(r[i, 1]))
                 ft = R * ROWS[i].k_t * r[i, 1]
-            a, b = ROWS[i].a, ROWS[i].b
-            fx = fn * ROWS[i].nx - ft * ROWS[i].ny
-            fy = fn * ROWS[i].ny + ft * ROWS[i].nx
-            if a < n:
-                k = place[a]
-                f[k, 0] -= SCALE[a, 0] * fx
-                f[k, 1] -= SCALE[a, 1] * fy
-                f[k, 2] -= SCALE[a, 2] * (fn * ROWS[i].arm_na + ft * ROWS[i].arm_ta)
-            if b < n:
-                k = place[b]
-                f[k, 0] += SCALE[b, 0] * fx
-                f[k, 1] += SCALE[b, 1] * fy
-                f[k, 2] += SCALE[b, 2] * (fn * ROWS[i].arm_nb + ft * ROWS[i].arm_tb)
+            push_contact(ROWS[i], ROOTS, SPINS, fn, ft, F)
         if worst <= tolerance or done == passes or worst > 0.5 * last:
             break
-        substitute(n, factor, f)
+        for i in range(n):
+            for p in range(3):
+                f[place[i], p] = F[i, p]
+        solve_blocks(n, factor, f)
         for i in range(n):
             for p in range(3):
                 dv[i, p] = SCALE[i, p] * f[place[i], p]
@@ -162,7 +153,7 @@ def polish_free(
             else:
                 L[i, 1] = slip[i] * L[i, 0]
         velocities(problem, L, FREE, V)
-    share(ROWS, L, m)
+    divide_friction(ROWS, L, m)
     return worst, clamp(problem, L, FREE, V)
 
 

@@ -111,7 +111,7 @@ def velocities(problem: AnyProblem, L: FloatArray, FREE: FloatArray, V: FloatArr
 
 
 @nonallocating
-def restore(L: FloatArray, V: FloatArray, L0: FloatArray, V0: FloatArray) -> None:
+def restore_impulses(L: FloatArray, V: FloatArray, L0: FloatArray, V0: FloatArray) -> None:
     """Set impulses L and velocities V to L0 and V0."""
     copy(L, L0)
     copy(V, V0)

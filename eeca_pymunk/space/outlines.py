@@ -64,10 +64,10 @@ class Outlines:
 
     def place(self, position: FloatArray, angle: FloatArray) -> FloatArray:
         """World coordinates of all vertices with the bodies at (N, 2) positions and (N,) angles."""
-        return place(self.vertex, self.owner, position, angle)
+        return to_world(self.vertex, self.owner, position, angle)
 
 
-def place(local: FloatArray, owner: IntArray, position: FloatArray, angle: FloatArray) -> FloatArray:
+def to_world(local: FloatArray, owner: IntArray, position: FloatArray, angle: FloatArray) -> FloatArray:
     """(V, 2) world coordinates of points of the bodies `owner` (V,); points of owner -1 are in world coordinates
     already."""
     world = local.copy()

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from .world import World
 
 _MEMORY = 4  # steps for which pymunk may keep arbiters of pairs that have touched; silence is not tested before
+_SILENT = -1
 _NO_PAIRS: tuple[FloatArray, IntArray] = np.zeros((0, HANDLED_COLUMNS)), np.zeros((0, 2), np.int64)
 
 
@@ -60,12 +61,10 @@ class Rehearsal:
         self.failure: BaseException | None = None
         self.decided, self.left_out = False, 0
         self._sync: Sync | None = None  # of the last step
-        # Whether the last step was certainly silent; number of steps until that is tested again.
-        self._silent, self._unchecked = False, 0
+        self._untested = 0  # number of steps until it is tested whether a step is silent; _SILENT if the last one was
         self._pairs: HandledPairs | None = None
-        # Number of steps for which decisions still apply; whether collisions are ignored, or may be.
-        self._decision_steps: float = 0.0
-        self._ignoring = not world.undecided
+        # Number of steps for which decisions apply at least; those that ignore collisions do as long as shapes touch.
+        self._decision_steps: float = 0.0 if world.undecided else 1.0
 
     def end(self) -> None:
         """Forget the wrappers, which refer to this object."""
@@ -75,18 +74,18 @@ class Rehearsal:
         """Forget earlier steps; if sizes, filters or places of shapes have changed, also the pairs with handlers."""
         if reshaped:
             self._pairs = None
-        self._silent, self._unchecked = False, 0
-        self._changed, self._decision_steps, self._ignoring = [False, False], 0, True
+        self._changed, self._untested, self._decision_steps = [False, False], 0, 1.0
         self.world.forget_changes()
 
     def is_silent(self) -> bool:
         """Whether no decision applies, and the last `_MEMORY` steps, all of them EECA's, were silent and left out."""
-        return self.left_out >= _MEMORY and self._silent and self._sync is not None and self._sync.is_ours()
+        silent = self.left_out >= _MEMORY and self._untested == _SILENT
+        return silent and self._sync is not None and self._sync.is_ours()
 
     def is_silent_again(self, dt: float, half_damping: float, sync: Sync) -> bool:
         """Whether this step is silent as the last one was; if so, its rehearsal is done or left out here. For worlds in
         which only handlers can be called (`only_handlers`). Reads the states at the start of the step."""
-        if not self._silent or sync is not self._sync:
+        if self._untested != _SILENT or sync is not self._sync:
             return False
         self.world.gather()
         self._settings = dt, *self.world.gravity, half_damping
@@ -98,7 +97,7 @@ class Rehearsal:
     def forget_old_handlers(self) -> None:
         """Forget the pairs with handlers, if there are handlers for other types now."""
         if self._pairs is not None and self._pairs.handled != private_versions.handled(self.space):
-            self._pairs, self._silent, self._unchecked = None, False, 0
+            self._pairs, self._untested = None, 0
 
     def continue_from(self, earlier: Rehearsal) -> None:
         """Use what functions have done in a rehearsal of an earlier world of the same step."""
@@ -136,14 +135,14 @@ class Rehearsal:
         if True in self._changed:
             world.forget_changes()
             self._changed = [False, False]
-        if self._unchecked > 0:
-            self._unchecked -= 1
-        else:
-            self._silent = sync is not None and sync.continues() and self._calls_none(status > 0)
-            self._unchecked = 0 if self._silent else _MEMORY
-        if self._silent and sync is not None:
+        if self._untested > 0:
+            self._untested -= 1
+        elif sync is not None and sync.continues() and self._calls_none(status > 0):
+            self._untested = _SILENT
             self._step_without_calls(dt, sync)
             return 0
+        else:
+            self._untested = _MEMORY
         self.left_out = 0
         world.scatter(TURNS)
         self._wrap()
@@ -188,15 +187,15 @@ class Rehearsal:
     def _calls_none(self, near: bool) -> bool:
         """Whether pymunk's step would call nothing. `near`: whether a pair may meet in it, or soon after."""
         joints = self.world.joints
-        if self._decision_steps > 0 or self._ignoring or (joints is not None and joints.calling):
+        if self._decision_steps > 0 or (joints is not None and joints.calling):
             return False
         if self._pairs is None or self._pairs.type_changes != type_changes():
-            self._pairs, self._silent = HandledPairs(self.world), False
+            self._pairs, self._untested = HandledPairs(self.world), 0
             self._place = self._bound(self._pairs)
             near = self._place(*self._settings) > 0
         if near or self._pairs.arrays is None:
             return False
-        return self._silent or not self._pairs.remembered()
+        return self._untested == _SILENT or not self._pairs.remembered()
 
     def take_left_out_step(self) -> None:
         """Take the step of pymunk that was left out, for its arbiters, unless the space has other bodies now."""
@@ -242,9 +241,8 @@ class Rehearsal:
         Arbiters are only read if a function may have changed one of them."""
         if self.decided:
             self._decision_steps = self.space.collision_persistence + 1
-        if self._decision_steps <= 0 and not self._ignoring and not earlier.laws:
+        if self._decision_steps <= 0 and not earlier.laws:
             return Rules() if self.world.rules.any_pair else self.world.rules
-        self._decision_steps -= 1
         rules = earlier.rules(self.world)
-        self._ignoring = bool(rules.ignored)
+        self._decision_steps = max(self._decision_steps - 1, 1.0 if rules.ignored else 0.0)
         return rules

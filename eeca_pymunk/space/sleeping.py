@@ -30,7 +30,7 @@ from ..compiled.records import over
 from ..layout import BODY_ROW
 from ..model.contacts import Impulse
 from ..report import Contacts
-from ..sleepers import approaches, rests, touches
+from ..sleepers import approaches, rests, touches_sleeper
 from .private import shapes as private_shapes
 from .private import sleep as private_sleep
 from .private import spaces as private
@@ -207,7 +207,7 @@ class Sleep:
         """Whether a moving body has touched a sleeping one in the first `count` impulses of the log (`Impulse`)."""
         known, call = self._touches
         if known is not log:
-            call = touches.bind(over(Impulse, log), self.world.owner, *self._still)
+            call = touches_sleeper.bind(over(Impulse, log), self.world.owner, *self._still)
             self._touches = log, call
         return bool(call(count))
 

@@ -11,8 +11,8 @@ from eeca_pymunk.compiled import table_of
 from eeca_pymunk.compiled.records import columns, rows
 from eeca_pymunk.contacts.correction import budget_of, lifting
 from eeca_pymunk.contacts.interval import make_contacts, step_island
-from eeca_pymunk.contacts.memory import forget
-from eeca_pymunk.contacts.works import carried, moved
+from eeca_pymunk.contacts.memory import copy_recent
+from eeca_pymunk.contacts.works import carried
 from eeca_pymunk.geometry.corners import moving_thin
 from eeca_pymunk.impacts.scene import EventLoop
 from eeca_pymunk.impacts.scene_memory import Laid
@@ -78,7 +78,7 @@ class Pile:
         """Memory of this step and the last alone, in tables of `size` rows."""
         scene = self.scene
         keys, forces = np.full(size, -1), rows(Force, size)
-        forget(scene.KEYS, scene.FORCES, scene.COUNT, keys, forces, scene.PAR.stamp - 1.0)
+        copy_recent(scene.KEYS, scene.FORCES, scene.COUNT, keys, forces, scene.PAR.stamp - 1.0)
         self.scene = scene._replace(KEYS=keys, FORCES=forces)
 
     @property
@@ -129,7 +129,7 @@ class Pile:
         """Penetration correction, paid from the losses of the step."""
         c, V, n, m = self.contacts, self.v, self.n, self.m
         if m > 0:
-            problem, middle = Problem(c.ROWS, self.im, self.ii, self.pose, n, m), moved(self.pose, V, 0.5 * h)
+            problem, middle = Problem(c.ROWS, self.im, self.ii, self.pose, n, m), self.pose + 0.5 * h * V
             budget = budget_of(c.ROWS, m, float(self.losses.sum()), 0.0)
             lifting(problem, middle, c.VN, self.acc, h, self.extent, budget, c.JUMP)
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from eeca_pymunk.compiled.records import row, rows
-from eeca_pymunk.contacts.memory import find, forget, remember
+from eeca_pymunk.contacts.memory import copy_recent, find, remember_force
 from eeca_pymunk.model.contacts import Force
 from eeca_pymunk.model.step import Count
 
@@ -211,11 +211,11 @@ def test_memory_finds_what_was_remembered() -> None:
     for _ in range(300):
         key = int(rng.integers(0, 60)) * 1024
         known[key] = (float(rng.random()), float(rng.integers(1, 4)))
-        remember(keys, forces, count, key, known[key][0], 0.0, 0.0, 1.0, known[key][1])
+        remember_force(keys, forces, count, key, known[key][0], 0.0, 0.0, 1.0, known[key][1])
     assert count.remembered == len(known)
     assert all(forces[find(keys, key)].normal == value for key, (value, _) in known.items())
     assert find(keys, 7) < 0
     kept, kept_forces = np.full(128, -1), rows(Force, 128)
-    forget(keys, forces, count, kept, kept_forces, 2.0)
+    copy_recent(keys, forces, count, kept, kept_forces, 2.0)
     assert {int(key) for key in kept[kept >= 0]} == {key for key, (_, stamp) in known.items() if stamp >= 2.0}
     assert all(kept_forces[find(kept, key)].normal == value for key, (value, stamp) in known.items() if stamp >= 2.0)

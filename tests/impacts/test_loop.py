@@ -15,7 +15,7 @@ import eeca_pymunk as ep
 import scenes
 from comparisons.hard_cases import moving
 from eeca_pymunk.impacts.scene import EventLoop
-from eeca_pymunk.pairs.lists import centre
+from eeca_pymunk.pairs.lists import circle_centre
 from scenes.scene import add_disk, add_walls
 
 from ..crowds import SHORT, box_of, deepest, positions, radii, reference, state
@@ -297,7 +297,7 @@ def test_walls_that_turn_are_looked_for_where_they_are() -> None:
         for s in range(len(scene.LIST)):
             if scene.BODY["inv_mass"][scene.LINK["owner"][s]] > 0.0:
                 continue
-            x, y = centre(scene, s, scene.BODY["since"][scene.LINK["owner"][s]])
+            x, y = circle_centre(scene, s, scene.BODY["since"][scene.LINK["owner"][s]])
             away = math.hypot(x - scene.MARK["x"][s], y - scene.MARK["y"][s])
             assert away <= scene.MARK["margin"][s] * (1 + 1e-9)
 

@@ -10,7 +10,7 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk.compiled.records import zeros
-from eeca_pymunk.jointed.columns import weigh
+from eeca_pymunk.jointed.columns import set_effective_masses
 from eeca_pymunk.jointed.groups import Groups
 from eeca_pymunk.model.contacts import ROW, Columns
 from eeca_pymunk.model.parameters.joints import STRUT_BETWEEN
@@ -34,7 +34,8 @@ def test_what_joints_guide_on_a_line_does_not_stick_by_impulses_without_bound(
     T[0, :2] = d[1] * d[0] / mass, (d[1] * d[1] + error) / mass
     one, none = np.array([0]), np.zeros(0, np.int64)
     C = Columns(np.array([0, 1]), one, N, T, np.zeros(1, np.int64), np.zeros(1))
-    weigh(Groups(np.array([0, -1]), np.array([0, 1]), one, one, none, np.array([STRUT_BETWEEN])), C, rows, 1)
+    groups = Groups(np.array([0, -1]), np.array([0, 1]), one, one, none, np.array([STRUT_BETWEEN]))
+    set_effective_masses(groups, C, rows, 1)
     assert C.OUT[0] == 0
     assert row.a_nn == pytest.approx(d[0] ** 2 / mass, rel=1e-12)
     assert math.isnan(row.w_nn) == (abs(error) < STRUT_BETWEEN)

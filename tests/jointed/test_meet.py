@@ -14,10 +14,10 @@ from eeca_pymunk.geometry.flight import pose
 from eeca_pymunk.jointed import meet as meetings
 from eeca_pymunk.jointed import paths
 from eeca_pymunk.jointed.ends import shorten
-from eeca_pymunk.jointed.meet import end_before, meet
+from eeca_pymunk.jointed.meet import end_before, locate_impact
 from eeca_pymunk.jointed.partners import carry
-from eeca_pymunk.jointed.paths import passes
-from eeca_pymunk.jointed.solve import try_interval
+from eeca_pymunk.jointed.paths import passes_through
+from eeca_pymunk.jointed.solve import try_jointed
 from eeca_pymunk.model.joint_steps import LINEAR
 from eeca_pymunk.model.joints import Joints
 from eeca_pymunk.model.scene import Scene
@@ -41,7 +41,7 @@ def falling(h: float, high: float) -> tuple[Scene, Joints]:
     A, J = stepper.event_loop.scene, stepper.event_loop.joints
     A.PAR.dt = A.PAR.planned = h
     A.BODY[0].since, A.BODY[0].y, A.BODY[0].vy = 0.0, high, -SPEED
-    assert try_interval(A, J, 0, 0.0, h, True)[0] == 0
+    assert try_jointed(A, J, 0, 0.0, h, True)[0] == 0
     return A, J
 
 
@@ -49,7 +49,7 @@ def falling(h: float, high: float) -> tuple[Scene, Joints]:
 def test_a_path_through_a_wall_is_seen_wherever_it_ends(h: float) -> None:
     """In the wall, just behind it, where its other side is near, or far away."""
     A, _ = falling(h, 1.0)
-    assert (passes(A, 0, h) <= h) == (SPEED * h + 0.5 * G * h * h > 1.0 - RADIUS)
+    assert (passes_through(A, 0, h) <= h) == (SPEED * h + 0.5 * G * h * h > 1.0 - RADIUS)
 
 
 @pytest.mark.parametrize("h", [0.01, 0.1, 0.5, 1.0])
@@ -125,15 +125,15 @@ def test_the_path_is_looked_at_once_however_many_instants_are_tried(monkeypatch:
 
     def looked(A: Scene, root: int, t: float) -> float:
         seen.append(root)
-        return passes(A, root, t)
+        return passes_through(A, root, t)
 
     def shortened(A: Scene, J: Joints, root: int, t: float) -> int:
         tried.append(root)
         return shorten(A, J, root, t)
 
-    monkeypatch.setattr(meetings, "passes", looked)
+    monkeypatch.setattr(meetings, "passes_through", looked)
     monkeypatch.setattr(meetings, "shorten", shortened)
-    t, _ = meet(A, J, 0, 1, 0.03)
+    t, _ = locate_impact(A, J, 0, 1, 0.03)
     assert SPEED * t + 0.5 * G * t * t == pytest.approx(1.0 - RADIUS, rel=1e-6)
     assert tried.count(0) > 2
     assert seen.count(0) == 1
@@ -151,15 +151,15 @@ def test_pairs_of_an_island_are_looked_at_once_each(monkeypatch: pytest.MonkeyPa
     stepper.step(1e-9)
     assert stepper.event_loop is not None
     A, J = stepper.event_loop.scene, stepper.event_loop.joints
-    assert try_interval(A, J, A.STATE[0].island, 0.0, 1e-9, True)[0] == 0
+    assert try_jointed(A, J, A.STATE[0].island, 0.0, 1e-9, True)[0] == 0
     pairs: list[tuple[int, int]] = []
 
     def met(A: Scene, a: int, b: int, t: float) -> tuple[float, bool]:
         pairs.append((min(a, b), max(a, b)))
         return math.inf, False
 
-    monkeypatch.setattr(paths, "first_meeting", met)
+    monkeypatch.setattr(paths, "crossing_of_paths", met)
     A.COUNT.work = 0
-    assert passes(A, A.STATE[0].island, 1e-9) == math.inf
+    assert passes_through(A, A.STATE[0].island, 1e-9) == math.inf
     assert len(pairs) == len(set(pairs)) == n * (n - 1) // 2
     assert A.COUNT.work > 0

@@ -15,7 +15,7 @@ from eeca_pymunk.impacts.scene import EventLoop
 from eeca_pymunk.jointed.component import answer, ready
 from eeca_pymunk.jointed.fitting import bring_arms
 from eeca_pymunk.jointed.motors import let_slip
-from eeca_pymunk.joints.taut import taut
+from eeca_pymunk.joints.taut import is_taut
 from eeca_pymunk.joints.workspace import JointMemory
 from eeca_pymunk.model.bodies import Body
 from eeca_pymunk.model.contacts import Row
@@ -255,7 +255,7 @@ def test_taut_is_what_pulls_hard(kind: int, turned: float) -> None:
         # On b, towards a: it pulls.
         f = -pull * least
         J.HINGE[0].lam[:] = (f * x, f * y) if kind == PIVOT else (f, 0.0)
-        assert taut(Workspace(J, 0, link, 1, 2), 0.1) == expected
+        assert is_taut(Workspace(J, 0, link, 1, 2), 0.1) == expected
 
 
 def test_arms_are_brought_to_one_point() -> None:

@@ -68,7 +68,7 @@ def with_weight(space: pymunk.Space, body: pymunk.Body) -> None:
 
 def interval(A: Any, J: Any) -> None:
     """An interval."""
-    assert solve.try_interval(A, J, A.STATE[0].island, 0.0, STEP, True)[0] == 0
+    assert solve.try_jointed(A, J, A.STATE[0].island, 0.0, STEP, True)[0] == 0
 
 
 def impact(A: Any, J: Any) -> None:
@@ -118,7 +118,7 @@ BOX_COLUMNS: list[Part] = [(boxes, "measure_boxes", lambda W, w, u, n, *_: n * s
 SWEEPS: list[Part] = [(columns, "sweep_bounded", lambda B, L, m, V: m + B.USED[0])]
 SLIPS: list[Part] = [(columns, "coulomb", lambda *_: 1)]
 DISCS: list[Part] = [(columns, "sweep_bounded", lambda *_: 1)]
-HOMOTOPIES: list[Part] = [(homotopy, "begin", lambda *_: 1)]
+HOMOTOPIES: list[Part] = [(homotopy, "start_homotopy", lambda *_: 1)]
 MATRICES: list[Part] = [
     (module, "matrix_jointed", lambda problem, slip, at, kind, N, W: N * N) for module in (homotopy, dense)
 ]

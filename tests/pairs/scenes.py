@@ -18,7 +18,7 @@ WORD = (1 << 64) - 1  # pymunk's "all categories"
 
 @dataclass
 class Crowd:
-    """A world with its near lists, which follow the bodies by `renew`."""
+    """A world with its near lists, which follow the bodies by `renew_circle`."""
 
     world: World
     near: Scene
@@ -35,7 +35,7 @@ class Crowd:
 
     def renew(self, s: int, t: float = 0.0) -> None:
         """Draw the margin circle of s anew, with more room if that takes it."""
-        if grid.renew(self.near, s, t, 0.0) < 0:
+        if grid.renew_circle(self.near, s, t, 0.0) < 0:
             self.near = setup.with_more_room(self.near, t)
 
     def listed(self) -> list[list[int]]:

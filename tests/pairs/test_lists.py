@@ -229,7 +229,7 @@ def test_a_list_drawn_ahead_is_complete_and_its_old_part_comes_first(ahead: floa
         world.body[s].x += world.body[s].vx * 0.1
         world.body[s].y += world.body[s].vy * 0.1
         before = near.listed()[s]
-        kept = grid.renew(n, s, 0.0, ahead)
+        kept = grid.renew_circle(n, s, 0.0, ahead)
         assert kept >= 0
         after = near.listed()[s]
         assert set(after[:kept]) <= set(before)

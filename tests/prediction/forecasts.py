@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from eeca_pymunk.geometry.gap import gap, gap_round_off
-from eeca_pymunk.prediction.impact_times import meet
+from eeca_pymunk.prediction.impact_times import time_of_impact
 from tests.packed import Thing, World
 
 UNITS = [1e-3, 1.0, 1e3]
@@ -15,9 +15,9 @@ FLOOR = [([(-50.0, 0.0), (50.0, 0.0)], 0.0)]
 
 
 def next_impact(world: World, a: int, b: int, horizon: float = 10.0) -> tuple[float, bool]:
-    """`meet`, the same from b to a."""
-    found = meet(world.scene, a, b, horizon)
-    assert meet(world.scene, b, a, horizon) == found
+    """`time_of_impact`, the same from b to a."""
+    found = time_of_impact(world.scene, a, b, horizon)
+    assert time_of_impact(world.scene, b, a, horizon) == found
     return float(found[0]), bool(found[1])
 
 

@@ -12,7 +12,7 @@ from eeca_pymunk.compiled.records import columns, rows
 from eeca_pymunk.model.bodies import ACCELERATION, POSE, VELOCITY, Body
 from eeca_pymunk.model.scene import Scene
 from eeca_pymunk.model.shapes import Mark
-from eeca_pymunk.prediction.heap import pop, push, sweep_out
+from eeca_pymunk.prediction.heap import pop, push_event, sweep_out
 from eeca_pymunk.prediction.next_event import has_left, leaves
 from tests.packed import Thing, World, box, disk
 
@@ -25,7 +25,7 @@ def test_events_come_out_by_time_and_then_by_body(ties: bool) -> None:
     for _ in range(3000):
         if n < 500 and (n == 0 or rng.uniform() < 0.55):
             event = (float(rng.integers(0, 8)) if ties else float(rng.uniform()), int(rng.integers(0, 50)))
-            n = push(time, of, n, *event)
+            n = push_event(time, of, n, *event)
             heapq.heappush(reference, event)
         else:
             assert (time[0], of[0]) == heapq.heappop(reference)
@@ -42,9 +42,9 @@ def test_sweeping_keeps_what_is_due_in_order() -> None:
     body["due"] = rng.uniform(size=40)
     time, of, n = np.zeros(200), np.zeros(200, np.int64), 0
     for i in rng.permutation(40).tolist():
-        n = push(time, of, n, float(body["due"][i]), i)
+        n = push_event(time, of, n, float(body["due"][i]), i)
         for _ in range(int(rng.integers(0, 4))):  # forecasts of before
-            n = push(time, of, n, float(rng.uniform()), i)
+            n = push_event(time, of, n, float(rng.uniform()), i)
     assert n > 60
     n = sweep_out(time, of, n, body)
     assert n == 40
@@ -132,7 +132,7 @@ def test_entries_that_are_alike_are_swept_out() -> None:
     time, of, n = np.zeros(400), np.zeros(400, np.int64), 0
     for _ in range(400):
         i = int(rng.integers(20))
-        n = push(time, of, n, float(body["due"][i] if rng.random() < 0.7 else rng.random()), i)
+        n = push_event(time, of, n, float(body["due"][i] if rng.random() < 0.7 else rng.random()), i)
     valid = {(float(time[k]), int(of[k])) for k in range(n) if time[k] == body["due"][of[k]]}
     n = sweep_out(time, of, n, body)
     out = []

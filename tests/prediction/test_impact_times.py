@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from eeca_pymunk.geometry.gap import gap
-from eeca_pymunk.prediction.impact_times import meet
+from eeca_pymunk.prediction.impact_times import time_of_impact
 from eeca_pymunk.prediction.roots import ball_point, flat
 from tests.packed import Thing, World, disk, hull
 from tests.prediction.forecasts import UNITS, check_by_sampling, first_falling_root, gap_now, next_impact, static
@@ -69,13 +69,13 @@ def test_disks_are_bitwise_symmetric() -> None:
             Thing(disk(0.3), (*p[i], 0.0), (*v[i], 0.0), (*pulls[i], 0.0), float(since[i])) for i in range(2)
         ]  # fmt: skip
         one, other = World(things), World(things[::-1])
-        found = meet(one.scene, 0, 1, 5.0)
-        assert found == meet(other.scene, 0, 1, 5.0)
+        found = time_of_impact(one.scene, 0, 1, 5.0)
+        assert found == time_of_impact(other.scene, 0, 1, 5.0)
         # Mirrored in both axes.
         turned = World(
             [Thing(disk(0.3), (*-p[i], 0.0), (*-v[i], 0.0), (*-pulls[i], 0.0), float(since[i])) for i in (0, 1)]
         )
-        assert found == meet(turned.scene, 0, 1, 5.0)
+        assert found == time_of_impact(turned.scene, 0, 1, 5.0)
 
 
 @pytest.mark.parametrize("unit", UNITS)

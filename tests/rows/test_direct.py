@@ -7,10 +7,10 @@ import pytest
 
 from eeca_pymunk.model.contacts import Problem
 from eeca_pymunk.rows.build import normal_rate, rates, tangent_rate
-from eeca_pymunk.rows.cholesky import assemble, factorise, make_factor, substitute
+from eeca_pymunk.rows.cholesky import assemble_blocks, factor_blocks, make_factor, solve_blocks
 from eeca_pymunk.rows.coulomb import coulomb
 from eeca_pymunk.rows.dense import newton
-from eeca_pymunk.rows.polish import polish_free, share
+from eeca_pymunk.rows.polish import divide_friction, polish_free
 from eeca_pymunk.rows.sweeps import sweep, velocities
 
 from .block import Block
@@ -70,7 +70,7 @@ def test_sparse_factor_is_that_of_the_dense_matrix(count: int) -> None:
     factor, R = make_factor(block.rows, m, n, held, block.pose), 100.0
     place = factor.place
     assert sorted(place) == list(range(n))
-    assemble(block.rows, m, n, held, stuck, scale, R, factor)
+    assemble_blocks(block.rows, m, n, held, stuck, scale, R, factor)
     dense = np.eye(3 * n)
     for i in range(m):
         for rate, column in ((normal_rate, "k_n"), (tangent_rate, "k_t")):
@@ -86,8 +86,8 @@ def test_sparse_factor_is_that_of_the_dense_matrix(count: int) -> None:
     right = np.random.default_rng(0).normal(size=(n, 3))
     f = np.empty((n, 3))
     f[place] = right
-    factorise(n, factor)
-    substitute(n, factor, f)
+    factor_blocks(n, factor)
+    solve_blocks(n, factor, f)
     expected = np.linalg.solve(dense, right.ravel()).reshape(n, 3)
     assert np.abs(f[place] - expected).max() <= 1e-11 * np.abs(expected).max()
 
@@ -138,7 +138,7 @@ def test_points_of_a_face_share_their_friction_as_their_loads() -> None:
     problem = Problem(block.rows, block.im, block.ii, block.pose, 1, 2)
     velocities(problem, L, free, V)
     before, total = V.copy(), L[:, 1].sum()
-    share(block.rows, L, 2)
+    divide_friction(block.rows, L, 2)
     assert L[:, 1].sum() == pytest.approx(total, rel=1e-15)
     assert L[0, 1] / L[0, 0] == pytest.approx(L[1, 1] / L[1, 0], rel=1e-14)
     velocities(problem, L, free, V)

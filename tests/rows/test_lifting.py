@@ -55,7 +55,7 @@ def test_disks_without_room_go_no_deeper_into_walls(sweeps: int, unit: float) ->
     problem, gaps = row_of_disks(5, 6.0, unit)
     D, mu = np.zeros((6, 3)), np.zeros(problem.m)
     assert lift(problem, gaps, mu, D, 1e-13 * unit, sweeps) > 1e-13 * unit
-    keep_walls(problem, problem.n, gaps, mu, D)
+    keep_walls(problem, problem.n, gaps, np.minimum(gaps, 0.0), mu, D)
     left, walls = after(problem, gaps, D), problem.ROWS["b"] == 5
     assert (left[walls] >= np.minimum(gaps[walls], 0.0) - 1e-12 * unit).all()
 
@@ -73,5 +73,5 @@ def test_no_end_of_a_face_goes_deeper_into_a_wall(turn: float, unit: float) -> N
         place_row(ROWS[i], x, 0.0, block.pose, block.im, block.ii)
     problem, gaps = Problem(ROWS, block.im, block.ii, block.pose, 1, 2), np.array([-0.1 * unit, -0.2 * unit])
     D = np.array([[0.0, -0.1 * unit, turn], [0.0, 0.0, 0.0]])  # what other bodies have displaced it by
-    keep_walls(problem, problem.n, gaps, np.zeros(2), D)
+    keep_walls(problem, problem.n, gaps, gaps, np.zeros(2), D)
     assert (after(problem, gaps, D) >= gaps - 1e-5 * unit).all()

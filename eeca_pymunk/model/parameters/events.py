@@ -27,7 +27,7 @@ FARTHEST_MARGIN = work(0.7, "of the margin",
     "Distance of the centre of a single disk's new margin circle ahead of it, at most.")
 SAME_INSTANT = round_off(1e-09, "of the step", "Two computations of an instant that differ by less agree.")
 AHEAD = work(0.4, "of the margin", "Distance of the centre of a new margin circle ahead of its shape.")
-INSIDE = work(0.1, "of the margin", "Part of the margin that must be left for a shape to count as inside its circle.")
+MARGIN_LEFT = work(0.1, "of the margin", "Part of the margin that is left of a shape that counts as inside its circle.")
 STEP_LOOKS = work(48000, "looks",
     "Work of the events of a step after which it ends early: about .25 us each. Larger: longer steps.")
 STEP_LOOKS_BODY = work(100, "looks", "What each body adds to it.")

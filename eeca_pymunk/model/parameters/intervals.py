@@ -19,7 +19,7 @@ SAGITTA = accuracy(0.01, "of the smaller body",
 NORMAL_TURN = accuracy(0.1, "rad", "Rotation of a normal in one interval. Larger: longer intervals, coarser rolling.")
 EXACT_CONTACTS = heuristic(12, "contacts",
     "Number up to which an interval ends where a slipping contact begins to stick or a normal has rotated.")
-STICK = accuracy(1e-06, "of the friction limit",
+STICK_TOLERANCE = accuracy(1e-06, "of the friction limit",
     "Friction and slip, relative to their bounds, below which a contact sticks.")
 LARGE_SWEEPS = work(24, "sweeps", "Sweeps of a large island at the start of a step.")
 LARGE_SWEEPS_HIT = work(12, "sweeps", "Sweeps of a large island that was hit within the step.")

@@ -16,10 +16,11 @@ OF_LIBRARY = (
     "cpConstraintGetMaxForce", "cpConstraintSetMaxForce", "cpConstraintGetPreSolveFunc", "cpConstraintSetPreSolveFunc",
     "cpConstraintGetPostSolveFunc", "cpConstraintSetPostSolveFunc",
 )  # fmt: skip
-BEFORE, AFTER, FORCE, TORQUE = "_pre_solve_func", "_post_solve_func", "_force_func", "_torque_func"
-OF_CONSTRAINT = ("_constraint", BEFORE, AFTER)
+PRE_SOLVE, POST_SOLVE = "_pre_solve_func", "_post_solve_func"
+FORCE_FUNCTION, TORQUE_FUNCTION = "_force_func", "_torque_func"
+OF_CONSTRAINT = ("_constraint", PRE_SOLVE, POST_SOLVE)
 # pymunk 7.0.0 has `_force_func` only if it was set: the setter is looked up.
-OF_SPRINGS = ((pymunk.DampedSpring, FORCE[1:]), (pymunk.DampedRotarySpring, TORQUE[1:]))
+OF_SPRINGS = ((pymunk.DampedSpring, FORCE_FUNCTION[1:]), (pymunk.DampedRotarySpring, TORQUE_FUNCTION[1:]))
 
 
 class TimeStep:
@@ -47,13 +48,13 @@ def replace_functions(
 
     The public setters would also change Chipmunk's constraint, and would be recorded as edits.
     """
-    constraint.__dict__[BEFORE], constraint.__dict__[AFTER] = before, after
+    constraint.__dict__[PRE_SOLVE], constraint.__dict__[POST_SOLVE] = before, after
 
 
 def law_of(spring: Any) -> Callable[[Any, float], float] | None:
     """The force or torque function of a spring, None if none was ever set."""
     law: Callable[[Any, float], float] | None = getattr(
-        spring, FORCE if isinstance(spring, pymunk.DampedSpring) else TORQUE, None
+        spring, FORCE_FUNCTION if isinstance(spring, pymunk.DampedSpring) else TORQUE_FUNCTION, None
     )
     return law
 
@@ -128,7 +129,7 @@ def silent(constraints: Iterable[Any]) -> Iterator[None]:
 @contextmanager
 def with_laws(springs: Sequence[Any], laws: Sequence[Callable[[Any, float], float]]) -> Iterator[None]:
     """Within this block these springs use the given laws instead of their force or torque functions."""
-    names = [FORCE if isinstance(one, pymunk.DampedSpring) else TORQUE for one in springs]
+    names = [FORCE_FUNCTION if isinstance(one, pymunk.DampedSpring) else TORQUE_FUNCTION for one in springs]
     functions = [one.__dict__[name] for one, name in zip(springs, names, strict=True)]
     try:
         for one, name, law in zip(springs, names, laws, strict=True):

@@ -3,7 +3,7 @@ long."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import pymunk
@@ -55,12 +55,10 @@ def reindex(space: pymunk.Space, bodies: Iterable[Any]) -> None:
         move(c, body)
 
 
-def reindex_uncorrected(space: pymunk.Space, bodies: Iterable[Any]) -> None:
+def reindex_uncorrected(space: pymunk.Space, bodies: Sequence[Any]) -> None:
     """`forget_corrections`, then `reindex`."""
-    c, move, forget = space._space, lib.cpSpaceReindexShapesForBody, lib.cpBodyUpdatePosition
-    for body in bodies:
-        forget(body, 0.0)
-        move(c, body)
+    forget_corrections(bodies)
+    reindex(space, bodies)
 
 
 def forget_corrections(bodies: Iterable[Any]) -> None:

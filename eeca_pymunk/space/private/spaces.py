@@ -161,7 +161,7 @@ def step_without_end(space: pymunk.Space, dt: float) -> None:
 
 def finish_step(space: pymunk.Space) -> None:
     """Do the additions and removals by callbacks of the last step, and call its post-step callbacks, if any wait."""
-    if not (space._post_step_callbacks or space._add_later or space._remove_later):
+    if not waits(space):
         return
     added = list(space._add_later)
     space._add_later.clear()
