@@ -134,7 +134,7 @@ MUTATIONS = (
     Mutation("persistent: geometry of the start", "contacts/interval.py", "isle.POSE + 0.5 * h * V, REACH",
              "isle.POSE + 0.0 * V, REACH", "contacts/test_one_body.py", "second_order"),
     Mutation("correction: it costs nothing", "contacts/correction.py",
-             "if work + square > budget + ", "if False and budget > ", "contacts/test_piles.py", "push_out"),
+             "if not work + square > budget + ", "if True or budget > ", "contacts/test_piles.py", "push_out"),
     Mutation("correction: it turns a free island", "contacts/correction.py", "V[i, at + 2] += turn",
              "V[i, at + 2] -= turn", "contacts/test_piles.py", "free_island"),
     # Joints.
@@ -267,7 +267,7 @@ MUTATIONS = (
     Mutation("correction: walls have no last word", "rows/lifting.py",
              "met = meet_gap(problem, GAPS[i] - LEAST[i], MU, D, i) == 0.0 and met", "pass",
              "rows/test_lifting.py", "without_room"),
-    Mutation("correction: sign of its work", "contacts/correction.py", "work = -against(", "work = against(",
+    Mutation("correction: sign of its work", "contacts/correction.py", "square = -against(", "square = against(",
              "contacts/test_piles.py", "push_out"),
     Mutation("rest: forces keep half of the length of the step", "islands/at_rest.py", "longer = dt / R.length",
              "longer = 0.5", "islands/test_at_rest.py", "bear_its_weight"),
