@@ -149,7 +149,8 @@ def balance(W: Workspace, h: float, length: float) -> float:
             mobility = local[i].mobility[c]
             off = local[i].v1[c] - local[i].v0[c] - h * local[i].acceleration[c] - mobility * local[i].impulse[c]
             W.J.RIGHT[local[i].column + c] = -off * local[i].unroot[c]
-            worst = max(worst, abs(off * h) * (over if c < 2 else 1.0))
+            error = abs(off * h) * (over if c < 2 else 1.0)
+            worst = worst if error <= worst else error  # also if it is no number
     return worst
 
 
@@ -162,7 +163,10 @@ def linearise(
     for i in range(W.J.COMPONENT[W.s].unknowns + W.J.COMPONENT[W.s].impulses):
         W.J.RIGHT[i] = 0.0
     worst = assemble(W, what, h, give, first, system, build)
-    return worst if what in (POSES, SPEEDS) else max(worst, balance(W, h, length))
+    if what in (POSES, SPEEDS):
+        return worst
+    error = balance(W, h, length)
+    return worst if error <= worst else error
 
 
 @inlined

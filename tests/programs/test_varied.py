@@ -369,3 +369,8 @@ def test_elastic_bodies_that_rock_do_not_sink_where_their_intervals_are_cut() ->
         scene.drive(k)
         deepest = min(deepest, *scene.stepper.step(scene.dt).contacts.gap)
     assert deepest >= -0.05 * scene.length
+
+
+def test_a_solution_that_is_no_number_is_none() -> None:
+    """Newton's method with bounded impulses grows to 1e127 and beyond what numbers hold: the step is taken otherwise."""
+    Varied(22002728, True).play(40)
