@@ -189,6 +189,8 @@ def prices() -> list[Price]:
         Price("double pendulum", linkages.bars, 1 / 240, 50, 15.0),
         Price("chain of 20", lambda: linkages.chain(20, lean=0.5), 1 / 240, 20, 12.0),
         Price("chain of 100", lambda: linkages.chain(100, lean=0.5), 1 / 240, 20, 15.0),
+        Price("20 planks on pivots, on the floor", lambda: linkages.planks(20), 1 / 120, 300, 3.0),
+        Price("40 planks on pivots, on the floor", lambda: linkages.planks(40), 1 / 120, 300, 3.0),
         Price("cloth of 15 x 15 pins", linkages.cloth, 1 / 240, 10, 40.0),
         Price("heap, 200 bodies, 100 joints, falls", lambda: rods.heap().space, 1 / 60, 20, 20.0),
         Price("heap, settled", lambda: rods.heap().space, 1 / 60, 300, 20.0),

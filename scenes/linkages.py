@@ -120,6 +120,24 @@ def chain(count: int, end_mass: float = 1.0, lean: float = 0.0) -> pymunk.Space:
     return space
 
 
+def planks(count: int = 5, gravity: float = 10.0) -> pymunk.Space:
+    """Planks of 1 kg, 1 m by .5 m, on pivots in a row, which fall a little onto a floor that rubs."""
+    space = empty(gravity)
+    floor = pymunk.Segment(space.static_body, (-5.0, 0.0), (1.1 * count + 5.0, 0.0), 0.1)
+    floor.friction = 0.8
+    space.add(floor)
+    last = None
+    for k in range(count):
+        plank = body(space, 1.0, pymunk.moment_for_box(1.0, (1.0, 0.5)), (1.1 * k, 0.6 + 0.05 * (k % 2)))
+        shape = pymunk.Poly.create_box(plank, (1.0, 0.5))
+        shape.friction = 0.6
+        space.add(shape)
+        if last is not None:
+            space.add(pymunk.PivotJoint(last, plank, (last.position + plank.position) / 2))
+        last = plank
+    return space
+
+
 def cloth(side: int = 15, mesh: float = 0.1) -> pymunk.Space:
     """Point masses of .1 on a mesh of pins, its rows folded by 30 degrees, held at two corners."""
     space = empty()

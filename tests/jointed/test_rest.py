@@ -10,29 +10,15 @@ import pymunk
 import pytest
 
 import eeca_pymunk as ep
+from scenes import linkages
 
 DT, G = 1 / 120, 10.0
 Edit = Callable[[ep.EECA], object]
 
 
-def chain(links: int = 5) -> ep.EECA:
+def chain() -> ep.EECA:
     """Planks of mass 1 on pivots, which have fallen on a floor."""
-    space = pymunk.Space()
-    space.gravity = (0.0, -G)
-    floor = pymunk.Segment(space.static_body, (-50.0, 0.0), (50.0, 0.0), 0.1)
-    floor.friction = 0.8
-    space.add(floor)
-    last = None
-    for k in range(links):
-        plank = pymunk.Body(1.0, pymunk.moment_for_box(1.0, (1.0, 0.5)))
-        plank.position = (1.1 * k, 0.6 + 0.05 * (k % 2))
-        shape = pymunk.Poly.create_box(plank, (1.0, 0.5))
-        shape.friction = 0.6
-        space.add(plank, shape)
-        if last is not None:
-            space.add(pymunk.PivotJoint(last, plank, (last.position + plank.position) / 2))
-        last = plank
-    return ep.EECA(space)
+    return ep.EECA(linkages.planks(5, G))
 
 
 def rested(stepper: ep.EECA, steps: int = 200) -> ep.EECA:
