@@ -6,7 +6,8 @@ the tangent.
 
 * u_n + c_0 bounces, see `targets.py`.
 * u_t is counted from -c_0 + m and from c_1 + m. By m the mean velocity exceeds the mean of both, (w h)^2/12 of it: what
-  sticks has no slip, in its position neither, and friction does no work on it in the frame of the wall.
+  sticks has no slip, in its position neither, and friction does no work on it in the frame of the wall. How arms change
+  as a body turns by itself is no motion of the wall, and as on a wall that rests u_t has those of the middle.
 
 Between bodies that impulses move neither is done: what rocks in piles, or rides on what rocks, would bounce for ever.
 """
@@ -20,7 +21,7 @@ from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Row
 from ..model.islands import Island
-from ..rows.build import normal_rate, slip_rate
+from ..rows.build import normal_rate
 
 
 @nonallocating
@@ -47,12 +48,13 @@ def gap_rate(POSE: FloatArray, V: FloatArray, a: int, b: int, nx: float, ny: flo
 
 
 @nonallocating
-def carried_along(isle: Island, row: Row, w: float, h: float) -> tuple[float, float]:
-    """If the bodies of a row turn together with spin w for h: the change of their tangential velocity, and by how much
-    its mean is above the mean of those at the start and the end.
+def carried_along(isle: Island, row: Row, w: float, h: float) -> tuple[float, float, float]:
+    """If the bodies of a row turn together with spin w for h: the change of their tangential velocity, and what it has
+    at the end, with the geometry of the middle, for no slip in the frame that turns; and the error of that.
 
     Let x lead from a to b, r = v_b - v_a - w x x be the velocity in the rotating frame, and R the rotation by w h. Then
-    x' = R x + h R^(1/2) r, and v_b' - v_a' = w x x' + R r.
+    x' = R x + h R^(1/2) r, and v_b' - v_a' = w x x' + R r. In the frame of the middle the bodies have R^(1/2) r: the
+    rest of v_b - v_a, with both spins w, is carried along. By `mean` the mean velocity is above that of start and end.
     """
     POSE, V, a, b = isle.POSE, isle.V, row.a, row.b
     x, y = POSE[b, 0] - POSE[a, 0], POSE[b, 1] - POSE[a, 1]
@@ -60,11 +62,13 @@ def carried_along(isle: Island, row: Row, w: float, h: float) -> tuple[float, fl
     rx, ry = ux + w * y, uy - w * x
     half_c, half_s = math.cos(0.5 * w * h), math.sin(0.5 * w * h)
     s, less = 2.0 * half_s * half_c, -2.0 * half_s * half_s  # sine, and cosine less 1
-    dx = less * x - s * y + h * (half_c * rx - half_s * ry)
-    dy = s * x + less * y + h * (half_s * rx + half_c * ry)
+    sx, sy = half_c * rx - half_s * ry, half_s * rx + half_c * ry
+    dx, dy = less * x - s * y + h * sx, s * x + less * y + h * sy
     vx, vy = less * rx - s * ry - w * dy, s * rx + less * ry + w * dx
     mx, my = dx / h - ux - 0.5 * vx, dy / h - uy - 0.5 * vy
-    return row.nx * vy - row.ny * vx, row.nx * my - row.ny * mx
+    swing, mean = row.nx * vy - row.ny * vx, row.nx * my - row.ny * mx
+    begins = row.nx * (uy - sy) - row.ny * (ux - sx) + w * (row.arm_tb - row.arm_ta)
+    return swing, begins + swing + mean, abs(0.5 * w * h * swing) + 2.0 * abs(mean)
 
 
 @nonallocating
@@ -76,10 +80,7 @@ def follow_rotation(isle: Island, ROWS: Rows[Row], m: int, count: int, NOW: Floa
     POSE, V, a, b = isle.POSE, isle.V, ROWS[m].a, ROWS[m].b
     swing, counted, unsure = 0.0, 0.0, 0.0
     if h > 0.0 and ROWS[m].friction > 0.0:
-        swing, mean = carried_along(isle, ROWS[m], w, h)
-        nx, ny, px, py = NOW[0, 0], NOW[0, 1], NOW[0, 2], NOW[0, 3]
-        counted = slip_rate(ROWS[m], V) + swing - gap_rate(POSE, V, a, b, -ny, nx, px, py) + mean
-        unsure = abs(0.5 * w * h * swing) + 2.0 * abs(mean)
+        swing, counted, unsure = carried_along(isle, ROWS[m], w, h)
     for z in range(count):
         row = ROWS[m + z]
         u = gap_rate(POSE, V, a, b, NOW[z, 0], NOW[z, 1], NOW[z, 2], NOW[z, 3])
