@@ -2,9 +2,10 @@
 
 Joints and contacts that have left an island as it was over a whole step hold it in every following step, until
 something changes: their forces are static. So an island is put to rest whose bodies have no velocity at the start of
-such an interval, nor at its end, up to REST_SPEED of what the forces that balance would give them: it keeps its poses,
-and contacts and joints their forces (`..islands.at_rest`). It is solved again when a joint is edited, when the law of a
-spring changes, when what joints hold it to moves, and in all cases in which an island without joints is.
+such an interval, nor at its end, up to REST_SPEED of what one of the forces that balance on it would give each: it
+keeps its poses, and contacts and joints their forces (`..islands.at_rest`). It is solved again when a joint is edited,
+when the law of a spring changes, when what joints hold it to moves, and in all cases in which an island without joints
+is.
 """
 
 from __future__ import annotations
@@ -34,20 +35,14 @@ def reach_of(A: Scene, i: int) -> float:
 
 @nonallocating
 def balanced(A: Scene, J: Joints, i: int) -> float:
-    """Speed that what acts on body i, on its own, gives its points in this step: accelerations, or its component's
-    joints, if it is the first body of one."""
-    found = (math.hypot(A.PULL[i, 0], A.PULL[i, 1]) + abs(A.PULL[i, 2]) * reach_of(A, i)) * A.PAR.dt
-    s = J.OF[i]
-    if A.MEMBER[i].tied != i:
-        return float(found)
-    for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
+    """Speed that the acceleration of body i, or a joint on it, would give its points in this step on its own."""
+    reach, s = reach_of(A, i), J.OF[i]
+    found = (math.hypot(A.PULL[i, 0], A.PULL[i, 1]) + abs(A.PULL[i, 2]) * reach) * A.PAR.dt
+    for k in range(J.COMPONENT[s].first_joint if s >= 0 else 0, J.COMPONENT[s].end_joint if s >= 0 else 0):
         joint = J.JOINT[J.COUPLING[k].joint]
-        push = abs(joint.impulse[0]) + abs(joint.impulse[1])
-        for end in range(2):
-            if joint.body[end] < A.BODY.shape[0]:
-                body = A.BODY[joint.body[end]]
-                per = body.inv_mass if joint.kind < GEAR else body.inv_inertia * reach_of(A, joint.body[end])
-                found = max(found, push * per)
+        if joint.body[0] == i or joint.body[1] == i:
+            per = A.BODY[i].inv_mass if joint.kind < GEAR else A.BODY[i].inv_inertia * reach
+            found = max(found, (abs(joint.impulse[0]) + abs(joint.impulse[1])) * per)
     return float(found)
 
 
@@ -55,16 +50,10 @@ def balanced(A: Scene, J: Joints, i: int) -> float:
 def is_still(A: Scene, J: Joints, root: int) -> bool:
     """Whether the bodies of an island, whose interval is the whole step, are without velocity at its start and at its
     end, and nothing in it has been hit."""
-    most, i = 0.0, root
-    while i >= 0:
-        if A.MEMBER[i].busy > 0:
-            return False
-        most = max(most, REST_SPEED * balanced(A, J, i))
-        i = A.MEMBER[i].following
     i = root
     while i >= 0:
-        body, rest, reach = A.BODY[i], A.RESTING[i], reach_of(A, i)
-        if point_speed(body.vx, body.vy, body.spin, reach) > most:
+        body, rest, reach, most = A.BODY[i], A.RESTING[i], reach_of(A, i), REST_SPEED * balanced(A, J, i)
+        if A.MEMBER[i].busy > 0 or point_speed(body.vx, body.vy, body.spin, reach) > most:
             return False
         if point_speed(rest.lift_vx, rest.lift_vy, rest.lift_spin, reach) > most:
             return False

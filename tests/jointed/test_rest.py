@@ -244,3 +244,22 @@ def test_slow_oscillations_go_on() -> None:
         most = max(most, abs(ball.position.x))
     speed = abs(ball.velocity.x) / np.sqrt(40.0)
     assert np.hypot(ball.position.x, speed) == pytest.approx(1e-6, rel=1e-2)
+
+
+def test_what_heavy_bodies_bear_stops_no_small_swing_beside_them() -> None:
+    """A weight of 1e6 that hangs from a light ring, and a light ball on the weight, which swings by 1e-5: each body is
+    measured by the forces on itself."""
+    space = pymunk.Space()
+    space.gravity = (0.0, -G)
+    ring, weight, ball = pymunk.Body(0.01, 1.0), pymunk.Body(1e6, 1e6), pymunk.Body(0.01, 1.0)
+    ring.position, weight.position, ball.position = (0.0, -1.0), (0.0, -2.0), (1e-5, -3.0)
+    space.add(ring, weight, ball)
+    for a, b in ((space.static_body, ring), (ring, weight), (weight, ball)):
+        space.add(pymunk.PinJoint(a, b, (0.0, 0.0), (0.0, 0.0)))
+    stepper = ep.EECA(space)
+    places = []
+    for _ in range(1000):
+        stepper.step(DT)
+        places.append(ball.position.x)
+    period = 2.0 * np.pi / np.sqrt(G)
+    assert max(places[-round(period / DT) :]) == pytest.approx(1e-5, rel=1e-2)
