@@ -6,9 +6,11 @@ shapes, which are kept when the space is read again.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
-from .arrays import FloatArray
+from .arrays import AnyArray, BoolArray, FloatArray
 from .compiled.records import Rows, columns, rows
 from .compiled.sources import sources_hash
 from .geometry.sides import keep_sides
@@ -24,6 +26,13 @@ from .space.world import World
 _FIXED = ["extent", "elasticity", "friction"]  # fields of BODY that no step changes
 _NO_SIDES = rows(Side, 0)
 _TIE = "kind", "body", "bounded"  # fields of JOINT that decide the plan of the components
+
+
+def differences(now: AnyArray, then: AnyArray) -> Iterator[tuple[str, BoolArray]]:
+    """The fields of joints that no step changes, each with (j,) whether its values differ in two arrays of JOINT."""
+    for name in Joint.TYPE.names or ():
+        if name not in ("touched", *OF_STEPS):
+            yield name, (now[name] != then[name]).reshape(len(now), -1).any(axis=1)
 
 
 class Saved:
@@ -91,10 +100,7 @@ class Saved:
         if joints.items != self._joints or not np.array_equal(method.partner, joints.partners.PARTNER):
             return False
         differs = np.zeros(len(joints.joint), bool)
-        for name in Joint.TYPE.names or ():
-            if name in ("touched", *OF_STEPS):
-                continue
-            unequal = (method.joint[name] != joints.joint[name]).reshape(len(differs), -1).any(axis=1)
+        for name, unequal in differences(method.joint, joints.joint):
             # Steps change the notch of a ratchet and the law of a spring with a function; pickles lack lengths of pins.
             if name == "notch":
                 unequal[joints.joint["kind"] == RATCHET] = False

@@ -14,11 +14,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .arrays import AnyArray, BoolArray, FloatArray, IntArray
+from .arrays import AnyArray, FloatArray, IntArray
 from .compiled.records import RECORD_TYPES, numbers
 from .impacts.scene import EventLoop
 from .layout import STATE_COLUMNS, WRITTEN
-from .model.joints import EDITED, OF_STEPS, RATCHET, Joint
+from .model.joints import EDITED, OF_STEPS, RATCHET
+from .saved import differences
 from .space.bodies import moving
 from .space.decisions import DECISION_COLUMNS
 from .space.world import World
@@ -129,7 +130,9 @@ def _remember(stepper: RunningStepper, world: World, parts: _Parts, at: IntArray
         for name in ("stiffness", "rest", "push"):
             joints.joint[name][joints.functions] = joint[name][joints.functions]
         # What is at rest is solved again if the program has edited its joints since.
-        joints.joint["touched"][_edited(joints.joint, joint)] = EDITED
+        for name, unequal in differences(joints.joint, joint):
+            if name != "body":  # bodies may have other rows now
+                joints.joint["touched"][unequal] = EDITED
         loop.joints.KEPT[:] = joints.joint
         tally = numbers(loop.joints.TALLY)
         tally[:] = parts.take(np.int64, tally.shape)
@@ -142,15 +145,6 @@ def _remember(stepper: RunningStepper, world: World, parts: _Parts, at: IntArray
         # pymunk has rounded the positions of such bodies when they were written: they count as unedited.
         world.gather()
         world.accept_rounding()
-
-
-def _edited(now: AnyArray, then: AnyArray) -> BoolArray:
-    """(j,) whether the parameters of joints differ, which steps do not change."""
-    edited = np.zeros(len(now), bool)
-    for name in Joint.TYPE.names or ():
-        if name not in ("body", "touched", *OF_STEPS):
-            edited |= (now[name] != then[name]).reshape(len(now), -1).any(axis=1)
-    return edited
 
 
 class _Parts:

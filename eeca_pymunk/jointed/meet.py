@@ -8,6 +8,7 @@ from ..compiled import kernel, nonallocating
 from ..geometry.flight import pose
 from ..geometry.gap import gap
 from ..islands.membership import in_large_island, members_of
+from ..islands.rest import speed
 from ..model.joint_steps import LINEAR
 from ..model.joints import Joints
 from ..model.parameters.joints import (
@@ -22,7 +23,6 @@ from ..model.parameters.joints import (
     MEET_SECANTS_LOADED,
 )
 from ..model.scene import Scene
-from ..rows.equilibrium import point_speed
 from .ends import end_here, left_apart, shorten, under_way
 from .ledger import work_left
 from .partners import carry
@@ -118,7 +118,7 @@ def locate_impact(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float,
     # What overlaps at the start, and does not close there, meets where it is as deep again.
     start, rate = gap_and_rate(A, a, b, least)
     # What closes by round-off, as after an impact, does not: an impact would leave it so, again and again.
-    rate = 0.0 if abs(rate) <= CLOSES * max(speed_of(A, i), speed_of(A, j)) else rate
+    rate = 0.0 if abs(rate) <= CLOSES * max(speed(A, i), speed(A, j)) else rate
     level = min(start, 0.0) if rate >= 0.0 else 0.0
     before, gap_before, g, close, loaded = -1.0, 0.0, 0.0, 0.0, 0
     apart, crossed, crosses = least, False, False
@@ -188,13 +188,6 @@ def locate_impact(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float,
             g, crossed = math.inf if work_left(A, J) < 0.0 else gap(A, a, b, t)[0] - level, True
     # What closes within an instant, which is no interval, meets now.
     return t, crossed and g > max(close * small, -rate * A.PAR.instant)
-
-
-@nonallocating
-def speed_of(A: Scene, i: int) -> float:
-    """Bound of the speed of points of body i where its path begins."""
-    body = A.BODY[i]
-    return point_speed(body.vx, body.vy, body.spin, body.extent)
 
 
 @nonallocating

@@ -5,7 +5,8 @@ Kinetic energy only falls, and momentum stays, for the change is M^-1 G^T times 
 
 from __future__ import annotations
 
-from ..compiled import nonallocating
+from ..arrays import FloatArray
+from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.joint_steps import POSES, SPEEDS, BodyStep, JointLedger
 from ..model.joints import DUAL, Workspace
@@ -67,15 +68,21 @@ def project(W: Workspace, what: int) -> None:
             first_iterate(W, what, 2.0)
 
 
+@inlined
+def plus_kinetic(total: float, velocity: FloatArray, mobility: FloatArray) -> float:
+    """`total`, and the kinetic energy of a velocity (3,) of what joints can move of a body."""
+    for c in range(3):
+        if mobility[c] > 0.0:
+            total += 0.5 * velocity[c] ** 2 / mobility[c]
+    return total
+
+
 @nonallocating
 def kinetic_of_component(local: Rows[BodyStep], bodies: int, kept: bool) -> float:
     """Kinetic energy of what joints can move, of the velocities at the start, or of those that were `kept`."""
     total = 0.0
     for i in range(bodies):
-        for c in range(3):
-            if local[i].mobility[c] > 0.0:
-                v = local[i].v_kept[c] if kept else local[i].v0[c]
-                total += 0.5 * v**2 / local[i].mobility[c]
+        total = plus_kinetic(total, local[i].v_kept if kept else local[i].v0, local[i].mobility)
     return total
 
 
@@ -84,9 +91,7 @@ def saved_energy(local: Rows[BodyStep], bodies: int) -> float:
     """Kinetic energy of what joints can move, of the velocities that were saved."""
     total = 0.0
     for i in range(bodies):
-        for c in range(3):
-            if local[i].mobility[c] > 0.0:
-                total += 0.5 * local[i].saved_velocity[c] ** 2 / local[i].mobility[c]
+        total = plus_kinetic(total, local[i].saved_velocity, local[i].mobility)
     return total
 
 
