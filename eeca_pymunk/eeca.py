@@ -65,7 +65,7 @@ class EECA(RunningStepper):
         sides = None if past is None or loop is None else sides_of(past, loop)
         if past is world:
             if loop is not None:
-                loop.release()
+                loop.release(world.BODY)
             world.load()
         else:
             self._show_contacts()

@@ -22,12 +22,9 @@ class HookedStepper(PackedSpace):
     """A stepper that moves its arrays by a method, in steps that may call functions of the program; arguments as of
     `PackedStepper`."""
 
-    def adjust(self, world: World, dt: float) -> bool:
-        """Update the method before a step: edited joints, and the laws of pairs by joints and collision handlers.
-
-        Returns:
-            False if the space must be read again, because joints hold other bodies immobile.
-        """
+    def adjust(self, world: World, dt: float) -> None:
+        """Update the method before a step of a world that is not plain: added, removed and edited joints, and the laws
+        of pairs by joints and collision handlers."""
         parted = False
         joints = world.joints
         if joints is not None:
@@ -36,16 +33,13 @@ class HookedStepper(PackedSpace):
             if joints.replan or joints.ends_moved:
                 loop = self.event_loop
                 assert loop is not None  # other methods refuse joints
-                if loop.holds_others():
-                    return False
-                if joints.replan:
-                    loop.plan()
+                world.read_states(*world.gravity, world.half_damping(dt))
+                loop.rejoin(world.BODY, world.SHAPE, world.LINK, joints.linkage, joints.replan)
                 joints.planned()
             parted = world.find_parted()
         if parted or (world.collisions and world.rules is not self._ruled):
             self._ruled = world.rules
             self._method.rule(world.laws())
-        return True
 
     def advance(self, world: World, dt: float, half_damping: float) -> int:
         """Move the bodies from `world.STATES` to `world.ENDS`; the space is not touched.
@@ -57,8 +51,8 @@ class HookedStepper(PackedSpace):
             status bits or a negative code of `transfer.py`.
         """
         gx, gy = world.gravity
-        if not world.plain and not self.adjust(world, dt):
-            return OTHER_BODIES
+        if not world.plain:
+            self.adjust(world, dt)
         return self._method.step(world.reading, dt, gx, gy, half_damping)
 
     def details(self, world: World, dt: float) -> Details | Callable[[], Details]:

@@ -182,8 +182,13 @@ class PackedSpace(Stepper):
             self._sleep = Sleep(world, None)
             self._sync.renews = False  # see `EECA._show_contacts`
         if world.joints is not joints:
-            self.choose_method(world, world)
             self.patches += 1
+            if (loop := self.event_loop) is None:
+                self.choose_method(world, world)
+            elif world.joints is None:
+                loop.rejoin(world.BODY, world.SHAPE, world.LINK)
+                world.find_parted()
+                loop.rule(world.laws())
         return self._adopt(world)
 
     def _adopt(self, world: World) -> World:

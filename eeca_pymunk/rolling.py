@@ -122,7 +122,7 @@ class Rolling:
         loop = self.twin.event_loop
         assert loop is not None
         rules = loop.scene.RULE.tobytes()
-        joints = (loop.joint.tobytes(),) if loop.jointed else ()
+        joints = (loop.joint.tobytes(), loop.pinned.tobytes()) if loop.jointed else ()
         version = id(world), world.patches, id(loop), rules, *joints
         if version != self._version:
             self._made, self._version = [], version

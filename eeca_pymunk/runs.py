@@ -50,9 +50,7 @@ class RunningStepper(PackedStepper):
     def adjusted(self, dt: float) -> World:
         """The result of `current`, with joints and rules of the method updated for a step of length dt."""
         world = self.current()
-        if not world.plain and not self.adjust(world, dt):
-            self.refresh()
-            world = self.current()
+        if not world.plain:
             self.adjust(world, dt)
         return world
 

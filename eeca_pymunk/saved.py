@@ -6,7 +6,7 @@ shapes, which are kept when the space is read again.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -124,13 +124,9 @@ class Sides:
         """`known`: the sides; None if only kinematic bodies matter."""
         sided = known is not None
         self._sided, self._known = sided, _NO_SIDES if known is None else known.copy()
-        row, records = world.IDS[BODY_ROW].tolist(), world.records
-        shapes = enumerate(zip(world.shapes, world.owner.tolist(), strict=True))
-        # Row, shape, row of the body and record of each shape that matters. Kinematic bodies have the rows of BODY
-        # after those of dynamic ones.
-        self._shapes = [
-            (k, shape, i, records[shape]) for k, (shape, i) in shapes if sided or row[i] >= world.dynamic
-        ]  # fmt: skip
+        shapes, owner = world.shapes, world.owner
+        # Row, shape, place of the body and record of each shape that matters.
+        self._shapes = [(k, shapes[k], int(owner[k]), world.records[shapes[k]]) for k in _that_matter(world, sided)]
         self._count, self._bodies = len(world.shapes), world.bodies.items
         self._left: list[list[float]] = world.STATES[WRITTEN, :, :3].tolist()
 
@@ -151,7 +147,9 @@ class Sides:
 
     def recall(self, world: World, loop: EventLoop) -> None:
         """Write the sides into the loop of the present world, which has taken no step."""
-        places, records, owner, moves = world.places, world.records, world.owner.tolist(), self._moves(world)
+        records, moves, matter = world.records, self._moves(world), _that_matter(world, self._sided)
+        places = {world.shapes[k]: k for k in matter}
+        owner = {k: int(world.owner[k]) for k in matter}
         new_rows = [-1] * self._count  # of each old row of SHAPE; -1 if its sides are not kept
         for k, shape, i, before in self._shapes:
             place = places.get(shape, -1)
@@ -162,7 +160,7 @@ class Sides:
                 new_rows[k] = place
         same, rows = set(new_rows), world.IDS[BODY_ROW].tolist()
         kept = {owner[place] for place in same if place >= 0}
-        changed = {i for place, i in enumerate(owner) if place not in same} if kept else kept
+        changed = {i for place, i in owner.items() if place not in same} if kept else kept
         at = [i for i in kept if rows[i] >= 0 and (i not in changed if rows[i] >= world.dynamic else self._sided)]
         if at:
             nudged = {i for i, move in moves.values() if move > 0.0}
@@ -174,12 +172,21 @@ class Sides:
             keep_sides(loop.table, self._known, np.array(new_rows, np.int64))
 
 
+def _that_matter(world: World, sided: bool) -> Sequence[int]:
+    """The rows of the shapes whose sides are kept: of kinematic bodies only, unless `sided`."""
+    if sided:
+        return range(len(world.shapes))
+    # Kinematic bodies have the rows of BODY after those of dynamic ones.
+    found: list[int] = (world.IDS[BODY_ROW][world.owner] >= world.dynamic).nonzero()[0].tolist()
+    return found
+
+
 def sides_of(world: World, loop: EventLoop) -> Sides | None:
-    """The remembered sides of a world; None if it has neither sides nor kinematic bodies."""
+    """The remembered sides of a world; None if it has neither sides nor shapes of kinematic bodies."""
     known = loop.sides if loop.thin else None
     if known is not None and not (known["key"] > 0).any():
         known = None
-    return None if known is None and len(world.BODY) - 1 <= world.dynamic else Sides(world, known)
+    return Sides(world, known) if known is not None or _that_matter(world, False) else None
 
 
 def _outline(record: ShapeRecord | None) -> object:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..impacts.scene import EventLoop
-from ..impacts.scene_memory import Laid
+from ..impacts.scene_memory import NO_LINKAGE, Laid
 
 if TYPE_CHECKING:
     from ..space.world import World
@@ -34,9 +34,6 @@ class TimeOfImpact:
 
 def event_loop(world: World, limit: int, together: bool = False) -> EventLoop:
     """The event loop of a world, see `EventLoop`."""
-    joints, memory = world.joints, world.memory
     laid = Laid(world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, world.packed.measured())
-    if joints is None:
-        return EventLoop(laid, limit, together=together, memory=memory)
-    partners = joints.partners
-    return EventLoop(laid, limit, joints.joint, partners.PARTNER, together, partners.still, memory)
+    linkage = NO_LINKAGE if world.joints is None else world.joints.linkage
+    return EventLoop(laid, limit, linkage, together, world.memory)

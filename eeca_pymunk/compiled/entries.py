@@ -88,7 +88,8 @@ ENTRIES = {
     "impacts.step:step": "{Scene} {Joints} {Reading} f8 f8 f8 f8 i8",
     "impacts.run:run": "{Scene} {Joints} {RunArrays} {Reading}",
     "joints.workspace:plan_components": "{Joints} Body[1] i8[1]",
-    "joints.pinned:find_pinned": "Body[1] Body[1] Joint[1] i8[1] Shape[1] Link[1] i8[1] i8[2]",
+    "joints.pinned:find_pinned": "Body[1] Body[1] Joint[1] i8[1] Shape[1] Link[1] Pinned[1]",
+    "joints.pinned:hold": "Pinned[1] Body[1] bool",
     # Only tests call this, which solves single islands: some hundred times slower as plain Python.
     "contacts.interval:step_island": "{Scene} {Island} {IslandContacts} i8 f8 i8 f8 f8 f8",
     "contacts.memory:copy_recent": "i8[1] Force[1] Count i8[1] Force[1] f8",

@@ -59,10 +59,11 @@ def begin_scene(table: Table, limit: int, disks: int, together: int, budget: int
 
 @kernel
 def tie_components(table: Table, joints: Table) -> None:
-    """Make a ring of the bodies of each component."""
-    MEMBER, OF = scene_of(table).MEMBER, joints_of(joints).OF
+    """Make a ring of the bodies of each component. Predictions by earlier components are void."""
+    MEMBER, OF, BODY = scene_of(table).MEMBER, joints_of(joints).OF, scene_of(table).BODY
     first, last = np.full(OF.shape[0], -1, np.int64), np.full(OF.shape[0], -1, np.int64)
-    for i in range(OF.shape[0]):
+    for i in range(MEMBER.shape[0]):
+        BODY[i].due = min(BODY[i].due, -1.0)
         s = OF[i]
         if MEMBER[i].rest == AT_REST:
             MEMBER[scene_of(table).STATE[i].island].rest = CHANGED  # joints may hold it otherwise now

@@ -42,11 +42,15 @@ class Remembering:
             a copy of it from before the first step, to which `reset` returns.
     """
 
-    jointed: bool
     joint: Rows[Joint]
     partner: Rows[Body]
     _memory: SceneMemory  # of the table that was made first, `_laid`
     _listed: bool | None
+
+    @property
+    def jointed(self) -> bool:
+        """Whether the scene has joints."""
+        return len(self.joint) > 0
 
     @property
     def scene(self) -> Scene:

@@ -11,10 +11,10 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import Table, replaced
 from ..compiled.library import result_of
-from ..compiled.records import R, Rows, columns, from_bytes, put, rows
+from ..compiled.records import R, Rows, columns, from_bytes, rows
 from ..contacts.memory import copy_recent
 from ..islands.accounting import flag_pairs
-from ..joints.pinned import NO_PINNED, pinned_bodies
+from ..joints.pinned import NO_PINNED, hold, pinned_bodies
 from ..layout import READ
 from ..model.bodies import CHECK, Body
 from ..model.contacts import Force, Impulse
@@ -31,15 +31,11 @@ from .new_scene import tie_components
 from .remembering import UNBOUND, Remembering
 from .run import ROOM_FOR_IMPACTS, run
 from .run_buffers import RunBuffers
-from .scene_memory import RULE_COLUMNS, Laid, SceneMemory
+from .scene_memory import NO_LINKAGE, RULE_COLUMNS, Laid, Linkage, SceneMemory
 from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, step
 
 if TYPE_CHECKING:
     import pymunk
-
-
-_NO_JOINTS = rows(Joint, 0)
-_NO_STILL: IntArray = np.zeros(0, np.int64)
 
 
 def _longer(table: Rows[R], used: int) -> Rows[R]:
@@ -60,72 +56,77 @@ class EventLoop(Remembering):
     Args:
         laid: the rows of the world.
         limit: impacts that a body may have in a step.
-        joint: (j,) the joints; kept, not copied. Bodies are rows of BODY, or len(BODY) + row of PARTNER (x,), which
-            joints cannot move. None for a scene without joints.
+        linkage: its joints; kept, not copied.
         together: whether all contacts of a step act together at its middle, instead of at their instants.
-        still: (x,) 1 for rows of PARTNER that never move.
         memory: of the scene before, which is lost; None: new.
 
     Attributes:
         thin: whether thin shapes may meet, whose sides are remembered.
+        pinned: the bodies that joints hold where they are.
     """
 
     def __init__(
-        self, laid: Laid, limit: int, joint: Rows[Joint] | None = None, PARTNER: Rows[Body] | None = None,
-        together: bool = False, still: IntArray | None = None, memory: SceneMemory | None = None,
+        self, laid: Laid, limit: int, linkage: Linkage = NO_LINKAGE, together: bool = False,
+        memory: SceneMemory | None = None,
     ) -> None:  # fmt: skip
         BODY, memory = laid.BODY, memory or SceneMemory()
         n = len(BODY)
-        self.jointed, self.together = joint is not None, together
-        self.joint, self.partner = _NO_JOINTS if joint is None else joint, BODY[:0] if PARTNER is None else PARTNER
-        self._still = _NO_STILL if still is None else still
-        self._mobility: FloatArray | None = None  # of bodies, if joints hold any
-        PINNED = self._hold(BODY, laid.SHAPE, laid.LINK) if self.jointed else NO_PINNED
+        self.together = together
+        self.joint, self.partner, self._still = linkage
+        self.pinned = self._hold(BODY, laid.SHAPE, laid.LINK)
         budget = STEP_LOOKS + STEP_LOOKS_BODY * n * max(n, MANY_BODIES) // MANY_BODIES
-        self.table = memory.scene(laid, PINNED, limit, together, budget)
+        self.table = memory.scene(laid, self.pinned, limit, together, budget)
         (self._par, self._count, self.log), self._bound = memory.records(), UNBOUND
         self._laid, self._memory, self.thin = self.table, memory, memory.thin > 0
         self._rules: dict[tuple[int, int], tuple[float, float, float, float]] = {}  # those of the table
+        self._plan(BODY)
         if self.jointed:
-            self._plan(BODY)
-        else:
-            self.ties = memory.unjointed(n)
+            tie_components(self.table, self.ties)
 
     def _hold(self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link]) -> Rows[Pinned]:
         """The bodies that joints hold where they are, which lose their mobilities."""
+        if not self.jointed:
+            return NO_PINNED
         PINNED = pinned_bodies(BODY, self.partner, self.joint, self._still, SHAPE, LINK)
         if len(PINNED):
-            self._mobility = columns(BODY, "inv_mass", "inv_inertia")
-            BODY["inv_mass"][PINNED["body"]] = BODY["inv_inertia"][PINNED["body"]] = 0.0
+            hold(PINNED, BODY, True)
         return PINNED
 
-    def release(self) -> None:
-        """Give the bodies that joints hold their mobilities back, before another loop is made for them."""
-        if self._mobility is not None:
-            put(self.scene.BODY, self._mobility, "inv_mass", "inv_inertia")
+    def release(self, BODY: Rows[Body]) -> None:
+        """Give the bodies that joints hold, of the rows of the scene, their mobilities back."""
+        if len(self.pinned):
+            hold(self.pinned, BODY, False)
 
     @property
     def mobility(self) -> FloatArray:
         """(n, 2) 1/mass and 1/moment of bodies, also of those that joints hold."""
-        found = self._mobility
-        return columns(self.scene.BODY, "inv_mass", "inv_inertia") if found is None else found
-
-    def plan(self) -> None:
-        """Find the components again: after changes of joints' kinds, bodies, eccentric anchors, or of mobilities."""
-        self._plan(self.scene.BODY)
+        found = columns(self.scene.BODY, "inv_mass", "inv_inertia")
+        found[self.pinned["body"]] = columns(self.pinned, "inv_mass", "inv_inertia")
+        return found
 
     def _plan(self, BODY: Rows[Body]) -> None:
-        self.ties, self._bound = self._memory.joints.plan(BODY, self.joint, self.partner), UNBOUND
-        tie_components(self.table, self.ties)
+        """Find the components of the joints."""
+        if self.jointed:
+            self.ties, self._bound = self._memory.joints.plan(BODY, self.joint, self.partner), UNBOUND
+        else:
+            self.ties, self._bound = self._memory.unjointed(len(BODY)), UNBOUND
 
-    def holds_others(self) -> bool:
-        """Whether joints hold other bodies where they are than those of PINNED, after changes of joints or of their
-        ends."""
-        scene = self.scene
-        BODY = scene.BODY.copy()
-        put(BODY, self.mobility, "inv_mass", "inv_inertia")
-        PINNED = pinned_bodies(BODY, self.partner, self.joint, self._still, scene.SHAPE, scene.LINK)
-        return PINNED.tobytes() != scene.PINNED.tobytes()
+    def rejoin(
+        self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], linkage: Linkage = NO_LINKAGE, replan: bool = True
+    ) -> None:  # fmt: skip
+        """Go on with other joints, or with edited ones, on the rows of the scene, which have the present poses.
+
+        Args:
+            replan: whether components may differ; else only whether joints hold other bodies where they are.
+        """
+        self.release(BODY)
+        self.joint, self.partner, self._still = linkage
+        pinned = self._hold(BODY, SHAPE, LINK)
+        if pinned.tobytes() != self.pinned.tobytes():
+            self.pinned, self.table, replan = pinned, replaced(self.table, Scene, "PINNED", pinned), True
+        if replan:
+            self._plan(BODY)
+            tie_components(self.table, self.ties)
 
     def rebind(self, joint: Rows[Joint], PARTNER: Rows[Body]) -> None:
         """Use other arrays of joints with the same values."""

@@ -53,6 +53,17 @@ class Laid(NamedTuple):
     measured: Sequence[int]
 
 
+class Linkage(NamedTuple):
+    """The joints of a world."""
+
+    joint: Rows[Joint]  # (j,) between rows of BODY, or len(BODY) + row of PARTNER
+    PARTNER: Rows[Body]  # (x,) bodies that joints cannot move
+    still: IntArray  # (x,) 1 for those that never move
+
+
+NO_LINKAGE = Linkage(rows(Joint, 0), rows(Body, 0), np.zeros(0, np.int64))
+
+
 class SceneMemory:
     """Memory for the scenes of one stepper: each replaces the one before, whose arrays it overwrites.
 

@@ -8,6 +8,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import nonallocating
 from ..contacts.counts import note_unmet
 from ..joints.ledger import clear_interval
+from ..joints.pinned import mass_of
 from ..joints.welds import pass_on, pinned_row, push_weld
 from ..layout import BODY_ROW, READ, WRITTEN
 from ..model.joint_steps import ELASTIC
@@ -113,7 +114,7 @@ def load_welds(A: Scene, J: Joints, STATES: FloatArray, IDS: IntArray) -> None:
     """At the end of a step, leave the impulses of welded bodies' joints in their rows."""
     PINNED, BODY, dt, links = A.PINNED, A.BODY, A.PAR.dt, 0
     for k in range(len(PINNED)):
-        pinned, pull = PINNED[k], PINNED[k].mass * dt
+        pinned, pull = PINNED[k], mass_of(PINNED[k].inv_mass) * dt
         for c in range(2 if pinned.kind == WELDED else 0):
             joint = J.JOINT[pinned.weld[c] // 2]
             joint.impulse[0], joint.impulse[1], joint.last_step = 0.0, 0.0, A.PAR.planned

@@ -33,7 +33,7 @@ def may_hold(joint: Rows[Joint], still: IntArray, n: int) -> bool:
 @kernel
 def find_pinned(
     BODY: Rows[Body], PARTNER: Rows[Body], joint: Rows[Joint], STILL: IntArray, SHAPE: Rows[Shape], LINK: Rows[Link],
-    pinned: IntArray, welds: IntArray,
+    PINNED: Rows[Pinned],
 ) -> int:  # fmt: skip
     """Find the bodies that joints hold where they are.
 
@@ -41,12 +41,10 @@ def find_pinned(
         BODY (n,), PARTNER (x,): at their present poses; the latter cannot be moved by joints.  joint (j,).
         STILL (x,): 1 for rows of PARTNER that never move.
         SHAPE, LINK: of the bodies; contacts do not turn those without friction.
-        pinned (n + x,): out, FREE, WHOLLY, CENTRE for a body that is held at its centre of mass and spins on, or
-            WELDED.
-        welds (n + x, 3): out, see `weld`.
+        PINNED (n,): out, in its first rows: the bodies that are held, in the order of BODY.
 
     Returns:
-        the number of bodies that are pinned.
+        the number of bodies that are held.
     """
     if not may_hold(joint, STILL, len(BODY)):
         return 0
@@ -60,30 +58,41 @@ def find_pinned(
             spins[LINK[s].owner] = 0
     turns, cayley = np.zeros(len(bodies), np.int64), np.zeros(len(bodies), np.int64)
     find_turning(bodies, joint, len(joint), turns, cayley)
+    kinds, welds = np.zeros(len(bodies), np.int64), np.full((len(bodies), 3), -1, np.int64)
     for i in range(len(bodies)):
-        pinned[i] = FREE
         spins[i] = spins[i] if turns[i] == 0 else 0
-    return hold_chains(bodies, joint, still, spins, pinned) + weld(bodies, joint, still, pinned, welds)
+    held = hold_chains(bodies, joint, still, spins, kinds) + weld(bodies, joint, still, kinds, welds)
+    found = 0
+    for i in range(len(BODY) if held > 0 else 0):
+        if kinds[i] != FREE:
+            one, body = PINNED[found], BODY[i]
+            one.body, one.kind, one.weld[0], one.weld[1], one.link = i, kinds[i], welds[i, 0], welds[i, 1], welds[i, 2]
+            one.x, one.y, one.angle = body.x, body.y, body.angle
+            one.inv_mass, one.inv_inertia = body.inv_mass, body.inv_inertia
+            found += 1
+    return found
 
 
 def pinned_bodies(
     BODY: Rows[Body], PARTNER: Rows[Body], joint: Rows[Joint], still: IntArray, SHAPE: Rows[Shape], LINK: Rows[Link]
 ) -> Rows[Pinned]:  # fmt: skip
     """The bodies that joints hold, see `find_pinned`; BODY has their mobilities."""
-    n = len(BODY) + len(PARTNER)
-    kind: IntArray = np.zeros(n, np.int64)
-    welds: IntArray = np.full((n, 3), -1, np.int64)
-    if not find_pinned(BODY, PARTNER, joint, still, SHAPE, LINK, kind, welds):
-        return NO_PINNED
-    at = np.flatnonzero(kind)
-    PINNED, one = rows(Pinned, len(at)), BODY[at]
-    PINNED["body"], PINNED["kind"], PINNED["weld"] = at, kind[at], welds[at, :2]
-    PINNED["link"] = welds[at, 2]
-    for name in ("x", "y", "angle"):
-        PINNED[name] = one[name]
-    for name, inverse in (("mass", one["inv_mass"]), ("moment", one["inv_inertia"])):
-        PINNED[name] = np.divide(1.0, inverse, out=np.zeros(len(at)), where=inverse > 0.0)  # 0 for infinite: unmoved
-    return PINNED
+    found = rows(Pinned, len(BODY))
+    return found[: find_pinned(BODY, PARTNER, joint, still, SHAPE, LINK, found)]
+
+
+@kernel
+def hold(PINNED: Rows[Pinned], BODY: Rows[Body], held: bool) -> None:
+    """Let the bodies that joints hold have no mobilities, or, if not `held`, give these back."""
+    for k in range(len(PINNED)):
+        one, body = PINNED[k], BODY[PINNED[k].body]
+        body.inv_mass, body.inv_inertia = (0.0, 0.0) if held else (one.inv_mass, one.inv_inertia)
+
+
+@nonallocating
+def mass_of(inverse: float) -> float:
+    """Mass or moment by its inverse; 0 for an infinite one, which nothing moves."""
+    return 1.0 / inverse if inverse > 0.0 else 0.0
 
 
 @nonallocating
@@ -93,9 +102,9 @@ def put_pinned(PINNED: Rows[Pinned], BODY: Rows[Body]) -> float:
     lost = 0.0
     for k in range(len(PINNED)):
         pinned, body = PINNED[k], BODY[PINNED[k].body]
-        lost += 0.5 * pinned.mass * (body.vx * body.vx + body.vy * body.vy)
+        lost += 0.5 * mass_of(pinned.inv_mass) * (body.vx * body.vx + body.vy * body.vy)
         body.x, body.y, body.vx, body.vy, body.ax, body.ay, body.angular = pinned.x, pinned.y, 0.0, 0.0, 0.0, 0.0, 0.0
         if pinned.kind != CENTRE:
-            lost += 0.5 * pinned.moment * body.spin * body.spin
+            lost += 0.5 * mass_of(pinned.inv_inertia) * body.spin * body.spin
             body.angle, body.spin = pinned.angle, 0.0
     return lost

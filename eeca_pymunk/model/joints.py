@@ -146,8 +146,8 @@ class Pinned(Record):
     x: float  # pose: length, length, rad
     y: float
     angle: float
-    mass: float  # of the body, whose rows of BODY say that nothing moves it
-    moment: float
+    inv_mass: float  # of the body, whose rows of BODY say that nothing moves it
+    inv_inertia: float
 
 
 class Tally(Record):

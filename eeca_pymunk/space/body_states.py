@@ -128,10 +128,11 @@ class BodyStates:
     def load(self) -> None:
         """Read the present states into BODY."""
         self.gather()
-        self._read_states(0.0, 0.0, 1.0)
+        self.read_states(0.0, 0.0, 1.0)
 
     @cached_property
-    def _read_states(self) -> Callable[[float, float, float], int]:
+    def read_states(self) -> Callable[[float, float, float], int]:
+        """See `transfer.read_states`."""
         return read_states.bind(self.STATES, self.IDS, self.EXTRA, self.BODY)
 
     def reset_forces(self) -> None:

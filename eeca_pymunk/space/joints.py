@@ -11,6 +11,7 @@ import pymunk
 
 from ..arrays import FloatArray, IntArray
 from ..compiled.records import over, selected
+from ..impacts.scene_memory import Linkage
 from ..model.joints import EDITED, Joint
 from ..reentry import FunctionsCalled
 from .constraint_impulses import ConstraintImpulses
@@ -79,6 +80,11 @@ class JointRows(Listing):
         self._touched, self._pushing = b"", list[pymunk.Constraint]()
         self._last_awake: tuple[Sequence[pymunk.Constraint], list[pymunk.Constraint]] = (), []
         self.parted: frozenset[tuple[pymunk.Body, pymunk.Body]] | None = None
+
+    @property
+    def linkage(self) -> Linkage:
+        """The arrays that the event loop takes."""
+        return Linkage(self.joint, self.partners.PARTNER, self.partners.still)
 
     @cached_property
     def _at(self) -> dict[int, list[int]]:
@@ -209,13 +215,10 @@ class JointRows(Listing):
         body of each shape."""
         pairs = zip(self.pairs.values(), self.calls, strict=True)
         self.parted = frozenset(pair for pair, calls in pairs if not calls.collide)
-        found: set[tuple[int, int]] = set()
         of: dict[pymunk.Body, list[int]] = {}
         for k, i in enumerate(owner.tolist() if self.parted else ()):
             of.setdefault(bodies[i], []).append(k)
-        for a, b in self.parted:
-            found.update((min(i, j), max(i, j)) for i in of.get(a, ()) for j in of.get(b, ()))
-        return found
+        return {(min(i, j), max(i, j)) for a, b in self.parted for i in of.get(a, ()) for j in of.get(b, ())}
 
     def touch(self, rows: Iterable[int]) -> None:
         """Mark as EDITED the joints of bodies (rows) that the program has moved or whose velocity it has set."""

@@ -128,7 +128,7 @@ class World(BodyStates):
     def _read_joints(self, anew: bool) -> None:
         past = self.joints
         if not self.space.constraints:
-            self.joints, self.parted = None, set()
+            self.joints = None
         elif anew or past is None or past.items != list(self.space.constraints):
             rows = {b: r for b, r in zip(self.bodies.items, self.IDS[BODY_ROW].tolist(), strict=True) if r >= 0}
             self.joints = JointRows(self.space, rows, len(self.BODY), past)
@@ -199,7 +199,7 @@ class World(BodyStates):
                 self._forget_rules()
             else:
                 self.read_settings()
-            self._read_states(0.0, 0.0, 1.0)
+            self.read_states(0.0, 0.0, 1.0)
         return found
 
     def show_joints(self) -> None:
@@ -216,9 +216,9 @@ class World(BodyStates):
         """Find the pairs of shapes that do not collide because of joints of their bodies; returns whether they have
         changed."""
         joints = self.joints
-        if joints is None or joints.parted is not None:
+        if joints is not None and joints.parted is not None:
             return False
-        parted = joints.find_parted(self.owner, self.bodies.items)
+        parted = set() if joints is None else joints.find_parted(self.owner, self.bodies.items)
         if parted == self.parted:
             return False
         self.parted = parted

@@ -158,6 +158,43 @@ def test_what_may_move_is_not_welded(edit: str) -> None:
         assert planks[0].angle > 0.0
 
 
+def test_joints_come_and_go_in_one_reading() -> None:
+    """A disk that falls from rest is welded to the ground at its place, and let go: it falls by g t^2/2 again. A box
+    beside stays at rest on the floor all the time, and the first body to be joined collides with it afterwards."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -10.0
+    space.add(pymunk.Segment(space.static_body, (-9.0, -0.5), (9.0, -0.5), 0.0))
+    disk, box = pymunk.Body(2.0, 0.5), pymunk.Body(1.0, 1 / 6)
+    disk.position, box.position = (5.0, 8.0), (0.0, 0.0)
+    space.add(disk, box, pymunk.Circle(disk, 0.5), pymunk.Poly.create_box(box, (1.0, 1.0)))
+    stepper = ep.EECA(space)
+    for height in (8.0, 7.2):
+        for _ in range(24):
+            assert stepper.step(DT).converged
+        lower = height - 5.0 * (24 * DT) ** 2
+        assert disk.position.y == pytest.approx(lower, abs=1e-12)
+        weld = [
+            pymunk.PivotJoint(space.static_body, disk, tuple(disk.position)),
+            pymunk.GearJoint(space.static_body, disk, 0.0, 1.0),
+        ]
+        space.add(*weld)
+        for _ in range(12):
+            assert stepper.step(DT).converged
+        assert (welded(stepper), disk.position.y) == (1, pytest.approx(lower, abs=1e-12))
+        assert weld[0].impulse == pytest.approx(2.0 * 10.0 * DT)
+        space.remove(*weld)
+    between = pymunk.PinJoint(disk, box)
+    between.collide_bodies = False
+    space.add(between)
+    stepper.step(DT)
+    disk.position, disk.velocity = (0.0, 1.5), (0.0, 0.0)
+    space.remove(between)
+    for _ in range(120):
+        stepper.step(DT)
+    assert disk.position.y == pytest.approx(1.0, abs=1e-6)
+    assert (box.position.y, stepper.reads) == (pytest.approx(0.0, abs=1e-12), 1)
+
+
 def test_a_weld_that_a_program_puts_elsewhere_moves_with_its_ground() -> None:
     space, planks = arm(1)
     stepper = ep.EECA(space)
