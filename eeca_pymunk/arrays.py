@@ -22,7 +22,7 @@ _ADDRESS = _ffi.typeof("uintptr_t")
 LINE = 128  # bytes: alignment of what a processor fetches at once
 _PAGE = 1 << 21  # bytes of a huge page
 _HUGE = 1 << 22  # bytes of an allocation from which numpy asks for huge pages
-_SPARE = 4  # memory that is so many times larger than needed is given up, unless it is a few pages
+_SPARE = 4  # memory is replaced if larger than this times the need plus a huge page
 
 
 def address_of(array: Any) -> int:
@@ -32,13 +32,13 @@ def address_of(array: Any) -> int:
 
 
 def lengths(shape: tuple[int, ...]) -> tuple[int, ...]:
-    """Two lengths of an array: its only one twice, or the last two; 0 of a record."""
+    """The two lengths of an array that its table stores (`compiled.tables`): the last two, its only one twice, 0 of a
+    record."""
     return shape * 2 if len(shape) == 1 else shape[-2:] if shape else (0, 0)
 
 
 class Memory:
-    """One piece of memory for arrays that replace one another: as long as it is large enough, the next ones are in the
-    place of the last.
+    """Memory for successive sets of arrays: while it is large enough, each set replaces the last one in place.
 
     Attributes:
         address: where it begins, aligned to a cache line.
@@ -48,7 +48,7 @@ class Memory:
         self._allot(0)
 
     def provide(self, zeros: int, total: int) -> None:
-        """Make room for `total` bytes, of which the first `zeros` are 0; the last ones are lost.
+        """Make room for `total` bytes, of which the first `zeros` are 0; the content before is lost.
 
         Kernels read a few numbers in all arrays of a scene, and would often miss the TLB with many small pages. Large
         scenes therefore get huge pages, which operating systems only give to large allocations.

@@ -63,7 +63,7 @@ class EECA(RunningStepper):
     def choose_method(self, world: World, past: World | None) -> None:
         loop = None if past is None else self.event_loop
         sides = None if past is None or loop is None else sides_of(past, loop)
-        if past is world:
+        if past is world:  # its rows or joints have changed
             if loop is not None:
                 loop.release(world.BODY)
             world.load()

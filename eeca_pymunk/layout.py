@@ -21,8 +21,8 @@ READ_ID, KNOWN_ID = 0, 1  # pymunk's ids of the bodies: as read now, as read whe
 BODY_ROW = 2  # row of BODY, -1 for static bodies
 FLAGS = 3  # 0 for most bodies, or the bits below; EXTRA has their values
 STEERED, ECCENTRIC = 1, 2  # a velocity function has set the acceleration; the centre of mass is not the origin
-# `Body.due` at the start of a step: the body counts as placed by the program, but the sides of its shapes are kept;
-# less than SHIFTED by the way that it was moved, over its extent: sides of shapes that are not as wide are forgotten
+# `Body.due` at the start of a step. PLACED: the body counts as placed by the program, but the sides of its shapes are
+# kept. SHIFTED - w: it was moved by w times its extent; sides of shapes that are thinner than that are forgotten.
 PLACED, SHIFTED = -2.0, -3.0
 # EXTRA
 COG_X, COG_Y = 0, 1  # centre of mass in the body's coordinates: length

@@ -100,8 +100,8 @@ class PackedStepper(HookedStepper):
     def _repeat_awake(
         self, world: World, dt: float, half_damping: float, status: int, before: list[AnyArray]
     ) -> tuple[World, int]:
-        """While the step has touched sleeping bodies, wake these and repeat it. It is not repeated, but begun by the
-        caller, if it calls functions of the program then. Returns the world and status of the last repetition.
+        """While the step has touched sleeping bodies, wake these and repeat it; returns the world and status of the
+        last repetition. A step that then calls functions of the program is left to the caller.
 
         `before`: a copy of the arrays of `rewound`, made before the step.
         """

@@ -43,14 +43,14 @@ from .transfer import (
 )  # fmt: skip
 
 HANDLED_COLUMNS = 7
-NEAR_WAYS = 2.0  # ways of a step for which pairs that approach are near before they meet
+NEAR_WAYS = 2.0  # pairs are near if they may meet within so many times their ways of this step
 SUPPORT_SHIFT = 1e-7  # part of its height by which a body is moved towards its support in a rehearsal
 
 
 @nonallocating
 def copy_read(R: Reading, copy: FloatArray) -> int:
-    """Copy the state that was read to `copy` (N, 9), and void all predictions: functions may change anything, so that
-    all bodies count as placed by the program. Steps that call none do so as well: no path depends on which they are.
+    """Copy the state that was read to `copy` (N, 9), and void all predictions: functions may change anything, so all
+    bodies count as placed by the program. Also if no function is called then: paths must not depend on that.
 
     Returns:
         0, or OTHER_BODIES, MOVED_STATIC or NOT_FINITE if the bodies are others, a static one was moved, or a number is

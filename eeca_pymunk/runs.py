@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 
     from .rolling import Rolling
 
-_FIRST = 256  # steps after which the compiled loop returns for the first time
-# Seconds within which it returns then, so that Python can update the progress bar and handle interrupts: the number of
-# steps of the next call is doubled or halved.
+_FIRST = 256  # steps in the first call of the compiled loop
+# Seconds of a call below which the next one has twice as many steps, and above which half as many: Python updates the
+# progress bar and handles interrupts in between.
 _SHORT, _LONG = 0.05, 0.2
 
 
@@ -181,7 +181,6 @@ class RunningStepper(PackedStepper):
             if status < 0:
                 self._raise_failure(world, dt, status)
         finally:
-            # In any case, also after an interrupt: the steps that were taken are written.
             self._write_run_end(world, buffers, dt, status)
         return buffers
 
@@ -200,7 +199,7 @@ class RunningStepper(PackedStepper):
         return status
 
     def _write_run_end(self, world: World, buffers: RunBuffers, dt: float, status: int) -> None:
-        """Write the end of the last complete step to the space."""
+        """Write the end of the last complete step to the space, also after an exception or interrupt."""
         RUN = buffers.progress
         if status < 0 or RUN.stage != BETWEEN:  # the last step is not complete: READ has its start
             self._world = None

@@ -116,8 +116,8 @@ class Sides:
     """The remembered sides of thin shapes of a world, to be kept when the space is patched or read again.
 
     Kept are those of shapes that have not changed and are near where the last step left them (see
-    `transfer.read_states`), whatever their new rows are. Kinematic bodies that have only such shapes count as unmoved,
-    with or without thin shapes, so that bodies that overlap them are not corrected as if they were just placed there.
+    `transfer.read_states`), in whatever rows. Kinematic bodies with such shapes only, thin or not, count as unmoved, so
+    that overlaps with them are not corrected as if they were just placed there.
     """
 
     def __init__(self, world: World, known: Rows[Side] | None) -> None:
@@ -131,8 +131,8 @@ class Sides:
         self._left: list[list[float]] = world.STATES[WRITTEN, :, :3].tolist()
 
     def _moves(self, world: World) -> dict[int, tuple[int, float]]:
-        """Of each body (old row) that is near where the last step left it: its row now, and how far its points were
-        moved since, at most (length)."""
+        """For each body (old row) that is near where the last step left it: its present row, and a bound of how far its
+        points were moved since (length)."""
         moves, row, rows = {}, world.bodies.row, world.IDS[BODY_ROW].tolist()
         state, extent = world.state[:, :3].tolist(), world.BODY["extent"].tolist()
         for i in {i for _, _, i, _ in self._shapes}:

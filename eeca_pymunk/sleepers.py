@@ -10,8 +10,8 @@ from .compiled.records import Rows
 from .layout import BODY_ROW, READ, WRITTEN
 from .model.contacts import Impulse
 
-ROUND = 1e-14  # of coordinates, and of the largest speed
-_LESS = 1e-9  # of lengths, by which bodies are looked for farther away
+ROUND = 1e-14  # round-off, relative to coordinates and to the largest speed
+_LESS = 1e-9  # margin of the reach of a body, relative to its coordinates
 
 
 @kernel

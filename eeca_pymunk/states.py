@@ -129,7 +129,7 @@ def _remember(stepper: RunningStepper, world: World, parts: _Parts, at: IntArray
         joints.joint["notch"][ratchets] = joint["notch"][ratchets]
         for name in ("stiffness", "rest", "push"):
             joints.joint[name][joints.functions] = joint[name][joints.functions]
-        # What is at rest is solved again if the program has edited its joints since.
+        # Islands at rest are solved again if the program has edited their joints since.
         for name, unequal in differences(joints.joint, joint):
             if name != "body":  # bodies may have other rows now
                 joints.joint["touched"][unequal] = EDITED

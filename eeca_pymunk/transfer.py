@@ -46,7 +46,7 @@ OTHER_BODIES, MOVED_STATIC, NOT_FINITE, OVERFLOW = -1, -2, -3, -4
 @kernel
 def finite(a: float, b: float, c: float, d: float, e: float, f: float) -> bool:
     """Whether all six numbers are finite."""
-    # Comparing is what numba does fastest; NaN is not less than anything.
+    # Comparisons are fastest in machine code; those with NaN are false.
     least, most = -math.inf, math.inf
     place = least < a < most and least < b < most and least < c < most
     return place and least < d < most and least < e < most and least < f < most
@@ -81,9 +81,9 @@ def read_states(
 ) -> int:
     """Write the states read from pymunk into BODY: all paths begin at the start of the step, `since` = 0.
 
-    `Body.due` becomes negative if the prediction of the last step is void: the velocity was edited or damped, or the
-    acceleration has changed; if the pose was edited, SHIFTED less the way of its points, in parts of the body's extent,
-    and -inf if that is not known. With damping all predictions are void.
+    `Body.due` becomes negative if the prediction of the last step is void: -1 if the velocity was edited or damped, or
+    the acceleration has changed; SHIFTED - (way of its points over the body's extent) if the pose was edited, and -inf
+    if that way is not known. With damping all predictions are void.
 
     Args:
         STATES (2, N, 9), IDS (4, N), EXTRA (N, 5), BODY (n,): see `layout.py`.

@@ -75,7 +75,7 @@ def give_rows(BODIES: Rows[BodyValues], SHAPES: Rows[ShapeValues], POINT: FloatA
         BODIES[i].shapes, BODIES[i].row = 0, -1
         ORDER[BODIES[i].place] = i
     for s in range(SHAPES.shape[0]):
-        # 2 or more: several shapes, or one that is no disk about the centre of mass.
+        # The sum is 1 for a single disk: one shape, a circle about the centre of mass.
         k = SHAPES[s].first
         centred = SHAPES[s].vertices == 1 and POINT[k, 0] == 0.0 and POINT[k, 1] == 0.0
         BODIES[SHAPES[s].owner].shapes += 1 if centred else 2
@@ -83,8 +83,8 @@ def give_rows(BODIES: Rows[BodyValues], SHAPES: Rows[ShapeValues], POINT: FloatA
     for rank in range(3):
         for p in range(BODIES.shape[0]):
             body = BODIES[ORDER[p]]
-            of = 2 if body.kind != DYNAMIC else 0 if body.shapes == 1 else 1
-            if body.kind != STATIC and of == rank:
+            group = 2 if body.kind != DYNAMIC else 0 if body.shapes == 1 else 1
+            if body.kind != STATIC and group == rank:
                 body.row = row
                 row += 1
         disks = row if rank == 0 else disks
@@ -171,9 +171,8 @@ def write_rows(table: Table) -> None:
 
 
 @nonallocating
-def begin_walk(R: Reading) -> None:
-    """Write what is known of the bodies to IDS, EXTRA and STATES[WRITTEN]: where steps have left them, only of static
-    ones; functions have changed nothing."""
+def clear_exchange(R: Reading) -> None:
+    """Initialise IDS, EXTRA, the changes in HOOKED, and STATES[WRITTEN], unknown (NaN) but for static bodies."""
     R.TOTALS[DYNAMICS] = R.TOTALS[ECCENTRICS] = R.TOTALS[STEERERS] = R.TOTALS[MOVERS] = 0
     for i in range(R.BODIES.shape[0]):
         body = R.BODIES[i]
@@ -193,13 +192,13 @@ def begin_walk(R: Reading) -> None:
 
 @nonallocating
 def read_space(table: Table, arranged: int) -> int:
-    """Write all rows of a space that is read anew, with the poses and velocities of STATES[READ].
+    """Write all rows of a space that was just read, with the poses and velocities of STATES[READ].
 
     Args:
-        arranged: 1 if rows are given out in pymunk's order, else in the order of `BodyValues.place`.
+        arranged: 1 if rows are numbered in pymunk's order, else in the order of `BodyValues.place`.
 
     Returns:
-        the status of `transfer.read_states`; NOT_FINITE also for bodies that are not taken.
+        the status of `transfer.read_states`; NOT_FINITE also for a static body.
     """
     R = reading_of(table)
     for i in range(R.STATES.shape[1]):
@@ -210,5 +209,5 @@ def read_space(table: Table, arranged: int) -> int:
         for i in range(R.BODIES.shape[0]):
             R.BODIES[i].place = i
     write_rows(table)
-    begin_walk(R)
+    clear_exchange(R)
     return read_states(R.STATES, R.IDS, R.EXTRA, R.BODY, 0.0, 0.0, 1.0)

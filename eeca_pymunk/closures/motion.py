@@ -135,7 +135,7 @@ class Pairs:
         return self.between(position[self.row_a], position[self.row_b])
 
     def contacts(self, at: Geometry, gap: FloatArray, time: FloatArray) -> Contacts:
-        """The report of these pairs: geometry where impulses act, (m,) gaps at the start of the step, (m,) instants."""
+        """The contacts of a report: geometry where impulses act, (m,) gaps at the start of the step, (m,) instants."""
         world = self._disks.world
         a, b = world.owner[self.shapes[:, 0]], world.owner[self.shapes[:, 1]]
         return Contacts(world.bodies.items, a, b, at.normal, at.point, gap, time)
@@ -218,11 +218,11 @@ class Disks:
     def near(
         self, start: Start, displacement: FloatArray, extra: FloatArray | float = 0.0
     ) -> tuple[Pairs, Geometry, FloatArray]:
-        """The pairs that can meet within the step, their geometry at its start, and (m,) the lengths up to which their
-        gaps are round-off.
+        """The pairs that may meet within the step, their geometry at its start, and (m,) lengths up to which gaps are
+        round-off.
 
-        A body's reach is the length of its free flight and `extra` (n,), times 2 for bodies that impulses accelerate.
-        Those that impulses move farther are searched again (`simultaneous.move_disks`).
+        A body's reach is twice the length of its free flight and `extra` (n,), as impulses may accelerate it. Bodies
+        that move farther are searched again (`simultaneous.move_disks`).
         """
         # Sagitta of the parabola, a dt² / 8.
         bow = (0.125 * start.dt**2) * np.hypot(*start.acceleration.T)

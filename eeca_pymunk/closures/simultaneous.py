@@ -1,7 +1,7 @@
 """A step of disks with one impulse per contact, all active contacts solved at once.
 
-A contact is active in a step when it starts closed (gap <= 0) or when the free flight would close it. Contacts that the
-impulses themselves would close join them, in at most `_PASSES` further solves.
+A contact is active in a step if it starts closed (gap <= 0) or if the free flight would close it. Contacts that the
+impulses themselves would close become active too, in at most `_PASSES` further solves.
 """
 
 from __future__ import annotations
@@ -111,7 +111,7 @@ def move_disks(solve: Callable[[ActiveContacts], Solution], disks: Disks, start:
             pairs, before, tolerance = disks.near(start, displacement, struck * _length(trial - displacement))
             active = np.isin(pairs.key, known)
             guess, which = np.zeros(len(pairs)), np.flatnonzero(active)
-        # Elsewhere the displacement is the free one, which closes nothing else.
+        # Bodies without impulses have their free displacement, which was tested.
         changed = np.zeros(len(velocity), bool)
         changed[rows] = True
         may = np.flatnonzero((changed[pairs.row_a] | changed[pairs.row_b]) & ~active)

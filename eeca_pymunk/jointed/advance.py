@@ -25,13 +25,14 @@ from .motors import let_slip
 
 
 class Motion(NamedTuple):
-    """Of the bodies of an island, (k, 3) each: velocities V and poses END at the end, ways WAY (sums of h v_m), and
-    MEAN = 2 WAY/h - (velocities before), which is V unless joints act in part of the interval only (limits that are
-    met); MID (k, 2): their mean places, where constant forces act; PUSHED (k, 3): the accelerations without joints that
-    this motion is the answer to, to round-off, NaN if there is none.
+    """The motion of the k bodies of an island over an interval h, arrays (k, 3); v is the velocity at the start. V,
+    END: velocities and poses at the end. WAY: sums of h v_m over the parts of the interval. MEAN = 2 WAY/h - v: not V
+    if a limit is met within the interval, since joints then change the velocity there. MID (k, 2): mean places over
+    time, where constant forces act. PUSHED: accelerations without joints under which it was computed, to round-off,
+    else NaN.
 
-    Contacts have their laws by MEAN: an impulse lam over the interval works lam . WAY/h, which is the mean of the
-    velocities before and MEAN, so that what contacts lose is by their laws, whatever joints do within the interval.
+    Contacts have their laws by MEAN: an impulse lam that is spread over the interval does the work lam . WAY/h, with
+    WAY/h the mean of v and MEAN. So the losses of contacts follow their laws, whatever joints do within the interval.
     """
 
     V: FloatArray
@@ -43,8 +44,8 @@ class Motion(NamedTuple):
 
 
 class Interval(NamedTuple):
-    """An island over an interval of length h from instant t: its bodies, of which impulses move the first n, and their
-    components; m contacts, ROWS, with columns C; the motion of its bodies, out."""
+    """An island over an interval of length h from instant t: its k bodies, of which impulses move the first n; their
+    groups; m contacts ROWS with columns C; and, out, the motion of the bodies."""
 
     isle: Island
     groups: Groups
@@ -59,8 +60,8 @@ class Interval(NamedTuple):
 
 @kernel
 def find_hit(groups: Groups, ROWS: Rows[Row], m: int) -> IntArray:
-    """Whether (1 or 0) any contact is on a group, of all groups; one more, for GROUP -1."""
-    HIT = np.zeros(len(groups.COMPONENT) + 1, np.int64)
+    """(groups,) 1 for each group that one of the m contacts acts on, else 0."""
+    HIT = np.zeros(len(groups.COMPONENT) + 1, np.int64)  # the first entry is for GROUP -1
     for i in range(m):
         HIT[groups.GROUP[ROWS[i].a] + 1] = HIT[groups.GROUP[ROWS[i].b] + 1] = 1
     return HIT[1:]
@@ -68,8 +69,8 @@ def find_hit(groups: Groups, ROWS: Rows[Row], m: int) -> IntArray:
 
 @nonallocating
 def stays(J: Joints, groups: Groups, g: int, PUSHED: FloatArray, ACC: FloatArray) -> bool:
-    """Whether the present motion of the component of group g is that under the accelerations ACC. Not where rows are
-    redundant: their impulses become the smaller the nearer a solution begins."""
+    """Whether the component of group g need not be stepped: its motion was computed under the accelerations ACC. False
+    if rows are redundant, since their impulses depend on those with which the solve begins."""
     same = J.COMPONENT[groups.COMPONENT[g]].loops == 0
     for w in range(groups.FIRST[g], groups.FIRST[g + 1]):
         for c in range(3):
@@ -79,10 +80,10 @@ def stays(J: Joints, groups: Groups, g: int, PUSHED: FloatArray, ACC: FloatArray
 
 @kernel
 def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, fill: bool, GUESS: FloatArray) -> None:
-    """Step all bodies of an island by h under the impulses L of its contacts, from where its joints were; `fill` the
-    columns C and B about that step, bounded impulses being given; else B has what these are, and C stays, as does the
-    motion of a component on which nothing has changed.
-    GUESS (k, 3): velocities at the end that are foreseen, to begin with; (0, 3) for none."""
+    """Step all bodies of an island by h under the impulses L (m, 2) of its contacts, with joints as at the start. GUESS
+    (k, 3): predicted velocities at the end, with which Newton's method begins; (0, 3) for none. `fill`: also compute
+    the columns C and the bounded rows B about this step, bounded impulses being given. Else C is kept, B gets the new
+    impulses and bounds of its rows, and a component that `stays` is not stepped."""
     isle, groups, ROWS, motion, C, m, _, t, h = interval
     k = len(isle.IM)
     ACC = isle.ACC.copy()
@@ -132,15 +133,16 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
 
 @nonallocating
 def apart(row: Row, x: float, y: float) -> tuple[float, float]:
-    """How far the points of a contact on both bodies are apart, along its normal n and across, where one body is at
-    (x, y) from the other: arms are r = (arm_t) n - (arm_n) t."""
+    """The distance d + r_b - r_a of the points of a contact on both bodies, along n and along -t; d = (x, y) leads from
+    the centre of body a to that of b. Arms are r = arm_t n - arm_n t."""
     along = x * row.nx + y * row.ny + (row.arm_tb - row.arm_ta)
     return along, x * row.ny - y * row.nx + (row.arm_nb - row.arm_na)
 
 
 @nonallocating
 def join_points(row: Row, along: float, across: float) -> None:
-    """Let the points of a contact that are so far `apart` be one: halfway, but a disk keeps an arm of 0."""
+    """Change the arms of a contact so that its points, which are so far `apart`, become one: the middle, or the point
+    of a disk (arm_n = 0), on which the normal impulse still exerts no torque."""
     part = 0.0 if row.arm_na == 0.0 else 1.0 if row.arm_nb == 0.0 else 0.5
     row.arm_na += part * across
     row.arm_ta += part * along
@@ -150,10 +152,11 @@ def join_points(row: Row, along: float, across: float) -> None:
 
 @nonallocating
 def align(interval: Interval, change: bool) -> float:
-    """How far the arms r of contacts between moving bodies are from being about one point where their forces act, over
-    the size of bodies and places; and `change` them so, unless a body is off by more than its size.
+    """The largest distance of the two points of a contact between moving bodies at their mean places, over the size of
+    bodies and places. `change`: join the points, unless they are farther apart than the smaller body is large.
 
-    An impulse p spread over a step changes the angular momentum of a body by (x + r) x p, x its mean place.
+    An impulse p spread over a step changes the angular momentum of a body by (x + r) x p, with x its mean place: the
+    two changes only cancel if both points are one.
     """
     isle, ROWS, MID, worst = interval.isle, interval.ROWS, interval.motion.MID, 0.0
     for i in range(interval.m):
@@ -166,15 +169,14 @@ def align(interval: Interval, change: bool) -> float:
         if not off <= size:
             continue
         worst = max(worst, off / (size + abs(MID[a, 0]) + abs(MID[a, 1])))
-        if not change:
-            continue
-        join_points(ROWS[i], along, across)
+        if change:
+            join_points(ROWS[i], along, across)
     return worst
 
 
 @nonallocating
 def farthest_apart(V: FloatArray, W: FloatArray, EXTENT: FloatArray, n: int) -> float:
-    """Largest difference of two sets of velocities, of points of the bodies."""
+    """The largest difference of two sets of velocities (k, 3) at the points of the first n bodies."""
     worst = 0.0
     for q in range(n):
         change = math.sqrt((V[q, 0] - W[q, 0]) ** 2 + (V[q, 1] - W[q, 1]) ** 2)
@@ -184,8 +186,8 @@ def farthest_apart(V: FloatArray, W: FloatArray, EXTENT: FloatArray, n: int) -> 
 
 @kernel
 def advance_aligned(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, free: bool) -> None:
-    """`advance`; where nothing from without holds or touches the island (`free`), until the arms of contacts agree with
-    the motion. At its end they are those that it has been under."""
+    """`advance`; in a `free` island repeated until the arms of contacts fit the motion (`align`), which keeps angular
+    momentum."""
     for turn in range(ARM_ITERATIONS):
         advance(A, J, interval, L, B, False, np.empty((0, 3)))
         if not free or align(interval, turn + 1 < ARM_ITERATIONS) <= ARM_ERROR:

@@ -1,4 +1,4 @@
-"""The interval of a component that no other shape is near: no contacts, and no arrays to be made."""
+"""The interval of an island that is one component and near no other shape: no contacts, no memory allocated."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from ..model.joint_steps import ELASTIC
 from ..model.joints import Joints
 from ..model.parameters.intervals import INTERVAL_RETRY
 from ..model.scene import Scene
+from ..model.step import AGAIN, DONE
 from ..pairs.rules import barred
 from .component import step_in_scratch
 from .gathered import gather_alone, restore_joints, save_joints
@@ -45,9 +46,8 @@ def meets_no_other(A: Scene, root: int) -> bool:
 
 
 @nonallocating
-def begin_alone(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) -> float:
-    """Begin an interval of length h, without contacts, of an island that `is_component` at instant t, at which all its
-    bodies are. Returns 0; or, with nothing done, how many times too long it is, never in the `last` attempt."""
+def begin_alone(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) -> tuple[int, float]:
+    """`solve.try_jointed` for an island that `is_component` and meets nothing."""
     s = J.OF[root]
     save_joints(J, s)
     clear_interval(J.STEPPED[s])
@@ -55,7 +55,7 @@ def begin_alone(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     far = 0.0 if last else 2.0 if J.STEPPED[s].status >= ELASTIC else excess_alone(A, J, s, t, h)
     if far > INTERVAL_RETRY:
         restore_joints(J, s)
-        return far
+        return AGAIN, h / far
     first = J.COMPONENT[s].first_body
     for i in range(J.COMPONENT[s].end_body - first):
         if J.LOCAL[i].freedoms > 0:
@@ -64,13 +64,13 @@ def begin_alone(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
             set_path(A, body, h, local.pose, local.pose, local.v0)
     A.COUNT.solves += 1
     open_until(A, root, t + h)
-    return 0.0
+    return DONE, h
 
 
 @nonallocating
 def account_turning(A: Scene, J: Joints, s: int, body: int, angle: float, way: float) -> None:
-    """Account for the work of the torque on a body of component s: it acts along the way chi = h w_m, which differs a
-    little from the angle by which the body turns, to `angle`."""
+    """Account for the work of the torque T on a body of component s, T (chi - turned): it acts along the way chi = h
+    w_m, which differs a little from the angle that the body turns, from its own to `angle`."""
     b = A.BODY[body]
     if b.inv_inertia > 0.0 and A.PULL[body, 2] != 0.0:
         J.STEPPED[s].turned_work += A.PULL[body, 2] * (way - (angle - b.angle)) / b.inv_inertia
@@ -78,8 +78,7 @@ def account_turning(A: Scene, J: Joints, s: int, body: int, angle: float, way: f
 
 @nonallocating
 def set_path(A: Scene, body: int, h: float, POSE: FloatArray, END: FloatArray, V: FloatArray) -> None:
-    """Set the path of a body: a parabola from its pose to POSE (3,) after h, where the correction moves it to END, with
-    velocity V."""
+    """Set the path of a body: a parabola to POSE (3,) after h. At its end the body is moved to END, with velocity V."""
     A.STATE[body].version += 1
     b, rest = A.BODY[body], A.RESTING[body]
     b.ax = 2.0 * (POSE[0] - b.x - h * b.vx) / (h * h)

@@ -1,8 +1,9 @@
-"""Rows of bounded impulses, motors, joints with a finite max_force and limits, as unknowns beside those of contacts.
+"""Joint rows with bounded impulses (motors, joints with a finite max_force, limits) as unknowns beside those of
+contacts.
 
-Columns of contacts and of these rows are answered by all joints that hold exactly, the bounded impulses being given: so
-contacts and bounded rows are one problem (`..rows`). What its bounded impulses are is found anew by the components'
-next step (`..newton.boxes`), which keeps their bounds to the bit.
+The columns of contacts and of these rows are responses with all exact joints, bounded impulses being given: so contacts
+and bounded rows are one problem (`..rows`). It only predicts bounded impulses: the next step of the components computes
+them again (`..newton.boxes`), exactly within their bounds.
 """
 
 from __future__ import annotations
@@ -15,10 +16,11 @@ from ..model.contacts import Bounded
 from ..model.joints import GROOVE, PRESCRIBED, Joints
 from ..model.parameters.joints import BOUNDED_SWEEPS, MOTOR_OFF
 from ..model.scene import Scene
-from ..newton.entries import acts, interval_of, is_limit
+from ..newton.entries import acts, interval_of
 from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, bounded_rate, room_for_rows, sweep_bounded, weigh_rows
 from .component import answer
 from .groups import Groups
+from .motors import is_exact_limit
 
 
 @kernel
@@ -30,7 +32,7 @@ def make_bounded(J: Joints, groups: Groups, limits: bool) -> Bounded:
             s = groups.COMPONENT[g]
             rows = J.COMPONENT[s].boxes
             for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint if limits else 0):
-                rows += 1 if is_limit(J.COUPLING[k].kind) and J.JOINT[J.COUPLING[k].joint].bounded == 0 else 0
+                rows += 1 if is_exact_limit(J, k) else 0
             n += rows
             entries += rows * (groups.FIRST[g + 1] - groups.FIRST[g])
     return room_for_rows(n, entries)
@@ -38,13 +40,13 @@ def make_bounded(J: Joints, groups: Groups, limits: bool) -> Bounded:
 
 @nonallocating
 def note_row(A: Scene, J: Joints, B: Bounded, s: int, i: int, h: float, V: FloatArray) -> None:
-    """Row i as it is at the end of the step h that component s has just taken, with velocities V there. A limit holds
-    the velocity that it has; one that has let go keeps its row. An impulse inside its bounds that has not brought its
-    row to the target was at different bounds in parts of the step: it is given."""
+    """Write row i of B at the end V of the step h that component s has just taken. A limit that acts keeps the velocity
+    that it has; one that was released keeps its last row. An impulse inside its bounds whose row is not at its target
+    was at different bounds in parts of the step: it is then given, low = high."""
     k, r = B.OF[i, 0], B.OF[i, 1]
     hinge = J.HINGE[k - J.COMPONENT[s].first_joint]
     B.ROWS[i].now = hinge.total[r]
-    limit = is_limit(J.COUPLING[k].kind) and J.JOINT[J.COUPLING[k].joint].bounded == 0
+    limit = is_exact_limit(J, k)
     if limit and J.COUPLING[k].side == 0:
         return
     B.ROWS[i].speed = -hinge.target[r]
@@ -61,7 +63,7 @@ def note_row(A: Scene, J: Joints, B: Bounded, s: int, i: int, h: float, V: Float
     if limit:
         B.ROWS[i].speed = -rate
     elif B.ROWS[i].part == SINGLE and low < hinge.total[r] < high:
-        # What the bound makes of the speed is high / scale².
+        # The bound changes the speed by at most high / scale².
         if abs(off) * hinge.scale[r] ** 2 > MOTOR_OFF * (high + abs(rate) * hinge.scale[r] ** 2):
             low = high = hinge.total[r]
     B.ROWS[i].low, B.ROWS[i].high = low, high
@@ -69,7 +71,7 @@ def note_row(A: Scene, J: Joints, B: Bounded, s: int, i: int, h: float, V: Float
 
 @nonallocating
 def note_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float, V: FloatArray) -> None:
-    """The rows of component s that are known, after another step of it."""
+    """`note_row` for the rows of component s that B has, after another step of it."""
     for i in range(B.USED[0]):
         if J.COMPONENT[s].first_joint <= B.OF[i, 0] < J.COMPONENT[s].end_joint:
             note_row(A, J, B, s, i, h, V)
@@ -77,7 +79,7 @@ def note_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float, V: FloatArray) 
 
 @nonallocating
 def list_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float, V: FloatArray) -> int:
-    """Append the rows of component s whose impulses count as given (`motors.let_slip`); the first of them."""
+    """Append to B the rows of component s whose impulses count as given (`motors.let_slip`); the first of them."""
     first = B.USED[0]
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         if J.COUPLING[k].bounded != PRESCRIBED or not acts(J.COUPLING, k, 0):
@@ -94,7 +96,7 @@ def list_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float, V: FloatArray) 
 
 @nonallocating
 def fill_rows(J: Joints, groups: Groups, B: Bounded, g: int, first: int, INDEX: IntArray, PUSH: FloatArray) -> None:
-    """The columns of the rows from `first` on, of group g, whose component is ready to answer."""
+    """Compute the columns of the rows of B from `first` on, which are those of group g, whose component is `ready`."""
     s = groups.COMPONENT[g]
     for i in range(first, B.USED[0]):
         PUSH[:] = 0.0
@@ -115,7 +117,8 @@ def fill_rows(J: Joints, groups: Groups, B: Bounded, g: int, first: int, INDEX: 
 
 @kernel
 def with_bounded(B: Bounded, L: FloatArray, m: int) -> FloatArray:
-    """Impulses of m contacts and those of the bounded rows in the last motion, (m + rows, 2); these are weighed."""
+    """(m + rows, 2) the impulses L of m contacts, then those of the bounded rows in the last motion, which get their
+    effective masses."""
     weigh_rows(B)
     BOTH = np.zeros((m + B.USED[0], 2))
     for i in range(m):
@@ -127,7 +130,7 @@ def with_bounded(B: Bounded, L: FloatArray, m: int) -> FloatArray:
 
 @kernel
 def settle_bounded(B: Bounded, V: FloatArray) -> None:
-    """Velocities V after contacts' impulses have been taken away: let the bounded rows follow."""
+    """Sweep over the bounded rows alone, with V the velocities without the impulses of contacts: V in and out."""
     X = with_bounded(B, np.empty((0, 2)), 0)
     for _ in range(BOUNDED_SWEEPS if B.USED[0] > 0 else 0):
         if sweep_bounded(B, X, 0, V) <= 0.0:

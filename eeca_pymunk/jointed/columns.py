@@ -1,7 +1,7 @@
-"""Contact laws with the answers of components in the place of masses: Y (., 3), the change of velocities per impulse.
+"""Contact laws with the responses of components in place of inverse masses: Y (., 3), change of velocities per impulse.
 
-An impulse on one body moves all that hang together with it. Every contact has two columns, one for its normal and one
-for its tangential impulse, over the *groups* of its two bodies: a component, or one body that no joint holds.
+An impulse on one body moves all bodies of its component. Every contact has two columns, one for its normal and one for
+its tangential impulse, over the *groups* of its two bodies: a group is a component, or one body without joints.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from .groups import Groups, least_mobility
 def make_columns(groups: Groups, ROWS: Rows[Row], m: int) -> Columns:
     """Room for the columns of m contacts, zero."""
     AT, BODY = np.zeros(m + 1, np.int64), np.empty(0, np.int64)
-    for way in range(2):
-        if way == 1:
+    for fill in range(2):  # first AT, then BODY
+        if fill == 1:
             BODY = np.empty(AT[m], np.int64)
         for i in range(m):
             at = AT[i]
@@ -33,24 +33,24 @@ def make_columns(groups: Groups, ROWS: Rows[Row], m: int) -> Columns:
                 if g < 0 or (g == a and g == b and at > AT[i]):
                     continue
                 for w in range(groups.FIRST[g], groups.FIRST[g + 1]):
-                    if way == 1:
+                    if fill == 1:
                         BODY[at] = groups.BODY[w]
                     at += 1
-            if way == 0:
+            if fill == 0:
                 AT[i + 1] = at
     return Columns(AT, BODY, np.zeros((AT[m], 3)), np.zeros((AT[m], 3)), np.zeros(m, np.int64), np.zeros(1))
 
 
 @nonallocating
 def count_operations(J: Joints, C: Columns) -> None:
-    """Add the operations that solutions with columns have taken to the work of the step."""
+    """Add the operations that solves with the columns have taken to the work of the step."""
     J.PROGRESS.effort += C.WORK[0]
     C.WORK[0] = 0.0
 
 
 @nonallocating
 def fill_free(groups: Groups, C: Columns, ROWS: Rows[Row], IM: FloatArray, II: FloatArray, m: int) -> None:
-    """The columns' entries on bodies that no joint holds."""
+    """Compute the columns' entries on bodies without joints."""
     for i in range(m):
         for w in range(C.AT[i], C.AT[i + 1]):
             q = C.BODY[w]
@@ -61,8 +61,8 @@ def fill_free(groups: Groups, C: Columns, ROWS: Rows[Row], IM: FloatArray, II: F
 
 @nonallocating
 def push_group(groups: Groups, g: int, INDEX: IntArray, row: Row, lam: float, beta: float, PUSH: FloatArray) -> None:
-    """Add impulses lam and beta of a contact to PUSH (., 3), as far as they act on bodies of group g, at their places
-    INDEX (k,)."""
+    """Add the impulses lam, beta of a contact on bodies of group g to PUSH (., 3). INDEX (k,): row of PUSH of each
+    body."""
     for q, sign, arm_n, arm_t in ((row.a, -1.0, row.arm_na, row.arm_ta), (row.b, 1.0, row.arm_nb, row.arm_tb)):
         if groups.GROUP[q] == g:
             n, f = sign * lam, sign * beta
@@ -76,11 +76,11 @@ def fill_group(
     J: Joints, groups: Groups, C: Columns, g: int, INDEX: IntArray, about_step: bool, ROWS: Rows[Row], m: int,
     PUSH: FloatArray, ways: int,
 ) -> None:  # fmt: skip
-    """The columns' entries on the bodies of group g, whose component is `ready`.
+    """Compute the columns' entries on the bodies of group g, whose component is `ready`.
 
     Args:
         INDEX: (k,) places of bodies in the scratch of their component.  PUSH: (bodies of the component, 3) scratch.
-        ways: 2, or 1 for those of normal impulses alone.
+        ways: 2, or 1 for the columns of normal impulses alone.
     """
     s = groups.COMPONENT[g]
     for i in range(m):
@@ -99,7 +99,7 @@ def fill_group(
 
 @nonallocating
 def column_rate(C: Columns, ROWS: Rows[Row], i: int, D: FloatArray, tangent: bool) -> float:
-    """Rate of contact i along n (or t) of its own column D."""
+    """Change of contact i's normal (or tangential) velocity by its own column D, 1/mass."""
     x, y = (-ROWS[i].ny, ROWS[i].nx) if tangent else (ROWS[i].nx, ROWS[i].ny)
     arm_a = ROWS[i].arm_ta if tangent else ROWS[i].arm_na
     arm_b = ROWS[i].arm_tb if tangent else ROWS[i].arm_nb
@@ -114,15 +114,15 @@ def column_rate(C: Columns, ROWS: Rows[Row], i: int, D: FloatArray, tangent: boo
 
 @nonallocating
 def is_movable(groups: Groups, row: Row, mobility: float) -> bool:
-    """Whether a contact with such a mobility along n is moved by more than the error of the response."""
+    """Whether a contact's mobility along n (1/mass) is larger than the error of the response."""
     return bool(mobility * row.k_n > least_mobility(groups, row.a, row.b))
 
 
 @nonallocating
 def set_effective_masses(groups: Groups, C: Columns, ROWS: Rows[Row], m: int) -> None:
-    """Let K, A and W of the rows be those of the columns; leave out what hardly can be moved. Where the error of the
-    response is all that impulses change of the slip at a given normal rate, tt - nt^2/nn, bodies can go one way only:
-    then it is 0, and no stick is solved for."""
+    """Compute k, a and w of the rows from the columns, and leave out (OUT) contacts that hardly any impulse moves. At a
+    given normal rate impulses change the slip by a_tt - a_nt^2/a_nn; if that is the error of the response, bodies can
+    move in one direction only: it is set to 0, so that no stick is solved for."""
     for i in range(m):
         nn, tt = column_rate(C, ROWS, i, C.N, False), column_rate(C, ROWS, i, C.T, True)
         nt = 0.5 * (column_rate(C, ROWS, i, C.N, True) + column_rate(C, ROWS, i, C.T, False))
@@ -142,7 +142,7 @@ def set_effective_masses(groups: Groups, C: Columns, ROWS: Rows[Row], m: int) ->
 
 @nonallocating
 def leave_out(C: Columns, L: FloatArray, m: int, V: FloatArray) -> None:
-    """Let contacts that are left out have no impulse, and V follow."""
+    """Set the impulses of contacts that are left out to 0, and update the velocities V."""
     for i in range(m):
         if C.OUT[i] != 0:
             push_column(C, i, -L[i, 0], -L[i, 1], V)

@@ -1,4 +1,4 @@
-"""One component, the bodies that hang together by joints, within an island of the event loop."""
+"""One component (bodies connected by joints) within an island of the event loop."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from .gathered import gather_component
 
 @nonallocating
 def step_in_scratch(J: Joints, s: int, h: float, length: float, whole: bool) -> None:
-    """Step component s by h from what is in its scratch, where its end stands then; its status is in STEPPED.
+    """Step component s by h from the state in its scratch, which then has the end. The status is in STEPPED.
 
-    `whole`: whether order 4 may be had: nothing else acts in the interval.
+    `whole`: whether order 4 is allowed, as no contact acts in the interval.
     """
     J.PROGRESS.effort += COMPONENT_WORK + COMPONENT_WORK_BODY * (J.COMPONENT[s].end_body - J.COMPONENT[s].first_body)
     J.STEPPED[s].status = take_step(workspace(J, s), h, J.TALLY.order if whole else 2, length, J.STEPPED[s])
@@ -59,8 +59,8 @@ def size_joints(W: Workspace, length: float) -> None:
 
 @nonallocating
 def fit_speeds(J: Joints, s: int, length: float) -> None:
-    """Make the velocities that `gather_component` has put into the scratch fit the joints, closed limits included, as
-    an impact at which nothing bounces. The caller accounts for the loss."""
+    """Project the velocities that `gather_component` has put into the scratch onto the joints and closed limits: an
+    impact without bounce. The caller accounts for the loss."""
     W = workspace(J, s)
     size_joints(W, length)
     project(W, SPEEDS)
@@ -68,8 +68,8 @@ def fit_speeds(J: Joints, s: int, length: float) -> None:
 
 @nonallocating
 def keep_apart(W: Workspace) -> None:
-    """Set the targets of all rows to their present values: joints that are apart stay as far apart. Rows must be those
-    of the present poses."""
+    """Set the targets of all rows to their present values, so that joints which are apart stay as far apart. Rows must
+    be those of the present poses."""
     for k in range(W.joints):
         for r in range(W.link[k].rows):
             W.J.HINGE[k].target[r] = W.J.HINGE[k].value[r]
@@ -80,8 +80,8 @@ def close_at_poses(
     A: Scene, J: Joints, s: int, OLD: FloatArray, NEW: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray,
     t: float, h: float,
 ) -> float:  # fmt: skip
-    """Close the joints of component s at the poses NEW (k, 3) of an island, along M^-1 G^T; how much more its springs
-    hold there than at OLD, infinite if joints do not close or limits are passed."""
+    """Close the joints of component s at the poses NEW (k, 3) of an island, along M^-1 G^T. Returns by how much more
+    energy its springs store there than at OLD; infinity if joints do not close or limits are passed."""
     W, b0 = workspace(J, s), J.COMPONENT[s].first_body
     length = gather_component(A, J, s, OLD, V, V, IM, II, t, h)
     size_joints(W, length)
@@ -111,15 +111,15 @@ def close_at_poses(
 
 @nonallocating
 def ready(J: Joints, s: int, h: float, about_step: bool) -> bool:
-    """Whether component s can answer impulses: about the step that `step_component` has just taken (its scratch is back
-    at the start then), or at the poses that `gather_component` has put there."""
+    """Prepare the response of component s to impulses: about the step that `step_component` has just taken (the scratch
+    is then at its start again), or at the poses that `gather_component` has put there. False if there is none."""
     J.TALLY.answers = prepare_response(workspace(J, s), STEP if about_step else SPEEDS, h)
     return bool(J.TALLY.answers >= 0)
 
 
 @nonallocating
 def answer(J: Joints, s: int, about_step: bool, PUSH: FloatArray) -> None:
-    """PUSH (bodies of the component, 3): impulses in, changes of velocity out."""
+    """Replace the impulses PUSH (bodies of the component, 3) by the changes of velocity that they cause."""
     W = workspace(J, s)
     gives = about_step and W.J.JOINT[W.link[0].joint].compliance > 0.0
     respond(W, J.TALLY.answers, PUSH, gives)

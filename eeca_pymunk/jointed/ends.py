@@ -1,4 +1,4 @@
-"""The end of the interval of an island with joints: brought to an earlier instant, and accounted for there."""
+"""The end of the interval of an island with joints: moved to an earlier instant, and entered in the ledger."""
 
 from __future__ import annotations
 
@@ -23,17 +23,11 @@ from .solve import try_jointed
 
 @kernel
 def components_of(A: Scene, J: Joints, root: int) -> IntArray:
-    """The components in an island."""
+    """The components in an island, each once."""
     found, count = np.empty(A.MEMBER[root].bodies, np.int64), 0
     for i in members_of(A, root):
-        s = J.OF[i]
-        if s < 0:
-            continue
-        known = False
-        for c in range(count):
-            known = known or found[c] == s
-        if not known:
-            found[count] = s
+        if A.MEMBER[i].tied == i:
+            found[count] = J.OF[i]
             count += 1
     return found[:count]
 
@@ -46,7 +40,7 @@ def under_way(A: Scene, root: int) -> bool:
 
 @nonallocating
 def take_back(A: Scene, root: int) -> None:
-    """Forget the contacts of the interval that an island has begun."""
+    """Remove the contacts of the interval that an island has begun."""
     for c in range(A.COUNT.pushes):
         if A.PUSHED_BY[c].root == root:
             mark_pair(A, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0)
@@ -55,8 +49,8 @@ def take_back(A: Scene, root: int) -> None:
 
 @kernel
 def shorten(A: Scene, J: Joints, root: int, t: float) -> int:
-    """Let the interval of an island end at instant t, not in the ledger yet; how many contacts it had. Nothing if it is
-    over."""
+    """Let the interval of an island end at instant t, by a new solve from its start; nothing is entered in the ledger.
+    Returns how many contacts it had. Nothing if no interval is under way."""
     if not under_way(A, root):
         return 0
     end_rest(A, root)
@@ -88,7 +82,7 @@ def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
     for i in members_of(A, root):
         A.STATE[i].version += 1
         if empty:
-            # The path is that of an interval that was given up.
+            # No interval was solved: the path is that of an earlier attempt.
             A.BODY[i].since = t
             A.BODY[i].ax, A.BODY[i].ay, A.BODY[i].angular = 0.0, 0.0, 0.0
         else:
@@ -97,8 +91,8 @@ def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
 
 @kernel
 def left_apart(A: Scene, J: Joints, root: int) -> bool:
-    """Whether joints do not hold at the end of the interval of an island, or have given way there by as much as one
-    linear system may leave, or contacts, which are not solved, let bodies go too far."""
+    """Whether the interval of an island ends in a state that no impact should start from: joints are not closed, or
+    were opened by more than LINEAR_APART, or unsolved contacts are too deep."""
     if not under_way(A, root):
         return False
     if A.RESTING[root].strays > INTERVAL_RETRY:

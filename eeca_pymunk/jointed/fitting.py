@@ -1,4 +1,4 @@
-"""Velocities at the end of a lossy interval made to fit the joints, and contacts kept from closing by it."""
+"""Velocities at the end of a lossy interval are projected onto the joints; contacts are kept from closing by that."""
 
 from __future__ import annotations
 
@@ -26,31 +26,29 @@ from .motors import acts_at_once, is_driven
 
 @kernel
 def project_velocities(A: Scene, J: Joints, interval: Interval, L: FloatArray, end: float, scale: float) -> FloatArray:
-    """Make the velocities at the end of a lossy interval fit the joints of the components that contacts push.
+    """Project the velocities at the end of a lossy interval onto the joints of the components that contacts push.
 
-    Bodies that land leave velocities which violate joints, and those would ring for ever: a midpoint rule turns their
-    sign in every step. What this costs enters the ledger. Of a few contacts, those that push do not close by it
-    (`stop_closing`), unless that would change the speed of a motor of unlimited force. Bounded impulses act over times
-    and take no part in this.
-    `scale` is a speed of the island.
+    Bodies that land have velocities there which violate joints. The midpoint rule would change the sign of this
+    violation in every step, without end. The ledger has the loss. In islands of few contacts those that push are kept
+    from closing (`stop_closing`), unless that would change the speed of a motor of unlimited force. Bounded impulses
+    act over times and are left out here. `scale` is a speed of the island.
 
     Returns:
-        (m,) normal impulses of contacts that keep these from closing, which the ledger has.
+        (m,) normal impulses that keep contacts from closing, which are in the ledger.
     """
     isle, groups, ROWS, m, motion = interval.isle, interval.groups, interval.ROWS, interval.m, interval.motion
     NOTHING = np.zeros_like(isle.V)
-    # One more, for GROUP -1.
-    PUSHED = np.zeros(len(groups.COMPONENT) + 1, np.int64)
+    PUSHED = np.zeros(len(groups.COMPONENT) + 1, np.int64)  # one more, for GROUP -1
     for i in range(m):
         if L[i, 0] > 0.0:
             PUSHED[groups.GROUP[ROWS[i].a] + 1] = PUSHED[groups.GROUP[ROWS[i].b] + 1] = 1
-    first, DRIVEN = -1, np.zeros(len(groups.COMPONENT) + 1, np.int64)
+    payer, DRIVEN = -1, np.zeros(len(groups.COMPONENT) + 1, np.int64)
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
         DRIVEN[g + 1] = 1 if s >= 0 and is_driven(J, s) else 0
         if s < 0 or PUSHED[g + 1] == 0 or not acts_at_once(J, s):
             continue
-        first = s if first < 0 else first
+        payer = s if payer < 0 else payer
         length = gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, end, interval.h)
         fit_speeds(J, s, length)
         J.STEPPED[s].projected += fitting_loss(
@@ -61,7 +59,7 @@ def project_velocities(A: Scene, J: Joints, interval: Interval, L: FloatArray, e
             if body < A.PLACE.shape[0] and A.PLACE[body] >= 0:
                 for c in range(3):
                     motion.V[A.PLACE[body], c] = J.LOCAL[w].v0[c]
-    if first < 0 or m > COLUMN_CONTACTS:
+    if payer < 0 or m > COLUMN_CONTACTS:
         return np.zeros(m)
     PUSHING, pushing, fastest = np.empty(m, np.int64), 0, 0.0
     for i in range(m):
@@ -71,13 +69,13 @@ def project_velocities(A: Scene, J: Joints, interval: Interval, L: FloatArray, e
             pushing += 1
             fastest = max(fastest, -normal_rate(ROWS[i], motion.V))
     if fastest > FIT_CLOSING * scale:
-        return stop_closing(A, J, interval, end, PUSHING[:pushing], FIT_RESIDUAL * fastest, first)
+        return stop_closing(A, J, interval, end, PUSHING[:pushing], FIT_RESIDUAL * fastest, payer)
     return np.zeros(m)
 
 
 @nonallocating
 def bring_arms(ROWS: Rows[Row], END: FloatArray, m: int) -> None:
-    """Let the arms of m contacts be about one point of both bodies at END: these have moved apart since."""
+    """Join the points of m contacts at the poses END, where they have moved apart (`advance.apart`)."""
     for i in range(m):
         a, b = ROWS[i].a, ROWS[i].b
         x, y = END[b, 0] - END[a, 0], END[b, 1] - END[a, 1]
@@ -87,11 +85,11 @@ def bring_arms(ROWS: Rows[Row], END: FloatArray, m: int) -> None:
 
 @kernel
 def stop_closing(
-    A: Scene, J: Joints, interval: Interval, end: float, PUSHING: IntArray, fine: float, book: int
+    A: Scene, J: Joints, interval: Interval, end: float, PUSHING: IntArray, fine: float, payer: int
 ) -> FloatArray:
-    """Normal impulses mu (m,), 0 <= mu _|_ u + G S G^T mu >= 0, on the contacts PUSHING, whose rates are u: velocities
-    that fit the joints go on to do so, and contacts do not close. Energy only falls, by -mu.(u + G S G^T mu / 2), also
-    where sweeps are cut short; it is lost by component `book`."""
+    """Normal impulses mu (m,), 0 <= mu _|_ u + G S G^T mu >= 0, on the contacts PUSHING, whose rates are u, with S the
+    response of components at one instant: velocities that fit the joints still do, and contacts do not close. Energy
+    changes by mu.(u + G S G^T mu / 2) <= 0, also if sweeps end early. Component `payer` has the loss in its ledger."""
     isle, groups, ROWS, motion, _, m, n, _, h = interval
     pushing, KEEP = len(PUSHING), ROWS[: len(PUSHING)].copy()
     for i in range(pushing):
@@ -125,8 +123,8 @@ def stop_closing(
     gained = kinetic_energy(motion.V, isle.IM, isle.II, n) - before
     if abs(gained + loss) > FIT_ENERGY * before:
         # Supports move.
-        J.STEPPED[book].projected += loss
-        J.STEPPED[book].supports += gained + loss
+        J.STEPPED[payer].projected += loss
+        J.STEPPED[payer].supports += gained + loss
     else:
-        J.STEPPED[book].projected -= gained
+        J.STEPPED[payer].projected -= gained
     return HELD

@@ -1,4 +1,4 @@
-"""Bodies and joints of a component: into its scratch, and what is remembered of them."""
+"""Bodies and joints of a component: read into its scratch, saved and restored."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ..newton.motion import read_body, seat, size_up
 
 @nonallocating
 def save_joints(J: Joints, s: int) -> None:
-    """Remember the joints of component s as they are, at a new start."""
+    """Save the joints of component s, at the start of an interval."""
     J.COMPONENT[s].parts = 0
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         j = J.COUPLING[k].joint
@@ -23,7 +23,7 @@ def save_joints(J: Joints, s: int) -> None:
 
 @nonallocating
 def restore_joints(J: Joints, s: int) -> None:
-    """What `save_joints` remembers; nothing is done."""
+    """Restore the joints that `save_joints` has saved, and clear the ledger of the interval."""
     clear_interval(J.STEPPED[s])
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         j = J.COUPLING[k].joint
@@ -32,7 +32,7 @@ def restore_joints(J: Joints, s: int) -> None:
 
 @nonallocating
 def rewind_joints(J: Joints, s: int) -> None:
-    """What `save_joints` remembers, but for impulses, with which the next solution begins."""
+    """Restore what a step of component s changes in its joints, but for impulses, with which the next solve begins."""
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         j = J.COUPLING[k].joint
         if J.COUPLING[k].kind == RATCHET:
@@ -43,7 +43,7 @@ def rewind_joints(J: Joints, s: int) -> None:
 
 @nonallocating
 def gather_fixed(A: Scene, J: Joints, s: int, i: int, t: float) -> bool:
-    """Whether joints do not move body i of component s; if so its scratch is filled in, at instant t."""
+    """Whether joints do not move body i of component s. If so, write its state at instant t to its scratch."""
     local, member, n = J.LOCAL[i], J.JOINED[J.COMPONENT[s].first_body + i], A.BODY.shape[0]
     seat(local, member)
     if member.freedoms > 0:
@@ -66,9 +66,9 @@ def gather_component(
     A: Scene, J: Joints, s: int, POSE_OF: FloatArray, V: FloatArray, ACC: FloatArray, IM: FloatArray, II: FloatArray,
     t: float, h: float,
 ) -> float:  # fmt: skip
-    """The bodies of component s into its scratch; its size, the length that errors are measured by.
+    """Write the bodies of component s to its scratch; its size, the length relative to which errors are measured.
 
-    Moved bodies stand at A.PLACE in the arrays of the island; others where they are at instant t.
+    Bodies that joints move have the rows A.PLACE in the arrays of the island; others are read at instant t.
     """
     C = J.COMPONENT[s]
     for i in range(C.end_body - C.first_body):
@@ -82,7 +82,7 @@ def gather_component(
 
 @nonallocating
 def gather_alone(A: Scene, J: Joints, s: int, t: float, h: float) -> float:
-    """`gather_component` of one that is an island of its own, whose bodies are at instant t."""
+    """`gather_component` for a component that is an island of its own, whose bodies are at instant t."""
     C = J.COMPONENT[s]
     for i in range(C.end_body - C.first_body):
         if not gather_fixed(A, J, s, i, t):
@@ -95,8 +95,8 @@ def gather_alone(A: Scene, J: Joints, s: int, t: float, h: float) -> float:
 
 @nonallocating
 def lead_component(A: Scene, J: Joints, s: int, V: FloatArray, ACC: FloatArray, GUESS: FloatArray, h: float) -> None:
-    """Let the next step of component s begin with velocities GUESS (k, 3) at its end, from V under ACC at its start;
-    with what joints did before if it has met a limit, which changed them."""
+    """Begin Newton's method in the next step of component s with velocities GUESS (k, 3) at the end: (GUESS - V)/h -
+    ACC by joints. Not if the last step met a limit: it has a guess for each part (`..joints.parts`)."""
     if meets_limit(J.COMPONENT[s]):
         return
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
@@ -110,7 +110,8 @@ def lead_component(A: Scene, J: Joints, s: int, V: FloatArray, ACC: FloatArray, 
 
 @nonallocating
 def find_places(A: Scene, J: Joints, s: int, INDEX: IntArray) -> int:
-    """INDEX (k,) of the moved bodies of component s: their places in its scratch; how many bodies that has."""
+    """Write to INDEX (k,) the places in the scratch of the bodies of component s that have local numbers (A.PLACE); how
+    many bodies the scratch has."""
     b0, size = J.COMPONENT[s].first_body, J.COMPONENT[s].end_body - J.COMPONENT[s].first_body
     for w in range(size):
         body = J.JOINED[b0 + w].body

@@ -1,4 +1,4 @@
-"""Gentle impulses (`..rows.gentle`) of contacts of bodies that joints hold, and the motion under them."""
+"""Gentle impulses (`..rows.gentle`) of contacts of jointed bodies, and the motion under them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .columns import count_operations, fill_free, set_effective_masses
 
 @kernel
 def solve_gently(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, free: bool) -> None:
-    """Impulses L (m, 2) by sweeps from none, about the motion without any; and the motion under them."""
+    """Impulses L (m, 2) by sweeps that begin at 0, about the motion without impulses; and the motion under them."""
     isle, groups, ROWS, _, C, m, _, _, _ = interval
     L[:m] = 0.0
     advance(A, J, interval, L, B, True, np.empty((0, 3)))

@@ -14,10 +14,10 @@ from ..model.parameters.joints import STRUT, STRUT_BETWEEN
 
 
 class Groups(NamedTuple):
-    """GROUP (k,): the group of a body, -1 for what impulses do not move; BODY (n,): bodies by group, those of group g
-    at FIRST[g] : FIRST[g + 1]; COMPONENT (groups,): that of a group, -1 for a free body; JOINTED: those
-    of components; LEAST (groups,): mobility, as a part of that without joints, of a contact between two bodies of a
-    group that is the error of its response."""
+    """GROUP (k,): group of each body, -1 for bodies that impulses do not move. BODY (n,): bodies in the order of
+    groups, those of group g at FIRST[g] : FIRST[g + 1]. COMPONENT (groups,): its component, -1 for a body without
+    joints. JOINTED: all components. LEAST (groups,): error of the response of a group: a contact between two of its
+    bodies is left out if joints leave it no more than this part of its free mobility."""
 
     GROUP: IntArray
     FIRST: IntArray
@@ -29,7 +29,7 @@ class Groups(NamedTuple):
 
 @kernel
 def find_groups(WHO: IntArray, IM: FloatArray, J: Joints) -> Groups:
-    """The groups of bodies WHO (k,), rows of BODY."""
+    """Find the groups of bodies WHO (k,), rows of BODY."""
     k, OF, LEAST = len(WHO), J.OF, np.full(len(WHO), STRUT_BETWEEN)
     GROUP, NEXT = np.full(k, -1, np.int64), np.full(k, -1, np.int64)
     FIRST, COMPONENT, BODY = np.zeros(k + 1, np.int64), np.empty(k, np.int64), np.empty(k, np.int64)
@@ -61,15 +61,14 @@ def find_groups(WHO: IntArray, IM: FloatArray, J: Joints) -> Groups:
 
 @nonallocating
 def least_mobility(groups: Groups, a: int, b: int) -> float:
-    """The mobility, as a part of that without joints, of a contact of bodies a and b that is the error of their
-    response."""
+    """The error of the response (see `Groups`) for a contact of bodies a and b, as a part of its free mobility."""
     g = groups.GROUP[a]
     return float(groups.LEAST[g]) if g >= 0 and g == groups.GROUP[b] else STRUT_BETWEEN
 
 
 @nonallocating
-def hangs(groups: Groups, COMPONENT: Rows[Component], JOINED: Rows[ComponentBody]) -> bool:
-    """Whether a component of the island hangs on something that joints cannot move."""
+def has_partner(groups: Groups, COMPONENT: Rows[Component], JOINED: Rows[ComponentBody]) -> bool:
+    """Whether a component of the island has a joint to a body that joints cannot move."""
     for s in groups.JOINTED:
         for i in range(COMPONENT[s].first_body, COMPONENT[s].end_body):
             if JOINED[i].freedoms == 0:

@@ -1,4 +1,4 @@
-"""The joints of a scene at the start of a step, and their works and impulses at its end."""
+"""Joints at the start of a step; their works and impulses at its end."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ from ..prediction.work import growth, most_work
 
 @nonallocating
 def mark_edited(A: Scene, J: Joints, STATES: FloatArray, IDS: IntArray) -> None:
-    """Mark the joints of bodies that were edited since the last step: their velocities may not fit. How long
-    intervals of these bodies may be is not known either."""
+    """Mark the joints of bodies that were edited since the last step as EDITED: velocities may violate them. Earlier
+    lengths of intervals of these bodies do not count either."""
     now, before = STATES[READ], STATES[WRITTEN]
     for k in range(IDS.shape[1]):
         i = IDS[BODY_ROW, k]
@@ -48,7 +48,7 @@ def mark_edited(A: Scene, J: Joints, STATES: FloatArray, IDS: IntArray) -> None:
 
 @nonallocating
 def start_joints(A: Scene, J: Joints, STATES: FloatArray, IDS: IntArray, dt: float) -> None:
-    """Begin a step of length dt of a scene with joints, before its states are taken."""
+    """Begin a step of length dt of a scene with joints, before `read_states`."""
     mark_edited(A, J, STATES, IDS)
     J.TALLY.worst = 0
     J.PROGRESS.effort = 0.0
@@ -61,8 +61,8 @@ def start_joints(A: Scene, J: Joints, STATES: FloatArray, IDS: IntArray, dt: flo
 
 @nonallocating
 def work_left(A: Scene, J: Joints) -> float:
-    """Work for joints that a step has left, in operations. Events and joints share the time of a step: the part of
-    their budget that events have used is deducted from that of joints."""
+    """Operations that this step may still spend on joints. Events and joints share the time of a step: the part of its
+    budget that events have used is subtracted from that of joints."""
     return float(J.PROGRESS.budget * (1.0 - A.COUNT.work / most_work(A)) - J.PROGRESS.effort)
 
 
@@ -76,10 +76,10 @@ def most_looks(A: Scene, J: Joints) -> float:
 
 @nonallocating
 def account_component(A: Scene, J: Joints, s: int) -> None:
-    """Account for the works of the joints of component s in their interval.
+    """Enter the works of the joints of component s in their interval into the ledger of the step.
 
-    Where a limit stops bodies within a short time h, a joint that holds works by its impulse times the round-off of its
-    place over h. The loss of the limit is smaller by as much; only the sum is a loss.
+    If a limit stops bodies within a short time h, a joint that holds exactly works by its impulse times round-off of
+    its place over h, and the loss of the limit is smaller by as much: only the difference of both is real (`passed`).
     """
     PAR, B = A.PAR, J.STEPPED[s]
     passed = min(max(B.closed, 0.0), max(B.limited, 0.0))
@@ -94,9 +94,8 @@ def account_component(A: Scene, J: Joints, s: int) -> None:
 
 @nonallocating
 def account_joints(A: Scene, J: Joints) -> None:
-    """Account for the works of all joints until the end of the step, and scale their impulses to those of a whole step
-    by their last forces: an interval may have been shorter, or, of joints not stepped in this step, the last step
-    longer."""
+    """At the end of a step: enter the works of all joints, and scale the impulses of joints whose last solve had
+    another length (a shorter interval, or an earlier step) to the length of this step: forces are kept."""
     for s in range(J.TALLY.components):
         account_component(A, J, s)
     if J.TALLY.worst >= ELASTIC:
@@ -111,7 +110,8 @@ def account_joints(A: Scene, J: Joints) -> None:
 
 @nonallocating
 def load_welds(A: Scene, J: Joints, STATES: FloatArray, IDS: IntArray) -> None:
-    """At the end of a step, leave the impulses of welded bodies' joints in their rows."""
+    """At the end of a step, write the impulses of welded bodies' joints, by the balance of momentum
+    (`..joints.welds`)."""
     PINNED, BODY, dt, links = A.PINNED, A.BODY, A.PAR.dt, 0
     for k in range(len(PINNED)):
         pinned, pull = PINNED[k], mass_of(PINNED[k].inv_mass) * dt

@@ -1,8 +1,8 @@
-"""How long intervals of islands with joints are: as `..islands.candidates` has it for others.
+"""How long intervals of islands with joints may be; `..islands.candidates` is the same for other islands.
 
-Paths are parabolas between both ends of an interval, on which bodies are looked for impacts; joints hold at the ends.
-So bodies that may meet others turn by no more than half a radian, and leave their free flight by no more than half
-their size; contacts go no deeper than they have room for.
+Between both ends of an interval paths are parabolas, which are searched for impacts; joints only hold at the ends.
+Therefore bodies that may meet others turn by no more than half a radian, and leave their free flight by no more than
+half their size; contacts close by no more than their depth limit.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ _CUBIC = 4.0 / 27.0  # largest value of s^2 (1 - s)
 
 @nonallocating
 def may_meet_others(A: Scene, i: int, way: float, t: float, h: float, KEY: IntArray, m: int) -> bool:
-    """Whether body i, whose points go no farther than `way` in an interval h from instant t, may leave its margin
-    circles, or meet what is not among the m contacts KEY."""
+    """Whether body i, whose points move by at most `way` in an interval h from instant t, may leave its margin circles,
+    or meet a shape that is not in the m contacts KEY."""
     for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
         if norm(A.BODY[i].x - A.MARK[s].x, A.BODY[i].y - A.MARK[s].y) + A.BODY[i].extent + way > A.MARK[s].margin:
             return True
@@ -55,12 +55,12 @@ def strays(
     A: Scene, i: int, wx: float, wy: float, turned: float, V: FloatArray, ACC: FloatArray, t: float, h: float,
     KEY: IntArray, m: int,
 ) -> float:  # fmt: skip
-    """How many times too far body i goes in an interval h from instant t, with way w = (wx, wy, turned), velocity V at
-    the end, and accelerations ACC without joints and contacts, beside the m contacts KEY.
+    """How many times too long an interval h from instant t is for the motion of body i; 0 if the body meets nothing but
+    the m contacts KEY.
 
-    It turns, and leaves its free flight by w - h (v + h ACC/2) at the end; between both ends its path, a cubic by
-    places and velocities there, leaves the parabola by (4/27) h |v + V - 2 w/h|, which shows what swings there and
-    back.
+    With way w = (wx, wy, turned), velocity V at the end and accelerations ACC without joints and contacts, the body
+    leaves its free flight by w - h (v + h ACC/2) at the end. In between, the cubic through places and velocities at
+    both ends leaves the parabola by (4/27) h |v + V - 2 w/h|: this detects bodies that swing there and back.
     """
     b = A.BODY[i]
     if b.extent == 0.0:
@@ -78,7 +78,7 @@ def strays(
 
 @nonallocating
 def excess_alone(A: Scene, J: Joints, s: int, t: float, h: float) -> float:
-    """How many times too long an interval h of component s alone is, whose end is in the scratch."""
+    """`excess` for component s alone, with its end in the scratch."""
     far, first = 0.0, J.COMPONENT[s].first_body
     for w in range(J.COMPONENT[s].end_body - first):
         if J.LOCAL[w].freedoms > 0:
@@ -91,9 +91,9 @@ def excess_alone(A: Scene, J: Joints, s: int, t: float, h: float) -> float:
 
 @nonallocating
 def within_sagitta(A: Scene, found: IntArray, t: float) -> float:
-    """Length of an interval from instant t: to the end of the step, or until points of a wall that turns have left
-    their chord by SAGITTA of a body that it touches, in one of the pairs `found` (p, 2): R (w h)^2 / 8 at a distance R
-    from its middle. What friction and joints hold on such a wall creeps by as much."""
+    """Length of an interval from instant t: to the end of the step, or until the points of a rotating wall leave their
+    chord by SAGITTA times the size of a body that touches it, R (w h)^2 / 8 at a distance R from the wall's centre.
+    Bodies that friction and joints hold on such a wall creep by as much. `found` (p, 2): pairs of shapes."""
     most = 0.0
     for c in range(found.shape[0]):
         small = smaller(A, found[c, 0], found[c, 1])
@@ -107,7 +107,7 @@ def within_sagitta(A: Scene, found: IntArray, t: float) -> float:
 
 @kernel
 def excess(A: Scene, interval: Interval) -> float:
-    """How many times too long an interval is for the motion of its bodies."""
+    """How many times too long an interval is for the motion of its bodies; 0 if it is not."""
     isle, _, ROWS, motion, _, m, n, t, h = interval
     far, KEY = 0.0, np.empty(m, np.int64)
     for z in range(m):
@@ -121,8 +121,8 @@ def excess(A: Scene, interval: Interval) -> float:
 
 @kernel
 def too_deep_on_way(A: Scene, interval: Interval) -> float:
-    """How many times too long an interval is, as one of m contacts is deeper at its end, or in its middle, than the
-    linear rows predict: what slides along a wall that turns may be past the end of the wall by the end."""
+    """How many times too long an interval is because one of m contacts is deeper at its end, or in its middle, than the
+    linear rows predict: a body that slides along a rotating wall may be past the wall's end by then."""
     isle, _, ROWS, motion, _, m, _, _, h = interval
     MIDDLE = isle.POSE + 0.25 * (h * isle.V + motion.WAY)
     half = too_deep_at_end(A, isle, MIDDLE, ROWS, m, 0.5 * h, True)
@@ -130,9 +130,9 @@ def too_deep_on_way(A: Scene, interval: Interval) -> float:
 
 
 @nonallocating
-def led_in(A: Scene, interval: Interval) -> int:
-    """A contact that joints lead deeper than an interval allows, -1 if there is none: those that are left out (OUT) are
-    not moved by any impulse."""
+def forced_deeper(A: Scene, interval: Interval) -> int:
+    """A contact that joints force deeper than an interval allows, -1 if there is none; only one that is left out (OUT)
+    can be, as no impulse moves it."""
     ROWS, OUT, WAY = interval.ROWS, interval.C.OUT, interval.motion.WAY
     for z in range(interval.m):
         closed = normal_rate(ROWS[z], WAY)
@@ -144,7 +144,7 @@ def led_in(A: Scene, interval: Interval) -> int:
 
 @nonallocating
 def sinks(A: Scene, interval: Interval) -> bool:
-    """Whether any contact becomes deeper in an interval by more than UNSOLVED_DEPTH of what an interval allows."""
+    """Whether any contact becomes deeper in an interval by more than UNSOLVED_DEPTH of its depth limit."""
     ROWS, WAY = interval.ROWS, interval.motion.WAY
     for z in range(interval.m):
         closed = normal_rate(ROWS[z], WAY)

@@ -1,4 +1,4 @@
-"""Lifting the bodies of an island with joints out of each other, paid from what its contacts have just lost."""
+"""Penetration correction of islands with joints, paid from what contacts have just lost."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from .advance import Interval, Motion
 from .columns import fill_free, fill_group, make_columns, set_effective_masses
 from .component import close_at_poses, ready
 from .gathered import find_places, gather_component
-from .groups import find_groups, hangs
+from .groups import find_groups, has_partner
 from .motors import keeps_speed
 
 
@@ -34,7 +34,8 @@ from .motors import keeps_speed
 def raise_gaps(
     problem: JointedProblem, n: int, GAPS: FloatArray, D: FloatArray, tolerance: float
 ) -> FloatArray:  # fmt: skip
-    """Displacements D (k, 3) = Y mu, 0 <= mu _|_ g + G D >= 0, of contacts that are not left out; mu (m,)."""
+    """Displacements D (k, 3) = Y mu with 0 <= mu _|_ g + G D >= 0, for contacts that are not left out; returns mu
+    (m,)."""
     for i in range(problem.m):
         if problem.C.OUT[i] != 0:
             GAPS[i] = np.inf
@@ -42,14 +43,14 @@ def raise_gaps(
 
 
 @kernel
-def lift_island(A: Scene, J: Joints, interval: Interval, root: int, end: float, lost: float, anew: bool) -> None:
-    """Lift the poses at the end of an island's motion. What contacts have `lost`, now and before, pays; where a moving
-    body without mobility is deep in the island (`depths.driven`) that does the work beyond.
-    `anew`: whether the columns are yet to be made."""
+def lift_island(A: Scene, J: Joints, interval: Interval, root: int, end: float, lost: float, build: bool) -> None:
+    """Correct penetration at the end of an island's motion. The cost is at most what contacts have `lost`, now and
+    before; if a moving body without mobility is deep in the island (`depths.driven`), that body does the remaining
+    work. `build`: whether the columns of all components have to be computed."""
     isle, groups, ROWS, _, _, m, n, _, _ = interval
     raised = driven(A, isle, ROWS, n, m)
     budget = lost + A.RESTING[root].lost
-    spent = correct_overlaps(A, J, interval, end, math.inf if raised else budget, anew)
+    spent = correct_overlaps(A, J, interval, end, math.inf if raised else budget, build)
     if len(groups.JOINTED) > 0:
         paid, one = min(spent, max(budget, 0.0)) if raised else spent, J.STEPPED[groups.JOINTED[0]]
         one.lifted += paid
@@ -77,12 +78,13 @@ def lift_at_cut(A: Scene, J: Joints, root: int, t: float) -> None:
 
 
 @kernel
-def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget: float, anew: bool) -> float:
-    """Lift the poses at the end of an island's motion by at most what `budget` pays; the energy that it costs.
+def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget: float, build: bool) -> float:
+    """Move the poses at the end of an island's motion out of each other, at a cost of at most `budget`; returns the
+    cost.
 
-    The cost is -m a.D for displacements D, turns included, and what springs hold more. Joints hold: D goes along them,
-    and what is left of second order is closed. Where nothing without mobility is in the island, its angular momentum
-    stays: velocities at the end turn by what the displacements have changed of it.
+    It is -m a.D for displacements D, rotations included, and the energy that springs gain. D is along the joints; their
+    errors of second order are then closed. A free island keeps its angular momentum: velocities at the end rotate by
+    what the displacements have changed of it.
     """
     isle, groups, ROWS, motion, C, m, n, _, h = interval
     V, WAY, END = motion.V, motion.WAY, motion.END
@@ -96,9 +98,9 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget
     NOTHING, INDEX = np.zeros_like(V), np.full(len(isle.IM), -1, np.int64)
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
-        # But for bounded rows, which hold speeds, bodies answer as they did in the interval: where a spring is stiffer
-        # than their inertia, they move without it.
-        if s >= 0 and (anew or keeps_speed(J, s)):
+        # The columns of the interval, in which stiff springs resist, so that D hardly strains them; but bounded rows
+        # would keep speeds in it.
+        if s >= 0 and (build or keeps_speed(J, s)):
             gather_component(A, J, s, END, V, NOTHING, isle.IM, isle.II, end, h)
             places = find_places(A, J, s, INDEX)
             if ready(J, s, 2.0, False):
@@ -108,11 +110,11 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget
     D = np.zeros_like(V)
     raise_gaps(JointedProblem(KEEP, C, room_for_rows(0, 0), m), n, GAPS, D, 1e-3 * -deepest)
     cost, part = -against(isle.ACC, isle.IM, isle.II, n, D), admissible(D, isle.EXTENT, n, size)
-    if cost * part > 0.5 * budget:
+    if cost * part > 0.5 * budget:  # the other half is for what closing joints costs; else `part` becomes smaller
         part = 0.5 * budget / cost
     STORED = np.zeros(len(groups.COMPONENT))
-    # Of what something holds no body is turned.
-    ALL = np.ones(n if len(isle.IM) == n and not hangs(groups, J.COMPONENT, J.JOINED) else 0, np.uint8)
+    # In an island that is not free no body is rotated.
+    ALL = np.ones(n if len(isle.IM) == n and not has_partner(groups, J.COMPONENT, J.JOINED) else 0, np.uint8)
     for _ in range(4):
         spent = 0.0
         NEW = END + part * D

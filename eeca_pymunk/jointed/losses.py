@@ -1,4 +1,4 @@
-"""The energy that contacts of an island with joints lose, and impulses scaled until it is what they have to lose."""
+"""The energy that contacts of an island with joints lose; impulses scaled until that is what their laws require."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from .bounded_rows import settle_bounded
 
 @nonallocating
 def slip_of(row: Row, WAY: FloatArray, h: float) -> float:
-    """How far a contact slips in h while bodies go WAY: its surfaces move at a rate, bodies by ways, of which nothing
-    may be rounded away where h is short."""
+    """Way of the slip of a contact in h. Bodies enter by their ways WAY and not by WAY/h, whose round-off is large if h
+    is short."""
     return slip_rate(row, WAY) + h * (row.surface + row.swung)
 
 
 @nonallocating
 def lost(interval: Interval, L: FloatArray) -> float:
-    """What contacts lose with impulses L in an interval: their part in the energy of the island, exactly."""
+    """The energy that contacts lose with impulses L in an interval; exact, as the work of L on the ways."""
     WAY, h, total = interval.motion.WAY, interval.h, 0.0
     for i in range(interval.m):
         row = interval.ROWS[i]
@@ -33,8 +33,8 @@ def lost(interval: Interval, L: FloatArray) -> float:
 
 @nonallocating
 def work_error(interval: Interval, L: FloatArray, slow: float, pull: float, known: float) -> float:
-    """Round-off of the energy that contacts lose: of the energy of the island, and of their works, of whose impulses
-    times speed it is the part `known`. `slow`, `pull`: see `press.solve_contacts`."""
+    """Round-off of the energy that contacts lose: of the island's energy, and `known` times the sum of impulses times
+    speed. `slow`, `pull`: see `press.solve_contacts`."""
     isle, h = interval.isle, interval.h
     energy, pressed = 0.0, 0.0
     for q in range(interval.n):
@@ -49,14 +49,14 @@ def lock_jointed(
     A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, free: bool, elastic: bool, owed: float,
     error: float,
 ) -> None:  # fmt: skip
-    """Scale the impulses L of contacts by s until these lose `owed` at least, or if `elastic` just that, but for
-    `error`. The loss is a quadratic function, D(s) = s p - s^2 q."""
+    """Scale the impulses L of contacts by s until these lose at least `owed`, or if `elastic` exactly that, up to
+    `error`. The loss is D(s) = s p - s^2 q. s follows from the slope p - 2 q at s = 1, again for each new motion."""
     ROWS, motion, C, m = interval.ROWS, interval.motion, interval.C, interval.m
     for tries in range(PRESS_LOCKS + 1):
         loss = lost(interval, L)
         if loss >= owed - error and (not elastic or loss <= owed + error):
             break
-        p, q2 = 0.0, 0.0
+        p, q = 0.0, 0.0
         FREE = motion.MEAN.copy()
         push_columns(C, L, m, -1.0, FREE)
         settle_bounded(B, FREE)
@@ -68,14 +68,13 @@ def lock_jointed(
                 else:
                     without, after = normal_rate(ROWS[i], FREE), normal_rate(ROWS[i], motion.MEAN)
                 p -= 0.5 * L[i, tangent] * (before + without)
-                q2 += 0.5 * L[i, tangent] * (after - without)
-        # By its slope at s = 1.
-        slope = p - 2.0 * q2
+                q += 0.5 * L[i, tangent] * (after - without)
+        slope = p - 2.0 * q
         s = 1.0 + (owed - loss) / slope if slope < 0.0 else 0.0
         if tries == PRESS_LOCKS or J.PROGRESS.effort > J.PROGRESS.share or (elastic and not 0.0 < s < 2.0):
             s = 0.0
         elif not 0.1 < s < 2.0:
-            # The loss of s L has the sign of s p for small s: half of them, again and again.
+            # For small s the loss of s L has the sign of p: L is halved, repeatedly.
             s = 0.5 if owed <= 0.0 else 0.0
         for i in range(m):
             L[i, 0] = s * L[i, 0] if s > 0.0 else 0.0

@@ -1,4 +1,4 @@
-"""Islands with joints brought to the instant at which they meet others, on their own paths."""
+"""Islands with joints are brought to the instant at which they meet other shapes, on their own paths."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ from .paths import crossing_of_paths, passes_through
 
 @nonallocating
 def begun(A: Scene, i: int) -> float:
-    """The latest instant at which intervals of islands without joints have begun, or just ended, that shapes of
-    body i may touch."""
+    """The latest instant at which an interval of an island without joints has begun or ended, of those islands that
+    shapes of body i may touch."""
     latest = 0.0
     for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
         for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
@@ -45,7 +45,7 @@ def begun(A: Scene, i: int) -> float:
 
 @kernel
 def shorten_both(A: Scene, J: Joints, one: int, other: int, t: float) -> int:
-    """`shorten` of two islands, or of one if they are the same; how many contacts they had."""
+    """`shorten` two islands, or one if both are the same; returns how many contacts they had."""
     loaded = int(shorten(A, J, one, t))
     if other != one:
         loaded += shorten(A, J, other, t)
@@ -54,8 +54,8 @@ def shorten_both(A: Scene, J: Joints, one: int, other: int, t: float) -> int:
 
 @nonallocating
 def too_late(A: Scene, J: Joints, roots: tuple[int, int], t: float) -> float:
-    """The instant by which one of both islands, whose intervals end at t, has come further than it can: it
-    `passes_through` another shape, or is `left_apart` at t; inf if none has."""
+    """The instant by which one of both islands, whose intervals end at t, has moved too far: it `passes_through`
+    another shape, or is `left_apart` at t; infinity if neither has."""
     if left_apart(A, J, roots[0]) or left_apart(A, J, roots[1]):
         return t
     return min(passes_through(A, roots[0], t), passes_through(A, roots[1], t))
@@ -63,10 +63,10 @@ def too_late(A: Scene, J: Joints, roots: tuple[int, int], t: float) -> float:
 
 @kernel
 def end_before(A: Scene, J: Joints, root: int, t: float, fits: bool, spent: bool) -> bool:
-    """End the interval of an island, which has been shortened to instant t. Unless it is known that it `fits`: where
-    joints do not hold at its end, or it has led through others, the island goes half as far, and so on, or not at all,
-    and stays there until t, or where moving partners have it (`carry`); or it waits there for the end of the step,
-    whose work is `spent`. Returns whether it does either."""
+    """End the interval of an island, which was shortened to instant t; whether the island ends before t. Unless the
+    interval is known to fit (`fits`), it is halved while joints do not hold at its end or it has passed through other
+    shapes, at last to nothing. The island then stays there until t, or moves with its moving partners (`carry`); if the
+    work of the step is `spent`, until the end of the step."""
     if not under_way(A, root):
         return False
     began, then = A.BODY[root].since, t
@@ -86,20 +86,21 @@ def end_before(A: Scene, J: Joints, root: int, t: float, fits: bool, spent: bool
 
 @kernel
 def locate_impact(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
-    """Bring the islands of shapes a and b, which are seen to meet at instant t, to the instant at which they do; that
-    instant, and whether they are apart there.
+    """Bring the islands of shapes a and b, predicted to meet at instant t, to the instant at which they do. Returns it,
+    and whether the shapes are apart there.
 
-    The end of a coarse interval is not a continuous function of its length: stiff springs swing more than once in it.
-    If the shapes are on the far side of each other, or on the way there, as their paths meet before the end, or it is
-    `too_late` for joints or others, the instant is before that. If no interval is found that ends where they touch,
-    both end at one at which they are apart; what has no interval that fits is there before, and stays until then.
+    An interval that ends earlier has another path, so t is found by secants on the gap at the end of shortened
+    intervals. The gap is no continuous function of their length: stiff springs swing more than once in a coarse
+    interval. If shapes are on the far side of each other, their paths cross before the end, or it is `too_late`, t is
+    halved towards the last instant at which they were apart. If no interval ends at contact, both end where they are
+    apart; an island for which no interval fits stays where it is until then.
     """
     i, j = A.LINK[a].owner, A.LINK[b].owner
     roots = (A.STATE[i].island, A.STATE[j].island if A.BODY[j].inv_mass > 0.0 else -1)
     if not (under_way(A, roots[0]) or under_way(A, roots[1])):
-        # They have been brought to t, and have no paths beyond it: only others that they touch have joints.
+        # Both are at t, and have no paths beyond it: only bodies that they touch have joints.
         return t, False
-    # Not back in time, to where overlapping shapes would have met, nor on to where an interval would be too long.
+    # Not before any path begins, where overlapping shapes would have met, nor after an interval's end.
     least, latest = A.BODY[i].since, A.PAR.dt
     if A.BODY[j].inv_mass > 0.0:
         least = max(least, A.BODY[j].since)
@@ -111,34 +112,34 @@ def locate_impact(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float,
                 least = max(least, begun(A, member))
         elif end == 0 or A.BODY[j].inv_mass > 0.0:
             least = max(least, begun(A, i if end == 0 else j))
-    # Nor beyond the next event of others, which is to be met first.
+    # Nor after the next event of other bodies, which comes first.
     if A.COUNT.heap > 0:
         latest = min(latest, max(t, A.HEAP_TIME[0]))
     small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
-    # What overlaps at the start, and does not close there, meets where it is as deep again.
+    # Shapes that overlap at the start without closing meet when they are as deep again.
     start, rate = gap_and_rate(A, a, b, least)
-    # What closes by round-off, as after an impact, does not: an impact would leave it so, again and again.
+    # Closing by round-off, as after an impact, does not count: an impact would not change it.
     rate = 0.0 if abs(rate) <= CLOSES * max(speed(A, i), speed(A, j)) else rate
     level = min(start, 0.0) if rate >= 0.0 else 0.0
-    before, gap_before, g, close, loaded = -1.0, 0.0, 0.0, 0.0, 0
+    before, gap_before, g, touch, loaded = -1.0, 0.0, 0.0, 0.0, 0
     apart, crossed, crosses = least, False, False
     spent = J.PROGRESS.effort > J.PROGRESS.budget
     most = 1 if spent or in_large_island(A, a, b) else MEET_SECANTS_LOADED
     for tries in range(MEET_SECANTS):
         loaded = shorten_both(A, J, roots[0], roots[1], t)
         g = gap(A, a, b, t)[0] - level
-        close = MEET if loaded == 0 else MEET_LOADED if loaded <= COLUMN_CONTACTS else MEET_MANY
+        touch = MEET if loaded == 0 else MEET_LOADED if loaded <= COLUMN_CONTACTS else MEET_MANY
         crosses, through = False, t
-        if g + level > close * small:
+        if g + level > touch * small:
             through, crosses = crossing_of_paths(A, a, b, t)
         # Depths add up from impact to impact.
         deep = not spent and g < -MEET_MANY * small
-        if ((loaded > 0 or spent) and tries + 1 >= most and not deep) or abs(g) <= close * small:
+        if ((loaded > 0 or spent) and tries + 1 >= most and not deep) or abs(g) <= touch * small:
             break
         secant = before >= 0.0 and t != before
         slope = (g - gap_before) / (t - before) if secant else gap_and_rate(A, a, b, t)[1]
-        if not slope < 0.0 and g < -close * small and start >= -close * small:
-            # Beyond the middle of a thin shape the way out is on its far side.
+        if not slope < 0.0 and g < -touch * small and start >= -touch * small:
+            # Beyond the middle of a thin shape the normal is that of its far side.
             through, crosses = crossing_of_paths(A, a, b, t)[0], True
         if crosses:
             if tries + 1 == MEET_SECANTS:
@@ -148,7 +149,7 @@ def locate_impact(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float,
             continue
         if g > 0.0 and not (left_apart(A, J, roots[0]) or left_apart(A, J, roots[1])):
             apart = t
-        # The islands end where they were brought last.
+        # The last attempt stays.
         if not slope < 0.0 or tries + 1 == MEET_SECANTS:
             break
         before, gap_before = t, g
@@ -159,22 +160,22 @@ def locate_impact(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float,
             break
         t = then
     if loaded == 0 and rate >= 0.0 and g < -MEET_MANY * small:
-        crosses = True  # what joints bring together again meets before secants come to
+        crosses = True  # joints bring the shapes together before the first secant
     fits = False
     for _ in range(MEET_HALVINGS):
         late = math.inf if crosses else too_late(A, J, roots, t)
         fits = not (crosses or late < math.inf)
         if fits:
             break
-        if late <= apart:  # it is passed before, too
+        if late <= apart:  # shapes were too far at `apart` already
             apart = least
         crossed, t = True, 0.5 * (apart + t)
         shorten_both(A, J, roots[0], roots[1], t)
         g = gap(A, a, b, t)[0] - level
-        crosses = g < -close * small or (g + level > close * small and crossing_of_paths(A, a, b, t)[1])
+        crosses = g < -touch * small or (g + level > touch * small and crossing_of_paths(A, a, b, t)[1])
     if rate >= 0.0 and t - least <= A.PAR.instant:
-        # Nothing closes at the start before joints act: at a limit that turns velocities into the other shape, say.
-        # The more impacts the bodies have had, the longer they may, so that the step ends.
+        # Shapes only close once joints act, for instance at a limit that directs velocities into the other shape. The
+        # interval doubles with each impact of the bodies, so that the step ends.
         met = min(max(A.STATE[i].events, A.STATE[j].events), MEET_DOUBLINGS)
         t = min(least + 2.0 ** (met + 1) * A.PAR.instant, latest)
         shorten_both(A, J, roots[0], roots[1], t)
@@ -186,8 +187,8 @@ def locate_impact(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float,
     for root in roots:
         if end_before(A, J, root, t, fits, work_left(A, J) < 0.0):
             g, crossed = math.inf if work_left(A, J) < 0.0 else gap(A, a, b, t)[0] - level, True
-    # What closes within an instant, which is no interval, meets now.
-    return t, crossed and g > max(close * small, -rate * A.PAR.instant)
+    # Shapes that close within PAR.instant, which is no interval, meet now.
+    return t, crossed and g > max(touch * small, -rate * A.PAR.instant)
 
 
 @nonallocating

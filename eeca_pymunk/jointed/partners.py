@@ -1,4 +1,4 @@
-"""Islands that hang on a moving body, where a step ends at another instant than the one to which they were brought."""
+"""Islands jointed to a moving body, if the step ends at another instant than the one at which they are."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .gathered import gather_alone
 
 @nonallocating
 def has_moving_partner(A: Scene, J: Joints, s: int) -> bool:
-    """Whether a body that moves, but not by impulses, has a joint with component s."""
+    """Whether component s has a joint to a moving body that impulses do not move."""
     for w in range(J.COMPONENT[s].first_body, J.COMPONENT[s].end_body):
         body = int(J.JOINED[w].body)
         if J.JOINED[w].freedoms == 0 and body < A.BODY.shape[0] and A.BODY[body].inv_mass == 0.0:
@@ -30,9 +30,9 @@ def has_moving_partner(A: Scene, J: Joints, s: int) -> bool:
 
 @kernel
 def carry(A: Scene, J: Joints, root: int, t: float) -> None:
-    """Move the bodies of an island that are at another instant than t, the end of the step, to where joints with moving
-    partners have them at t, along M^-1 G^T: else joints would be apart by the partners' way. Partners do the work,
-    against all forces on the bodies."""
+    """Move an island whose bodies are at an earlier instant to t, the end of the step, as far as its joints with moving
+    partners require it, along M^-1 G^T: otherwise these joints would be apart by the partners' way. The work against
+    all forces on the bodies is the partners', external."""
     began = A.BODY[root].since
     if began == t:
         return

@@ -19,24 +19,24 @@ from .ends import under_way
 
 @nonallocating
 def crossing_of_paths(A: Scene, a: int, b: int, t: float) -> tuple[float, bool]:
-    """Instant before t at which the paths of shapes a and b, which are apart at t, meet, and whether there is one."""
+    """The instant before t at which the paths of shapes a and b, apart at t, meet; and whether there is one."""
     through, certain = time_of_impact(A, a, b, t)
     return through, bool(certain and through < t)
 
 
 @nonallocating
 def is_beyond(A: Scene, a: int, b: int, through: float, t: float) -> bool:
-    """Whether shapes a and b, which meet at instant `through` on their paths, are on the far sides of each other at t:
-    the normal there is against that at which they meet."""
+    """Whether shapes a and b, whose paths meet at instant `through`, are on the far sides of each other at t: the
+    normals at both instants are opposite."""
     before, after = gap(A, a, b, through), gap(A, a, b, t)
     return bool(before[1] * after[1] + before[2] * after[2] < 0.0)
 
 
 @nonallocating
 def passes_through(A: Scene, root: int, t: float) -> float:
-    """The instant by which a shape of an island has come through one that it has no contact with at t, the end of its
-    interval, or t if it is deeper in it than an interval allows, and than at its start; inf if none does: the path of
-    an interval that is shortened is another one, which was not searched for impacts."""
+    """The first instant at which a shape of an island has passed through one without contact with it, on the interval
+    that ends at t; t if it is deeper there than an interval allows and than at its start; infinity if neither. A
+    shortened interval needs this test: its path is another one, which was not searched for impacts."""
     i = root if under_way(A, root) else -1
     while i >= 0:
         for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):

@@ -1,12 +1,12 @@
-"""Contacts of an island with joints in one bounded solve, joints exact.
+"""Contacts of an island with joints in one bounded solve; joints are exact.
 
     M (v+ - v) = h M a + F_s + J^T Lam + G^T lam + T^T beta,    J, F_s the discrete rows of the joints,
 
-contact rows at the predicted middle, as `..contacts.geometry`. The contacts' impulses act on the components as forces
-that are constant over the interval, so that joints, springs, limits and motors are those of `..joints` to round-off
-however badly contacts are truncated, and a contact loses -lam . (way of its row)/h exactly. Impulses follow from
-Newton's method in the space of contacts: components are stepped with the present impulses, answer by their columns, and
-the contacts' laws are solved with these; until the velocities of both agree.
+contact rows at the predicted middle, as in `..contacts.geometry`. The impulses of contacts act on components as
+constant forces over the interval. So joints, springs, limits and motors satisfy `..joints` to round-off even if the
+contacts' solve is truncated, and a contact loses exactly -lam . (way of its row)/h. Impulses follow from Newton's
+method in the space of contacts: components are stepped under the present impulses, their columns linearise them, and
+the contacts' laws are solved with the columns, until the velocities of both agree.
 """
 
 from __future__ import annotations
@@ -56,14 +56,14 @@ from .advance import Interval, advance, advance_aligned, align, farthest_apart
 from .bounded_rows import make_bounded, settle_bounded, with_bounded
 from .columns import count_operations, fill_free, leave_out, set_effective_masses
 from .gentle import solve_gently
-from .groups import Groups, hangs
+from .groups import Groups, has_partner
 from .losses import lock_jointed, lost, work_error
 from .secant import fit_columns
 
 
 @nonallocating
 def some_taut(J: Joints, groups: Groups) -> bool:
-    """Whether the pull of its joints holds a component across them (`..joints.taut`)."""
+    """Whether a component is held across its joints by their pull (`..joints.taut`)."""
     for s in groups.JOINTED:
         if J.COMPONENT[s].taut > 0:
             return True
@@ -81,9 +81,9 @@ def some_give(J: Joints, groups: Groups) -> bool:
 
 @nonallocating
 def aims(change: float, slow: float, fast: float, elastic: bool) -> tuple[float, float, float]:
-    """The speed by which errors of an island are measured; the difference between the velocities of contacts and those
-    of components at which iterations end; the residual of the contacts' laws. change: |a| h.  slow, fast: speeds of the
-    island."""
+    """Three tolerances of the iterations, each a velocity: the unit of errors; the difference between the velocities of
+    contacts and components at which iterations end; the residual of the contacts' laws. change: |a| h.  slow, fast:
+    speeds of the island."""
     if elastic:
         return change + fast, AGREE_ELASTIC * (change + fast), 1e-15 * (change + fast)
     scale, rests = change + slow, slow < change
@@ -92,8 +92,8 @@ def aims(change: float, slow: float, fast: float, elastic: bool) -> tuple[float,
 
 @kernel
 def accelerations(interval: Interval, L: FloatArray, B: Bounded) -> tuple[FloatArray, float]:
-    """Accelerations (k, 3) of the bodies without contacts: those of the motion, less what the columns give for its
-    impulses L; and the largest one of a point."""
+    """Accelerations (k, 3) of the bodies without contacts: those of the motion, less the effect of its impulses L by
+    the columns; and the largest of any point."""
     isle, motion, h = interval.isle, interval.motion, interval.h
     EFFECT = motion.MEAN.copy()
     push_columns(interval.C, L, interval.m, -1.0, EFFECT)
@@ -109,8 +109,13 @@ def solve_contacts(
 ) -> bool:  # fmt: skip
     """Impulses L (in: guesses) of the m contacts of an island, and the motion under them; whether they have converged.
 
+    Each iteration steps the components under L, and ends if their velocities agree with FORESEEN, those that the
+    contacts' laws gave before; else it solves these laws with the columns, for L and FORESEEN. Columns are computed
+    again in every CHORD-th iteration, else updated (`secant`). If iterations do not end, the impulses with the best
+    agreement (LEAST) are taken, or gentle ones (`gentle`). The energy lock comes last.
+
     Args:
-        slow, fast, pull: speeds and acceleration of the island.  owed: energy >= 0 that it has to lose at least.
+        slow, fast, pull: see `..contacts.interval.speeds`.  owed: energy >= 0 that the island has to lose at least.
         interval: out, the columns of the contacts in their last solution.
     """
     isle, groups, ROWS, motion, C, m, n, _, h = interval
@@ -125,10 +130,12 @@ def solve_contacts(
         rounds = OUTER_PART if before_end(A, interval.t + h) else OUTER_MANY
         if n >= LARGE_ISLAND:
             most = sweeps_of(n, interval.t)
-    # Where many contacts do not come to an end, joints come near enough until the last step of the components.
+    # While many contacts have not converged, joints need not be exact before the last step of the components.
     if J.PROGRESS.effort > J.PROGRESS.budget:
         rounds, most = OUTER_PART, min(most, PRESS_SWEEPS)
     J.PROGRESS.near = 0.0 if exactly or slow < pull * h else JOINTS_NEAR
+    # off: difference between the velocities of contacts and components, best: its smallest value since contacts last
+    # gained energy, reached: of all; worst: residual of the laws; bent: error of the arms.
     EFFECT = np.zeros((len(isle.IM), 3))
     PREVIOUS = np.empty((len(isle.IM), 3))
     FORESEEN, UNKNOWN = np.empty((len(isle.IM), 3)), np.empty((0, 3))
@@ -136,21 +143,20 @@ def solve_contacts(
     bent, reached, B = 0.0, np.inf, make_bounded(J, groups, m <= COLUMN_CONTACTS)
     NOW = np.empty(len(B.OF))
     problem = JointedProblem(ROWS, C, B, m)
-    # Only of what nothing from without holds or touches is there an angular momentum to keep.
-    free = len(isle.IM) == n and not hangs(groups, J.COMPONENT, J.JOINED)
+    free = len(isle.IM) == n and not has_partner(groups, J.COMPONENT, J.JOINED)
     for outer in range(rounds):
         if J.PROGRESS.effort > J.PROGRESS.share:
             break
         J.PROGRESS.effort += CONTACT_WORK * (m + 2)
-        anew = outer % CHORD == 0
-        advance(A, J, interval, L, B, anew, FORESEEN if outer > 0 else UNKNOWN)
+        build = outer % CHORD == 0
+        advance(A, J, interval, L, B, build, FORESEEN if outer > 0 else UNKNOWN)
         bent = align(interval, True) if free else 0.0
         if outer > 0:
             off = farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n)
             reached = min(reached, off)
             stalls = off > OUTER_PROGRESS * best
             if off <= agree or (off <= OUTER_FLOOR * scale and stalls):
-                # Velocities agree; as long as contacts gain energy by them they do not agree well enough.
+                # Velocities agree, but not well enough as long as contacts gain energy by them.
                 error = work_error(interval, L, slow, pull, PRESS_WORK_ROUND_OFF)
                 pays = elastic or lost(interval, L) >= owed - error
                 if pays or (stalls and limited):
@@ -159,22 +165,22 @@ def solve_contacts(
                 give_slips(ROWS, m, SLIP)
                 limited, best = True, np.inf
             if not exactly and off <= worst:
-                # The residual of the laws is larger: other impulses may lower it, and agree less.
+                # The residual of the laws is larger: further iterations would agree less.
                 agreed = True
                 break
             if off < best:
                 best = off
                 copy(LEAST, L)
-        if not anew and not fit_columns(interval, B, L, USED, NOW, PREVIOUS):
+        if not build and not fit_columns(interval, B, L, USED, NOW, PREVIOUS):
             advance(A, J, interval, L, B, True, FORESEEN)
-            anew = True
-        if anew and free:
+            build = True
+        if build and free:
             fill_free(groups, C, ROWS, isle.IM, isle.II, m)
         if outer == 0:
             EFFECT, most_pull = accelerations(interval, L, B)
             if most_pull * h > GUESS_SPEED * quick and L.any():
                 L[:] = 0.0
-                # Its impulses are no loads: the bodies have not moved by the columns.
+                # The guess is bad: the bodies do not move as the columns say.
                 advance(A, J, interval, L, B, True, UNKNOWN)
                 EFFECT, most_pull = accelerations(interval, L, B)
             # Springs and motors accelerate bodies, too.
@@ -191,7 +197,7 @@ def solve_contacts(
         leave_out(C, L, m, FORESEEN)
         BOTH = with_bounded(B, L, m)
         work = J.PROGRESS.share - J.PROGRESS.effort
-        worst = solve_columns(problem, BOTH, FORESEEN, fine, COLUMN_SWEEPS if anew else 0, most, work)
+        worst = solve_columns(problem, BOTH, FORESEEN, fine, COLUMN_SWEEPS if build else 0, most, work)
         if worst > WEDGED * scale and m <= COLUMN_CONTACTS and rubs(ROWS, m):
             worst = solve_wedged(problem, BOTH, FORESEEN, fine, most, work)
         if not exactly:
@@ -201,7 +207,7 @@ def solve_contacts(
             L[i, 0], L[i, 1] = BOTH[i, 0], BOTH[i, 1]
         converged = worst <= 10.0 * max(fine, min(agree, AGREE * scale))
         if farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n) <= 1e-3 * agree:
-            # The motion is that of the impulses before: others may do as little by these answers, and yet do much.
+            # The motion is that of USED: others have the same effect by the columns, but perhaps not in a step.
             copy(L, USED)
             agreed = True
             break
@@ -214,9 +220,9 @@ def solve_contacts(
         if not off <= best:
             copy(L, LEAST)
             advance(A, J, interval, L, B, False, UNKNOWN)
-        # Joints that give way leave round-off of their ways, times their stiffness: more iterations do not lower it.
+        # Elastic joints leave round-off of ways times their stiffness, which more iterations do not lower.
         converged = (converged and off <= agree) or (best <= AGREE * scale and some_give(J, groups))
-    # Impulses that are no solution may take any work from walls.
+    # Impulses that are no solution may let walls do any work.
     quick = fast + pull * h
     if excessive(L, m, isle.IM, n, quick) or (not converged and m <= COLUMN_CONTACTS):
         solve_gently(A, J, interval, L, B, free)
@@ -226,7 +232,7 @@ def solve_contacts(
             advance(A, J, interval, L, B, False, UNKNOWN)
     if bent > ARM_ERROR:
         advance_aligned(A, J, interval, L, B, free)
-    # Where joints pull hard, velocities are known as well as they came to agree, and works no better.
+    # If joints pull hard, velocities, and so works, are only as exact as they agree.
     known = PRESS_WORK_ROUND_OFF
     if some_give(J, groups) or some_taut(J, groups):
         known = max(known, min(2.0 * reached / (slow + pull * h), PRESS_WORK_TAUT))

@@ -1,11 +1,10 @@
 """Rest of islands with joints.
 
-Joints and contacts that have left an island as it was over a whole step hold it in every following step, until
-something changes: their forces are static. So an island is put to rest whose bodies have no velocity at the start of
-such an interval, nor at its end, up to REST_SPEED of what one of the forces that balance on it would give each: it
-keeps its poses, and contacts and joints their forces (`..islands.at_rest`). It is solved again when a joint is edited,
-when the law of a spring changes, when what joints hold it to moves, and in all cases in which an island without joints
-is.
+If joints and contacts leave an island unchanged over a whole step, their forces are static and hold it in every
+following step. So an island is put to rest if its bodies have no velocity at the start and the end of such an interval,
+up to REST_SPEED times the speed that the largest single force on the body would give it in the step. Its poses and the
+forces of contacts and joints are kept (`..islands.at_rest`). It is solved again if a joint is edited, the law of a
+spring changes, a partner moves, or for the same reasons as an island without joints.
 """
 
 from __future__ import annotations
@@ -35,7 +34,7 @@ def reach_of(A: Scene, i: int) -> float:
 
 @nonallocating
 def balanced(A: Scene, J: Joints, i: int) -> float:
-    """Speed that the acceleration of body i, or a joint on it, would give its points in this step on its own."""
+    """Speed that the largest single force on body i (acceleration, or one joint) would give its points in this step."""
     reach, s = reach_of(A, i), J.OF[i]
     found = (math.hypot(A.PULL[i, 0], A.PULL[i, 1]) + abs(A.PULL[i, 2]) * reach) * A.PAR.dt
     for k in range(J.COMPONENT[s].first_joint if s >= 0 else 0, J.COMPONENT[s].end_joint if s >= 0 else 0):
@@ -48,8 +47,8 @@ def balanced(A: Scene, J: Joints, i: int) -> float:
 
 @nonallocating
 def is_still(A: Scene, J: Joints, root: int) -> bool:
-    """Whether the bodies of an island, whose interval is the whole step, are without velocity at its start and at its
-    end, and nothing in it has been hit."""
+    """Whether all bodies of an island, whose interval is the whole step, have no velocity at its start and end, up to
+    REST_SPEED, and none was hit."""
     i = root
     while i >= 0:
         body, rest, reach, most = A.BODY[i], A.RESTING[i], reach_of(A, i), REST_SPEED * balanced(A, J, i)
@@ -63,7 +62,7 @@ def is_still(A: Scene, J: Joints, root: int) -> bool:
 
 @nonallocating
 def moves(A: Scene, J: Joints, body: int) -> bool:
-    """Whether a body without mobility, in row `body` of BODY or behind these of PARTNER, moves in this step."""
+    """Whether a body without mobility moves in this step. `body`: row of BODY, or n + row of PARTNER."""
     n = A.BODY.shape[0]
     if body < n:
         return bool(A.BODY[body].inv_mass == 0.0 and A.MEMBER[body].rest == CHANGED)
@@ -73,7 +72,7 @@ def moves(A: Scene, J: Joints, body: int) -> bool:
 
 @nonallocating
 def holds_still(A: Scene, J: Joints, s: int) -> bool:
-    """Whether all joints of component s hold exactly, and to nothing that moves."""
+    """Whether all joints of component s hold exactly, and none is to a moving partner."""
     if J.STEPPED[s].status != EXACT:
         return False
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
@@ -85,7 +84,7 @@ def holds_still(A: Scene, J: Joints, s: int) -> bool:
 
 @nonallocating
 def presses_still(A: Scene, root: int) -> bool:
-    """Whether no contact of an island is on a body without mobility that moves, or on a surface that does."""
+    """Whether no contact of an island is on a moving body without mobility, or on a moving surface."""
     for c in range(A.COUNT.pushes):
         if A.PUSHED_BY[c].root != root:
             continue
@@ -101,7 +100,7 @@ def presses_still(A: Scene, root: int) -> bool:
 
 @nonallocating
 def rest_if_still(A: Scene, J: Joints, root: int) -> None:
-    """Put an island to rest whose interval, which is the whole step and has been solved, moves nothing."""
+    """Put an island to rest if its interval, which is the whole step and was solved, moves nothing."""
     if A.COUNT.together > 0 or A.COUNT.unmet > 0 or A.MEMBER[root].hits > 0:
         return
     if not (is_still(A, J, root) and presses_still(A, root)):
@@ -124,7 +123,8 @@ def rest_if_still(A: Scene, J: Joints, root: int) -> None:
 
 @nonallocating
 def disturbed(A: Scene, J: Joints, s: int) -> bool:
-    """Whether the joints of component s, at rest, are others than in the last step, or hold it to what moves."""
+    """Whether joints of component s, at rest, are edited or apart, have other laws than in the last step, or hold it to
+    something that moves."""
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         j = J.COUPLING[k].joint
         joint, kept = J.JOINT[j], J.KEPT[j]
@@ -138,7 +138,7 @@ def disturbed(A: Scene, J: Joints, s: int) -> bool:
 
 @nonallocating
 def wake_disturbed(A: Scene, J: Joints) -> None:
-    """At the start of a step: set the islands at rest CHANGED whose joints no longer hold them as in the last step."""
+    """At the start of a step: mark the islands at rest as CHANGED that are `disturbed`."""
     for i in range(A.BODY.shape[0] - 1):
         if A.MEMBER[i].tied == i and A.MEMBER[i].rest == AT_REST:
             if disturbed(A, J, J.OF[i]):
@@ -149,6 +149,6 @@ def wake_disturbed(A: Scene, J: Joints) -> None:
 
 @nonallocating
 def end_rest(A: Scene, root: int) -> None:
-    """End the rest of an island with joints that is hit in this step: it is in an interval that has begun with it."""
+    """End the rest of an island with joints that is hit in this step; its interval began at the start of the step."""
     if A.MEMBER[root].rest == AT_REST:
         mark_changed(A, root)

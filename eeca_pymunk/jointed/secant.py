@@ -1,13 +1,12 @@
-"""Columns made to fit the last two motions of the components: Broyden's update.
+"""Columns updated by the last two motions of the components: Broyden's method.
 
-Columns are linear answers about one motion, without what turns with it where joints press hard. With the change d of
-all impulses between two motions, and e what the velocities have changed by beyond the columns,
+Columns are linear responses about one motion, without the rotation of joints that press hard. With d the change of all
+impulses between two motions, and e the change of velocities that the columns do not explain,
 
-    Y <- Y + e d^T / (d.d),
+    Y <- Y + e d^T / (d.d)
 
-for each component with the impulses on it: the least change of the columns with which they answer d as the component
-does. Iterations converge superlinearly with it, without new columns; unless a contact would no longer be moved by its
-own impulse, as no component answers.
+for each component with the impulses on it: the smallest change of the columns that explains e. Iterations then converge
+superlinearly without new columns. The update fails if a contact would no longer be moved by its own impulse.
 """
 
 from __future__ import annotations
@@ -26,8 +25,8 @@ from .columns import column_rate, is_movable
 
 @nonallocating
 def clear_round_off(interval: Interval, ERROR: FloatArray) -> None:
-    """Set to 0 what may be round-off of the places of bodies (k, 3), over the interval, in changes of velocities: small
-    changes of impulses would seem to cause it all."""
+    """Set to 0 what may be round-off of places of bodies, over the interval, in changes of velocities ERROR (k, 3):
+    small changes of impulses would otherwise seem to cause it."""
     for q in range(len(ERROR)):
         extent = interval.isle.EXTENT[q]
         least = FIT_ROUND_OFF * extent / interval.h
@@ -40,9 +39,9 @@ def clear_round_off(interval: Interval, ERROR: FloatArray) -> None:
 def fit_columns(
     interval: Interval, B: Bounded, L: FloatArray, BEFORE: FloatArray, NOW: FloatArray, V: FloatArray
 ) -> bool:
-    """Update the columns of contacts and of bounded rows; V (k, 3), NOW (rows,), BEFORE (m, 2): velocities at the end
-    of the motion before, impulses of bounded rows and of contacts in it; L (m, 2): those of the present motion. Whether
-    all contacts that gave way still do: else these are no columns."""
+    """Update the columns of contacts and of bounded rows by the last two motions. BEFORE (m, 2), NOW (rows,) and V (k,
+    3) are impulses of contacts, of bounded rows, and velocities of the one before; L (m, 2) the present impulses. False
+    if a contact that its own impulse moved no longer is: the columns are then invalid."""
     groups, ROWS, motion, C, m = interval.groups, interval.ROWS, interval.motion, interval.C, interval.m
     ERROR, D, n = motion.MEAN - V, L[:m] - BEFORE[:m], B.USED[0]
     push_columns(C, D, m, -1.0, ERROR)

@@ -1,4 +1,4 @@
-"""The interval of an island with joints: contacts (`solve_contacts`), bodies lifted, velocities made to fit, paths."""
+"""The interval of an island with joints: contacts, penetration correction, projection of velocities, paths."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ from .fitting import project_velocities
 from .gathered import restore_joints, save_joints
 from .groups import find_groups
 from .ledger import work_left
-from .lengths import excess, led_in, sinks, too_deep_on_way, within_sagitta
+from .lengths import excess, forced_deeper, sinks, too_deep_on_way, within_sagitta
 from .lifting import lift_island
 from .losses import lost, slip_of
 from .press import solve_contacts
@@ -45,15 +45,15 @@ from .rest import rest_if_still
 
 @kernel
 def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
-    """Begin an interval of an island with joints at instant t, at which all its bodies are: of length h, or shorter
-    where joints do not hold, the work does not suffice, or bodies go too far (`lengths`).
+    """Begin an interval of an island with joints at instant t, the instant of all its bodies: of length h, or shorter
+    if joints do not hold, work is short, or bodies move too far (`lengths`).
 
-    What was too long is not tried again at once: without an impact in between, an interval after one that was shortened
-    is at most INTERVAL_RETRY times as long, and so on.
+    A length that was too long is not tried again at once: the next interval is at most INTERVAL_RETRY times as long as
+    one that was shortened, unless there is an impact in between (`Rest.longest`).
 
-    DONE, or PUSHES_FULL, which leaves everything as it was; likewise SPENT, within a step that has no work left.
+    Returns DONE; or, with everything as before, PUSHES_FULL, or SPENT if the step has no work left.
     """
-    rest, whole = A.RESTING[root], h
+    rest, longest = A.RESTING[root], h
     # One as short as PAR.instant would be empty (`ends.end_here`).
     least = min(h, 2.0 * A.PAR.instant)
     h = min(h, rest.longest)
@@ -66,35 +66,35 @@ def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
         status, h = try_jointed(A, J, root, t, h, last)
         if status != AGAIN:
             if status == DONE:
-                rest.longest = max(INTERVAL_RETRY * h, 0.0 if h < whole else rest.longest)
-                if t == 0.0 and h == whole:
+                rest.longest = max(INTERVAL_RETRY * h, 0.0 if h < longest else rest.longest)
+                if t == 0.0 and h == longest:
                     rest_if_still(A, J, root)
             return status
     return DONE
 
 
 @kernel
-def excess_length(A: Scene, J: Joints, interval: Interval, root: int, effort: float, held: bool, last: bool) -> float:
+def excess_length(A: Scene, J: Joints, interval: Interval, root: int, effort: float, solved: bool, last: bool) -> float:
     """How many times too long the interval of an island is, whose motion took so much effort; also sets its `strays`.
 
     Args:
-        held: whether contacts are solved.  last: whether no other attempt follows, see `try_jointed`.
+        solved: whether contacts are.  last: whether no other attempt follows, see `try_jointed`.
     """
     m, n, h = interval.m, interval.n, interval.h
-    far = 2.0 if not held and J.PROGRESS.effort > J.PROGRESS.share else 0.0
+    far = 2.0 if not solved and J.PROGRESS.effort > J.PROGRESS.share else 0.0
     for s in interval.groups.JOINTED:
         if J.STEPPED[s].status >= ELASTIC:
             far = 2.0
-    if last and held:
+    if last and solved:
         A.RESTING[root].strays = too_deep_on_way(A, interval)
         return far
     strays = excess(A, interval)
-    A.RESTING[root].strays, far = 0.0 if held else strays, max(far, strays)
-    if held:
+    A.RESTING[root].strays, far = 0.0 if solved else strays, max(far, strays)
+    if solved:
         return far
-    # The motion is not that of a solution: how long it may be does not follow from it. Contacts that are not solved in
-    # a long interval may be in a short one, if the step has work for many of these; and bodies that sink into others
-    # by unsolved contacts would sink further in the next interval.
+    # A motion that is no solution does not tell how long the interval may be. Contacts that are not solved in a long
+    # interval may be in a short one, if the step has work for many of these; and bodies that sink into others by
+    # unsolved contacts would sink further in the next interval.
     payable = RESOLUTION * effort <= J.PROGRESS.budget
     hard = (m <= COLUMN_CONTACTS and payable) or (n < LARGE_ISLAND and sinks(A, interval))
     hard = hard and h * UNSOLVED_PART**2 > A.PAR.dt / RESOLUTION
@@ -103,24 +103,22 @@ def excess_length(A: Scene, J: Joints, interval: Interval, root: int, effort: fl
 
 @kernel
 def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) -> tuple[int, float]:
-    """`begin_jointed` of length h. AGAIN, with nothing done, if that is too long, and how long it may be; not if it is
-    the `last` attempt."""
-    whole, A.RESTING[root].strays = is_component(A, J, root), 0.0
-    if whole and meets_no_other(A, root):
-        far = begin_alone(A, J, root, t, h, last)
-        return (AGAIN, h / far) if far > 0.0 else (DONE, h)
+    """`begin_jointed` for one length h. Returns DONE and h; or, with nothing done, PUSHES_FULL, or AGAIN and the length
+    to try next, if h is too long and this is not the `last` attempt."""
+    single, A.RESTING[root].strays = is_component(A, J, root), 0.0
+    if single and meets_no_other(A, root):
+        return begin_alone(A, J, root, t, h, last)
     COUNT = A.COUNT
     MINE = number_bodies(A, root)
     n = len(MINE)
-    # As in a whole step where it is cut short: pairs that were left out would not be searched for impacts.
+    # All pairs within the step, also if the interval is shorter: others would not be searched for impacts.
     found = pairs_within(A, root, t, A.PAR.planned - t, lossy(A, root), MINE)
     p = len(found)
     spend(A, n, 2 * p, 0.0)  # besides what joints take
     J.PROGRESS.effort += INTERVAL_WORK * (p + 2)
-    if p == 0 and whole:
+    if p == 0 and single:
         clear_places(A, MINE)
-        far = begin_alone(A, J, root, t, h, last)
-        return (AGAIN, h / far) if far > 0.0 else (DONE, h)
+        return begin_alone(A, J, root, t, h, last)
     shorter = within_sagitta(A, found, t)
     if shorter < h and not last:
         clear_places(A, MINE)
@@ -144,28 +142,27 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     if p > 0:
         m = gather_contacts(A, isle, contacts, isle.POSE + 0.5 * h * isle.V, REACH, h, k == n)
     interval = Interval(isle, groups, ROWS, motion, make_columns(groups, ROWS, m), m, n, t, h)
-    held, before = True, J.PROGRESS.effort
+    solved, before = True, J.PROGRESS.effort
     J.PROGRESS.share = before + INTERVAL_SHARE * max(work_left(A, J), 0.0)
     if m > 0:
         recall(A, ROWS, m, h, m > COLUMN_CONTACTS, L, EXPECTED)
         owed = max(-A.RESTING[root].lost, 0.0)
-        held = solve_contacts(A, J, interval, L, EXPECTED, slow, fast, pull, owed)
-        if held or m > COLUMN_CONTACTS:
-            # Of few contacts impulses that are no solution are no loads to begin with either.
+        solved = solve_contacts(A, J, interval, L, EXPECTED, slow, fast, pull, owed)
+        if solved or m > COLUMN_CONTACTS:  # impulses of few contacts that are no solution are a bad guess
             remember_loads(A, ROWS, L, m, h)
     if m == 0:
         advance(A, J, interval, L, room_for_rows(0, 0), False, np.empty((0, 3)))
     COUNT.solves += 1
     COUNT.solved += n
-    far = excess_length(A, J, interval, root, J.PROGRESS.effort - before, held, last)
+    far = excess_length(A, J, interval, root, J.PROGRESS.effort - before, solved, last)
     if far > INTERVAL_RETRY and not last:
         for s in groups.JOINTED:
             restore_joints(J, s)
         clear_places(A, MINE)
         return AGAIN, h / far
-    led = led_in(A, interval)
-    if not held or led >= 0:
-        a, b = shapes_of(A, ROWS[max(led, 0)])
+    forced = forced_deeper(A, interval)
+    if not solved or forced >= 0:
+        a, b = shapes_of(A, ROWS[max(forced, 0)])
         note_unmet(A, CONTACTS, a, b, math.nan, math.nan)
     for s in groups.JOINTED:
         J.STEPPED[s].turned_work = J.STEPPED[s].lifted = 0.0
@@ -173,7 +170,7 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
         s = groups.COMPONENT[groups.GROUP[q]]
         if s >= 0:
             account_turning(A, J, s, MINE[q], motion.END[q, 2], motion.WAY[q, 2])
-    # Bodies are lifted at the end of the interval, not on the way: the way would be as steep as the interval is short.
+    # Corrected at the end of the interval: within a short one, paths would be steep.
     WHERE, HELD = motion.END.copy(), np.zeros(m)
     if not conserves(ROWS, m):
         if not before_end(A, t + h):

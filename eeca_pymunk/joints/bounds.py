@@ -1,6 +1,6 @@
-"""How far a joint is from its limits, and the rate of that gap. Rows must be those of the present poses.
+"""Gaps of joints to their limits, and the rates of these gaps. Rows must be those of the present poses.
 
-side: -1 the lower, 1 the upper bound; as `link.side` that on which the joint stands, 0 for none.
+side: -1 the lower, 1 the upper bound; `link.side` is the one on which the joint stands, 0 for none.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ def has_bound(W: Workspace, k: int, side: int) -> bool:
 
 @nonallocating
 def limit_gap(W: Workspace, k: int, side: int) -> float:
-    """How far joint k is from its bound at this side at the end of the present iterate: length or rad, below 0 beyond
-    it."""
+    """Gap of joint k to its bound at this side at the end of the present iterate: length or rad, negative beyond the
+    bound."""
     joint = W.J.JOINT[W.link[k].joint]
     bound = joint.notch if W.link[k].kind == RATCHET else joint.upper if side > 0 else joint.lower
     return float(side * (bound - W.J.HINGE[k].measure))
@@ -41,10 +41,8 @@ def limit_gap(W: Workspace, k: int, side: int) -> float:
 
 @nonallocating
 def hold_present_gaps(W: Workspace) -> None:
-    """Hold joints that stand on a limit where they are, off their bound by round-off, however short the part is.
-
-    To close a gap of round-off in a short part would take any force. Rows must be those of the present poses.
-    """
+    """Let joints that stand on a limit keep their present gap, if it is round-off. To close it within a short part of a
+    step would take a force without bound. Rows must be those of the present poses."""
     hinge, link = W.J.HINGE, W.link
     for k in range(W.joints):
         side, last = link[k].side, link[k].rows - 1
@@ -59,14 +57,14 @@ def hold_present_gaps(W: Workspace) -> None:
 
 @nonallocating
 def limit_gap_rate(joint: JointStep, rows: int, side: int, v_a: FloatArray, v_b: FloatArray) -> float:
-    """Rate of the gap at this side, below 0 where it closes, by the last of a joint's `rows` rows J, with the
-    velocities v_a and v_b (3,) of its bodies."""
+    """Rate of the gap at this side, negative if it closes: by the last of a joint's `rows` rows J and the velocities
+    v_a and v_b (3,) of its bodies."""
     return -side * along(joint, rows - 1, v_a, v_b)
 
 
 @inlined
 def gap_rates(W: Workspace, k: int, side: int) -> tuple[float, float]:
-    """`limit_gap_rate` of joint k with the velocities at the start and at the end of the present iterate."""
+    """`limit_gap_rate` of joint k at the start and at the end of the present iterate."""
     joint, rows, a, b = W.J.HINGE[k], W.link[k].rows, W.J.LOCAL[W.link[k].body[0]], W.J.LOCAL[W.link[k].body[1]]
     return limit_gap_rate(joint, rows, side, a.v0, b.v0), limit_gap_rate(joint, rows, side, a.v1, b.v1)
 
@@ -82,13 +80,12 @@ def standing(link: Rows[Coupling], joints: int) -> bool:
 
 @nonallocating
 def closes_on_limit(W: Workspace, h: float) -> bool:
-    """Whether a joint that stands on a limit moves into its bound, by more than round-off of its place in a step h.
-    Rows must be those of the present poses."""
+    """Whether a joint that stands on a limit moves into its bound within h by more than round-off of its place. Rows
+    must be those of the present poses."""
     link = W.link
     for k in range(W.joints):
         if link[k].side != 0 and link[k].bounded == 0:
-            a, b = W.J.LOCAL[link[k].body[0]], W.J.LOCAL[link[k].body[1]]
-            rate = limit_gap_rate(W.J.HINGE[k], link[k].rows, link[k].side, a.v0, b.v0)
+            rate, _ = gap_rates(W, k, link[k].side)
             if -rate * h > LIMIT_WAY * W.J.HINGE[k].size:
                 return True
     return False
@@ -96,14 +93,15 @@ def closes_on_limit(W: Workspace, h: float) -> bool:
 
 @nonallocating
 def update_idle(W: Workspace, k: int, h: float) -> None:
-    """Bring the rows of joint k to the present iterate if it is a limit on which it does not stand (`idle`)."""
+    """Compute the rows of joint k at the present iterate if it is a limit on which it does not stand (`idle`)."""
     if idle(W.link, k):
         joint_rows(W, k, h, False)
 
 
 @nonallocating
 def is_far(W: Workspace, k: int) -> bool:
-    """Whether limits of angles are farther than bodies turn in the present iterate, by no more than chi each."""
+    """Whether joint k is a rotary limit that the bodies, turning by at most chi each, cannot reach in the present
+    iterate."""
     j, a, b = W.J.JOINT[W.link[k].joint], W.J.LOCAL[W.link[k].body[0]], W.J.LOCAL[W.link[k].body[1]]
     angle, reach = b.pose[2] - a.pose[2], abs(a.way[2]) + abs(b.way[2])
     return bool(W.link[k].kind == ROTARY_LIMIT and j.lower < angle - reach and angle + reach < j.upper)
@@ -111,7 +109,7 @@ def is_far(W: Workspace, k: int) -> bool:
 
 @nonallocating
 def release(W: Workspace) -> bool:
-    """Let go of the held limit that pulls most; False if none pulls."""
+    """Release the limit that pulls most, lam side > 0; False if none pulls."""
     link = W.link
     worst, which = 0.0, -1
     for k in range(W.joints):
@@ -128,15 +126,15 @@ def release(W: Workspace) -> bool:
 
 @nonallocating
 def begin_part(link: Rows[Coupling], joints: int) -> None:
-    """No limit has been let go since the start of the part."""
+    """Start a part of a step: no limit has been released in it."""
     for k in range(joints):
         link[k].let_go = 0
 
 
 @nonallocating
 def held_till_then(W: Workspace, k: int, side: int, instant: float) -> bool:
-    """Whether limit k, which is passed at about this instant, stood on its bound at the start of the part, was let go,
-    and has not left its bound before: its force changes sign later."""
+    """Whether limit k, passed at about this instant, stood on its bound at the start of the part, was released, and has
+    not left its bound since: its force changes sign only later."""
     link, hinge = W.link, W.J.HINGE
     rate, _ = gap_rates(W, k, side)
     return bool(link[k].let_go == side and rate * instant <= LIMIT_WAY * hinge[k].size)
@@ -144,9 +142,9 @@ def held_till_then(W: Workspace, k: int, side: int, instant: float) -> bool:
 
 @nonallocating
 def hops(W: Workspace, k: int, side: int, instant: float, h: float) -> bool:
-    """Whether limit k is on its bound at the start of the solved part h, leaves it by no more than LIMIT_HOP, and is
-    back at about this instant: limits that stop one another do so ever sooner, and end on their bounds both. Not if it
-    has been let go in this part: its force changes sign."""
+    """Whether limit k starts the solved part h on its bound, leaves it by no more than LIMIT_HOP, and is back at about
+    this instant. Two limits that stop one another do so after ever shorter times, and end on both bounds. Not if it was
+    released in this part, since its force changes sign then."""
     link, hinge = W.link, W.J.HINGE
     before, after = gap_rates(W, k, side)
     start = limit_gap(W, k, side) - 0.5 * h * (before + after)
@@ -156,8 +154,8 @@ def hops(W: Workspace, k: int, side: int, instant: float, h: float) -> bool:
 
 @inlined
 def instant_of(start: float, before: float, after: float, h: float) -> float:
-    """When a gap that is `start` >= 0 at first, and below 0 after h, is 0, if its rate changes evenly from `before` to
-    `after`: the root of start + before t + (after - before) t^2/(2h)."""
+    """The first root t of a gap start + before t + (after - before) t^2/(2h), start >= 0, that is negative at h: its
+    rate changes uniformly from `before` to `after`."""
     bend = 0.5 * (after - before) / h
     root = math.sqrt(max(before * before - 4.0 * bend * start, 0.0))
     if before > 0.0:
@@ -167,8 +165,8 @@ def instant_of(start: float, before: float, after: float, h: float) -> float:
 
 @nonallocating
 def first_bound(W: Workspace, h: float) -> tuple[int, int, float]:
-    """The free limit that the solved step h passes first, by the rates of its gap, -1 for none; its side; about the
-    instant, from the start of the step."""
+    """The inactive limit that the solved step h passes first, by the rates of its gap, -1 for none; its side; and
+    approximately the instant, from the start of the step."""
     hinge, link = W.J.HINGE, W.link
     which, at_side, instant = -1, 0, h
     for k in range(W.joints):
@@ -190,9 +188,9 @@ def first_bound(W: Workspace, h: float) -> tuple[int, int, float]:
 
 @nonallocating
 def least_gap(W: Workspace, k: int, side: int, h: float) -> tuple[float, float]:
-    """The smallest gap of limit k within the solved step h, and the part of h after which it is there; 1 if that is at
-    an end. The distance of a slide is that of the chord d(s) = d0 + s (d1 - d0) from 0; the gaps of others change at
-    rates that go evenly from b to a: they are smallest at s = b/(b - a), by b s h/2."""
+    """The smallest gap of limit k within the solved step h, and the fraction of h at which it occurs; 1 if that is an
+    end. For a slide it is the distance of the chord d(s) = d0 + s (d1 - d0) from 0. Others have rates that change
+    uniformly from b to a: the gap is smallest at s = b/(b - a), where it has changed by b s h/2."""
     hinge = W.J.HINGE[k]
     end = limit_gap(W, k, side)
     if W.link[k].kind == SLIDE:
@@ -212,8 +210,8 @@ def least_gap(W: Workspace, k: int, side: int, h: float) -> tuple[float, float]:
 
 @nonallocating
 def passed_within(W: Workspace, h: float) -> float:
-    """The first instant, from the start of the solved step h, at which a free limit that ends within its bounds is
-    farthest beyond one; h if there is none. Only after `first_bound`, which looks at the rows of limits."""
+    """The first instant, from the start of the solved step h, at which an inactive limit is farthest beyond a bound
+    although it ends within it; h if there is none. Only after `first_bound`, which computes the rows of limits."""
     link, first = W.link, 1.0
     for k in range(W.joints):
         if link[k].side != 0 or link[k].bounded != 0 or is_far(W, k):

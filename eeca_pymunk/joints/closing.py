@@ -1,4 +1,4 @@
-"""The start of a step after changes of the user: joints closed, velocities made to fit them."""
+"""The start of a step after edits: joints are closed, velocities are made to fit them."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from .start import closing_share, compute_rows, springs_of
 
 @nonallocating
 def find_apart(W: Workspace, h: float) -> tuple[bool, bool, bool]:
-    """Set the targets of joints that are apart to the part of their error that is left after this step, and the side of
-    limits that are passed, or left.
+    """Set the targets of joints that are apart to the part of their error that remains after this step, and set or
+    release limits that are passed or left.
 
-    Rows must be those of the present poses. Joints that will still be apart are APART, and hold the rest of their error
-    over the step, so that it does no work; or LEFT_APART if a step has left them so. Those that give way elastically
-    stay as they are. Returns whether the user has touched any since the last step (`edited`), whether any is to be
-    closed (`apart`), and whether only steps have left them apart (`own`).
+    Rows must be those of the present poses. Joints that will still be apart are marked APART, or LEFT_APART if a step
+    has left them so; they keep the rest of their error over the step, so that it does no work. Elastic joints
+    (GIVES_WAY) stay as they are. Returns whether any was `edited` since the last step, whether any is to be closed
+    (`apart`), and whether only steps have left them apart (`own`).
     """
     joint, hinge, link = W.J.JOINT, W.J.HINGE, W.link
     edited, apart, own = False, False, True
@@ -65,7 +65,7 @@ def find_apart(W: Workspace, h: float) -> tuple[bool, bool, bool]:
 
 @nonallocating
 def farthest(W: Workspace) -> float:
-    """The largest |g| of a row that acts exactly, over the size of the component. Rows must be those of the present
+    """The largest |g| of a row that acts and is exact, over the unit of its g. Rows must be those of the present
     poses."""
     link = W.link
     worst = 0.0
@@ -89,8 +89,8 @@ def closing_work(local: Rows[BodyStep], bodies: int) -> float:
 
 @nonallocating
 def keep_closed(W: Workspace) -> None:
-    """Note how far closing has shifted bodies, and let the targets of joints be what it reached, as that is what the
-    step can hold without work."""
+    """Store how far closing has shifted the bodies, and set the targets of joints to the values it has reached, which
+    the step can keep without work."""
     hinge, link, local = W.J.HINGE, W.link, W.J.LOCAL
     for i in range(W.bodies):
         for c in range(3):
@@ -104,8 +104,8 @@ def keep_closed(W: Workspace) -> None:
 
 @nonallocating
 def close_joints(W: Workspace, h: float, ledger: JointLedger) -> bool:
-    """Close joints that are apart by one step's share, and make velocities fit them if the user has changed something;
-    whether only steps have left joints apart. The costs enter the ledger of the step."""
+    """Close joints that are apart by the share of one step, and make velocities fit them after an edit. The costs enter
+    the ledger of the step. Returns whether only steps have left joints apart."""
     local = W.J.LOCAL
     stored = springs_of(W)
     edited, apart, own = find_apart(W, h)
@@ -114,9 +114,9 @@ def close_joints(W: Workspace, h: float, ledger: JointLedger) -> bool:
         project(W, POSES)
         taken = springs_of(W) - stored
         cost = taken + closing_work(local, W.bodies)
-        # What a step left apart closes at the cost of what moves.
+        # Closing what a step left apart is paid from the motion.
         locked = lock_energy(local, W.bodies, cost) if own and cost > 0.0 else 0.0
-        # Rows that contradict each other stay.
+        # Contradictory rows are not closed.
         if not farthest(W) <= before or (own and locked < cost - 1e-9 * abs(cost)):
             go_back(local, W.bodies)
             compute_rows(W)

@@ -1,12 +1,11 @@
-"""Poses and velocities made to fit the joints; velocities as by an impact at which nothing bounces.
+"""Poses and velocities projected onto the joints; for velocities this is an impact without bounce.
 
-Kinetic energy only falls, and momentum stays, for the change is M^-1 G^T times impulses that bring G v to 0.
+The change is M^-1 G^T times impulses that bring G v to 0: kinetic energy only falls, and momentum is kept.
 """
 
 from __future__ import annotations
 
-from ..arrays import FloatArray
-from ..compiled import inlined, nonallocating
+from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.joint_steps import POSES, SPEEDS, BodyStep, JointLedger
 from ..model.joints import DUAL, Workspace
@@ -24,16 +23,17 @@ from ..newton.entries import acts
 from ..newton.systems import apply, back, factorise, first_iterate, linearise
 from .bounds import has_bound, limit_gap, limit_gap_rate
 
+NOW, KEPT, SAVED = 0, 1, 2  # velocities of a kinetic energy
+
 
 @nonallocating
 def project(W: Workspace, what: int) -> None:
-    """Make POSES or SPEEDS fit the joints, by the least change in the measure of the masses.
+    """Project POSES or SPEEDS onto the joints, by the smallest change in the norm of the masses.
 
-    POSES: until g is on its targets, at most CLOSINGS times. SPEEDS: those before stay at `v_kept`. Free limits whose
-    gap is closed and closing are held from the first pass on. Two passes with the same factors take back what epsilon
-    left, three if rows are redundant; then, as long as a limit pulls, all begins again without it, and as long as the
-    solution moves into others, with them. There are at most joints + 1 tries. What is solved for is `pose` or `v0`; the
-    impulses are in `pushed`.
+    POSES: until g is on its targets, at most CLOSINGS times. SPEEDS: closed limits whose gap closes act from the first
+    pass on. Two passes with the same factors remove the effect of epsilon, three if rows are redundant. Then the limit
+    that pulls most is released, or limits that the solution moves into act, and all begins again; at most joints + 1
+    times. The result is in `pose` or `v0`, the velocities before in `v_kept`, the impulses in `pushed`.
     """
     component, passes, tries = W.J.COMPONENT[W.s], 0, 0
     enough = 2 if component.loops == 0 else 3
@@ -68,41 +68,27 @@ def project(W: Workspace, what: int) -> None:
             first_iterate(W, what, 2.0)
 
 
-@inlined
-def plus_kinetic(total: float, velocity: FloatArray, mobility: FloatArray) -> float:
-    """`total`, and the kinetic energy of a velocity (3,) of what joints can move of a body."""
-    for c in range(3):
-        if mobility[c] > 0.0:
-            total += 0.5 * velocity[c] ** 2 / mobility[c]
-    return total
-
-
 @nonallocating
-def kinetic_of_component(local: Rows[BodyStep], bodies: int, kept: bool) -> float:
-    """Kinetic energy of what joints can move, of the velocities at the start, or of those that were `kept`."""
+def kinetic_of_component(local: Rows[BodyStep], bodies: int, which: int) -> float:
+    """Kinetic energy in the directions that joints can move, of the velocities v0 (NOW), `v_kept` (KEPT) or
+    `saved_velocity` (SAVED)."""
     total = 0.0
     for i in range(bodies):
-        total = plus_kinetic(total, local[i].v_kept if kept else local[i].v0, local[i].mobility)
-    return total
-
-
-@nonallocating
-def saved_energy(local: Rows[BodyStep], bodies: int) -> float:
-    """Kinetic energy of what joints can move, of the velocities that were saved."""
-    total = 0.0
-    for i in range(bodies):
-        total = plus_kinetic(total, local[i].saved_velocity, local[i].mobility)
+        velocity = local[i].v0 if which == NOW else local[i].v_kept if which == KEPT else local[i].saved_velocity
+        for c in range(3):
+            if local[i].mobility[c] > 0.0:
+                total += 0.5 * velocity[c] ** 2 / local[i].mobility[c]
     return total
 
 
 @nonallocating
 def fitting_loss(local: Rows[BodyStep], bodies: int, ledger: JointLedger) -> float:
-    """The loss in the change of velocities, from `v_kept` to `v0`, that made them fit their joints.
+    """The energy lost by the projection of velocities from `v_kept` to `v0`.
 
-    It is orthogonal to what fits, so that (1/2) dv.M dv is lost; the rest of the change of kinetic energy is the work
-    of supports, which is 0 unless they move, and is added to the ledger.
+    It is (1/2) dv.M dv, as the projection is orthogonal. The rest of the change of kinetic energy is the work of
+    supports, 0 unless they move, and enters the ledger.
     """
-    gained = kinetic_of_component(local, bodies, False) - kinetic_of_component(local, bodies, True)
+    gained = kinetic_of_component(local, bodies, NOW) - kinetic_of_component(local, bodies, KEPT)
     lost, moves = 0.0, False
     for i in range(bodies):
         for c in range(3):
@@ -117,7 +103,7 @@ def fitting_loss(local: Rows[BodyStep], bodies: int, ledger: JointLedger) -> flo
 
 @nonallocating
 def keep_speeds(W: Workspace) -> None:
-    """Remember the velocities before they are corrected."""
+    """Store the velocities before they are projected."""
     for i in range(W.bodies):
         for c in range(3):
             W.J.LOCAL[i].v_kept[c] = W.J.LOCAL[i].v0[c]
@@ -126,7 +112,7 @@ def keep_speeds(W: Workspace) -> None:
 
 @nonallocating
 def restore_speeds(W: Workspace) -> None:
-    """The velocities before a correction, without impulses."""
+    """Restore the velocities before the projection, and clear its impulses."""
     for i in range(W.bodies):
         for c in range(3):
             W.J.LOCAL[i].v0[c] = W.J.LOCAL[i].v_kept[c]
@@ -136,8 +122,8 @@ def restore_speeds(W: Workspace) -> None:
 
 @nonallocating
 def let_go(W: Workspace) -> bool:
-    """Let go of the limit whose impulse in the correction pulls most; False if none does. (`bounds.release` does that
-    by the impulses of a step.) One that is held after it has been let go stays (`limits.stop_at`)."""
+    """Release the limit whose impulse in the projection pulls most, unless it was released in this part of the step
+    already; False if none pulls. (`bounds.release` is for the impulses of a step.)"""
     hinge, link = W.J.HINGE, W.link
     pulling, pull = -1, 0.0
     for k in range(W.joints):
@@ -153,14 +139,14 @@ def let_go(W: Workspace) -> bool:
 
 @nonallocating
 def noise(W: Workspace, k: int, r: int) -> float:
-    """The impulse that changes the rate of row r of joint k by what is round-off of the velocities before: a limit that
-    pulls no more than that hinders nothing, and if it were let go it would be met again at once."""
+    """The impulse that changes the rate of row r of joint k by the round-off of the velocities before. A limit that
+    pulls no more is not released: it would be met again at once."""
     return float(JOINT_SPEED_ROUND_OFF * terms(W, k, r) * W.J.HINGE[k].scale[r] ** 2)
 
 
 @nonallocating
 def terms(W: Workspace, k: int, r: int) -> float:
-    """The sum of the amounts of the terms of the rate of row r of joint k, of the velocities before a correction."""
+    """The sum of the magnitudes of the terms of J v, for row r of joint k and the velocities before the projection."""
     a, b, total = W.J.LOCAL[W.link[k].body[0]], W.J.LOCAL[W.link[k].body[1]], 0.0
     for c in range(3):
         total += abs(W.J.HINGE[k].rows[r, c] * a.v_kept[c])
@@ -170,11 +156,8 @@ def terms(W: Workspace, k: int, r: int) -> float:
 
 @nonallocating
 def hold_closing(W: Workspace, kept: bool) -> bool:
-    """Hold all free limits whose gap is closed and closing with the velocities that were kept, or by more than
-    round-off with the present ones; whether there are any.
-
-    Rows are those of the present poses.
-    """
+    """Let all inactive limits act whose gap is closed and is closing: with the velocities that were kept, or by more
+    than round-off with the present ones. Returns whether there are any. Rows are those of the present poses."""
     hinge, link, local = W.J.HINGE, W.link, W.J.LOCAL
     found = False
     for k in range(W.joints):
@@ -196,11 +179,9 @@ def hold_closing(W: Workspace, kept: bool) -> bool:
 
 @nonallocating
 def speeds_fit(W: Workspace) -> bool:
-    """Whether velocities fit all rows that hold, but for what steps leave: they hold places exactly, and velocities to
-    second or fourth order. To project that too would take energy at every other start of a step.
-
-    Rows are those of the present poses.
-    """
+    """Whether velocities satisfy all exact rows, except for errors of earlier steps: steps close joints exactly, but
+    their velocities have errors of second or fourth order, whose projection would cost energy in every second step.
+    Rows are those of the present poses."""
     link = W.link
     well = True
     for k in range(W.joints):

@@ -1,15 +1,15 @@
-"""Accelerations and impulses of joints in the next part of a step of order 4, from those in the parts before.
+"""Predicted accelerations and impulses of joints for the next part of a step of order 4, from those of earlier parts.
 
-The five parts of Suzuki's composition, of lengths s_k h about the instants t_k, repeat from step to step. The midpoint
-rule lets the rates r_k = G v of the rows ring from the start of part k to that of the next, r_{k+1} = s_k^2 f(t_k) -
-r_k with a smooth f: positions fit, velocities do to second order. So accelerations by joints are smooth in t_k but for
-(r_{k+1} - r_k)/s_k and what goes with s_k^2, and
+The five parts of Suzuki's composition, of lengths s_k h at the instants t_k, repeat from step to step. With the
+midpoint rule the rates r_k = G v of the rows at the start of part k alternate, r_{k+1} = s_k^2 f(t_k) - r_k with a
+smooth f: positions satisfy the joints, velocities to second order. So accelerations by joints are smooth in t_k except
+for (r_{k+1} - r_k)/s_k and a term in s_k^2, and
 
     1, t, t^2, s^2, (-1)^k / s, (c_k - 2 r_k)/s_k with c_k = s_k^2/2, r_{k+1} = c_k - r_k
 
-are six functions that six parts determine. WEIGHTS[p] foretells part p exactly for each of them, from the last part to
-the sixth last; impulses over the lengths of their parts go the same way. Newton's method then begins with errors
-smaller by (h rate)^2 than with the last accelerations. It decides where Newton's method begins, not where it ends.
+are six functions that six parts determine. WEIGHTS[p] extrapolates each of them to part p exactly, from the last part
+to the sixth last; likewise impulses over the lengths of their parts. Newton's method then begins with errors smaller by
+(h rate)^2 than with the last accelerations. Its result does not depend on where it begins.
 
 Before each part `ladder.take_parts` tests whether six parts in steps of this length are stored (`recalls`), begins with
 the extrapolated values if so (`predict_part`), and stores each part that was solved (`remember_part`). An edit, a
@@ -36,15 +36,15 @@ WEIGHTS: FloatArray = np.array([
 
 @nonallocating
 def forget_parts(W: Workspace) -> None:
-    """Forget all parts, so that the next six are not foretold."""
+    """Forget all parts: the next six are not predicted."""
     for k in range(W.joints):
         W.J.JOINT[W.link[k].joint].known_parts = 0
 
 
 @nonallocating
 def recalls(W: Workspace, h: float) -> bool:
-    """Whether the parts of a step h of these joints can be foretold. If joints have stored different numbers of parts,
-    or parts of other steps, they forget them."""
+    """Whether the parts of a step h can be predicted. If the joints have stored different numbers of parts, or parts of
+    steps of another length, they forget them."""
     joint, link = W.J.JOINT, W.link
     count, same = joint[link[0].joint].known_parts, True
     for k in range(W.joints):
@@ -100,7 +100,7 @@ def store(W: Workspace, at: int, piece: float) -> None:
 
 @nonallocating
 def remember_part(W: Workspace, piece: float) -> None:
-    """`store` the part of length `piece` that was taken after those that are known."""
+    """`store` the part of length `piece` that was taken after the known ones."""
     joint, link = W.J.JOINT, W.link
     count = joint[link[0].joint].known_parts
     store(W, count % DEPTH, piece)

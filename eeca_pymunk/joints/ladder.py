@@ -1,14 +1,14 @@
-"""The ladder of a step: Newton's method in other parts, or with joints that give way, where it does not converge.
+"""The ladder of a step: where Newton's method does not converge, the step is divided, then joints become elastic.
 
-Order 2 (midpoint with discrete gradients), or 4 by Suzuki's composition (s, s, 1 - 4s, s, s) h, s = 1/(4 - 4^(1/3)),
-where nothing in the component dissipates, drives or meets a limit. The rungs, with the number of parts and the
-compliance of the joints over (h/7)^2:
+Order 2 (midpoint with discrete gradients), or 4 by Suzuki's composition (s, s, 1 - 4s, s, s) h, s = 1/(4 - 4^(1/3)), if
+nothing in the component dissipates, drives or meets a limit. The rungs are tried in turn; of each the number of parts
+and the compliance of the joints over (h/7)^2:
 
     ORDER_4 = -1: 5 parts, 0           WHOLE_STEP = 0: 1 part, 0     1, 2, 3: 2, 4, 7 parts, 0
     ELASTIC_RUNG = 4: 1 part, 1e-9     5 to 9: 7 parts, 1e-9, 1e-8, 1e-7, 1e-6, 1e-4
 
-The work of all rungs together is bounded. What gives way does so in later steps with at least the same compliance,
-until it is closed.
+The work of all rungs together is bounded. Elastic joints keep at least the same compliance in later steps, until they
+are closed.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from ..model.parameters.joints import (
 from ..newton.effort import work_of_iteration
 from ..newton.motion import go_back
 from ..newton.solve import drop_impulses
-from .correct import kinetic_of_component, saved_energy
+from .correct import NOW, SAVED, kinetic_of_component
 from .foresight import forget_parts, predict_part, recalls, remember_part
 from .ledger import clear_ledger
 from .limits import step_with_limits
@@ -40,7 +40,7 @@ ORDER_4, WHOLE_STEP, ELASTIC_RUNG, RUNGS = -1, 0, 4, 10
 
 @nonallocating
 def smooth(W: Workspace) -> bool:
-    """Whether order 4 may be had: no damping, no motor, no finite max_force, nothing on a limit."""
+    """Whether order 4 is possible: no damping, no motor, no finite max_force, no joint on a limit."""
     link = W.link
     for k in range(W.joints):
         spring = link[k].kind in (SPRING, ROTARY_SPRING)
@@ -51,7 +51,7 @@ def smooth(W: Workspace) -> bool:
 
 @nonallocating
 def has_elastic_joint(W: Workspace) -> bool:
-    """Whether a joint of the component gives way elastically since an earlier step."""
+    """Whether a joint of the component is elastic since an earlier step."""
     for k in range(W.joints):
         if W.J.JOINT[W.link[k].joint].touched == GIVES_WAY:
             return True
@@ -60,10 +60,10 @@ def has_elastic_joint(W: Workspace) -> bool:
 
 @nonallocating
 def limit_work(W: Workspace) -> None:
-    """Set the share of the work of a step of the scene that this component may take: PROGRESS.limit and hurry."""
+    """Set the work that this component may take in a step, PROGRESS.limit and hurry."""
     component, progress = W.J.COMPONENT[W.s], W.J.PROGRESS
     one = work_of_iteration(component.system, CONDENSED_PASSES, component.boxes, W.joints, component)
-    # Components whose share of the work is spent can still be solved where that is easy.
+    # With no work left, components that are solved easily still are.
     share = max((progress.budget - progress.effort) * COMPONENT_BUDGET, LEAST_SOLUTIONS * one)
     progress.limit = progress.effort + share
     progress.hurry = progress.effort + HASTE * (progress.limit - progress.effort)
@@ -71,7 +71,7 @@ def limit_work(W: Workspace) -> None:
 
 @nonallocating
 def compliance_on(rung: int, h: float, yields: bool, before: float) -> float:
-    """The compliance (time²) of joints on a rung; of joints that give way already, not less than `before`."""
+    """The compliance (time²) of joints on a rung; if joints are elastic already (`yields`), not less than `before`."""
     if rung < ELASTIC_RUNG:
         return 0.0
     steps = max(rung - ELASTIC_RUNG - 1, 0)
@@ -109,16 +109,18 @@ def take_parts(W: Workspace, h: float, length: float, rung: int, parts: int, giv
 
 @nonallocating
 def repaid(W: Workspace, own: bool) -> bool:
-    """Whether exact rows give no energy, or little, which is taken back.
+    """Whether exact rows have given no energy, or little, which is then taken from the motion.
 
-    What an earlier step left apart (`own`) closes at once, and gives little beside what moved before, or the step
-    fails. Other rows hold to round-off e of their places, and give e times their impulse over h: the shorter, the more.
+    Joints that an earlier step left apart (`own`) close at once; if that gives much energy beside what was there, the
+    step fails. Other rows hold to round-off e of their places, and give e times their impulse over h: more in shorter
+    steps.
     """
     part = W.J.PART
     gain = part.closed - (0.0 if own else max(part.limited, 0.0))  # a limit in such a step loses as much more
     if not gain > 0.0 or not supports_rest(W.J.LOCAL, W.bodies):
         return True
-    had = saved_energy(W.J.LOCAL, W.bodies) + (0.0 if own else kinetic_of_component(W.J.LOCAL, W.bodies, False))
+    had = kinetic_of_component(W.J.LOCAL, W.bodies, SAVED)
+    had += 0.0 if own else kinetic_of_component(W.J.LOCAL, W.bodies, NOW)
     if own and not gain <= REPAID * had:
         return False
     if own or gain > JOINT_GAIN * had:
@@ -128,7 +130,7 @@ def repaid(W: Workspace, own: bool) -> bool:
 
 @nonallocating
 def undo_impulses(W: Workspace) -> None:
-    """Set the impulses of the step to 0, and accelerations and work by them."""
+    """Set the impulses of the step to 0, and the accelerations and works of joints."""
     drop_impulses(W)
     for i in range(W.bodies):
         for c in range(3):
@@ -139,7 +141,7 @@ def undo_impulses(W: Workspace) -> None:
 
 @nonallocating
 def restore_start(W: Workspace) -> None:
-    """Back to the start of the step, without impulses."""
+    """Return to the start of the step, without impulses."""
     go_back(W.J.LOCAL, W.bodies)
     undo_impulses(W)
     for k in range(W.joints):
@@ -148,11 +150,11 @@ def restore_start(W: Workspace) -> None:
 
 @nonallocating
 def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own: bool) -> int:
-    """Take the step h by the first rung of the ladder on which it succeeds: EXACT, HALVED or ELASTIC; LINEAR if none
-    does, with everything as at the start. PART has the energies.
+    """Take the step h by the first rung of the ladder that succeeds: EXACT, HALVED or ELASTIC; LINEAR if none does,
+    with everything as at the start. PART has the energies.
 
     Args:
-        touched: whether the user has changed joints.  own: whether only steps have left them apart, see `repaid`.
+        touched: whether joints were edited.  own: whether only steps have left them apart, see `repaid`.
     """
     first, progress = W.J.JOINT[W.link[0].joint], W.J.PROGRESS
     loops = W.J.COMPONENT[W.s].loops > 0
@@ -168,7 +170,7 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
         if done and (rung >= ELASTIC_RUNG or repaid(W, own)):
             first.compliance = compliance
             return EXACT if rung <= WHOLE_STEP else HALVED if rung < ELASTIC_RUNG else ELASTIC
-        # A step that began with foretold values, or with impulses of redundant rows, is taken again without these.
+        # A rung that began with predicted values, or with impulses of redundant rows, is tried again without these.
         again = cold != loops or (rung == ORDER_4 and recalls(W, h))
         restore_start(W)
         forget_parts(W)

@@ -1,4 +1,4 @@
-"""What a part of a step did with energy: every impulse times the mean velocity of its row, so that the ledger closes.
+"""Energies of a part of a step: every impulse times the mean velocity of its row, so that the ledger closes.
 
 `..model.joint_steps.JointLedger` defines the entries.
 """
@@ -45,8 +45,8 @@ def add_part(ledger: JointLedger, part: JointLedger) -> None:
 def account_part(W: Workspace, h: float, ledger: JointLedger) -> None:
     """Add the works of a solved part h of the step to `ledger`, and its impulses to `total`.
 
-    The work of a joint's impulse F = J^T lam on its bodies is F . x / h. Of that the share of a body that joints cannot
-    move is the work of a support. `total` is the whole, `moved` that on bodies that joints move.
+    A joint's impulse F = J^T lam does the work F . x / h on its bodies. The local `total` is all of it, `moved` the
+    part on bodies that joints move; the rest is on supports.
     """
     hinge, link = W.J.HINGE, W.link
     per = 1.0 / h
@@ -101,11 +101,11 @@ def springs_hold(W: Workspace) -> float:
 
 @nonallocating
 def close_ledger(local: Rows[BodyStep], bodies: int, ledger: JointLedger) -> None:
-    """Close the ledger of a step whose joints did not hold, from the saved state to the present one: the change of the
-    energies, less what springs, motors and losses explain, is `closed`, or `limited` if it is a loss.
+    """Close the ledger of a step whose joints did not hold, from the saved state to the present one: the change of
+    energy that springs, motors and losses do not explain is `closed` if it is a gain, else `limited`.
 
-    Works of supports and limits are in that sum: rows that contradict each other push without bound, and their works
-    cancel but for round-off, so that only the sum is known.
+    This includes the works of supports and limits: the impulses of contradictory rows grow without bound, and their
+    works cancel up to round-off, so that only the sum is known.
     """
     gained = 0.0
     for i in range(bodies):

@@ -1,15 +1,15 @@
-"""Limits of slides, grooves, rotary limits and ratchets: met at their instant without bounce, held while they push.
+"""Limits of slides, grooves, rotary limits and ratchets: met at their instant without bounce, acting while they push.
 
-A limit is a row that is either held (side = -1 on the lower, 1 on the upper bound), g = bound, lam side <= 0, or free.
-When a step would end beyond a bound, it is taken anew to the instant at which the bound is reached (secant on the end
-of the implicit step); there velocities into the bound vanish, and what that costs in kinetic energy enters the ledger.
-A held row that would pull is let go from the start of the part. Where another limit is met within that, and up to its
-instant the row does not leave its bound, its force changes sign later: it is held up to there. The number of parts of a
-step is bounded; past it, rows land: they are held from where they are, g reaches its bound at the end of the part, and
-their work enters the ledger.
+A limit is a row that is inactive, or acts (side = -1 on the lower, 1 on the upper bound): g = bound, lam side <= 0. If
+a step would end beyond a bound, it is taken again to the instant at which the bound is reached (secant on the end of
+the implicit step). There velocities into the bound vanish, and the loss enters the ledger. A row that would pull is
+released from the start of the part on. If another limit is met within that part, and the released row does not leave
+its bound until then, its force changes sign later: it acts up to there. The number of parts of a step is bounded; then
+limits *land*: their rows act from the present place on, g reaches the bound at the end of the part, and their work
+enters the ledger.
 
-The solutions of one interval differ by little: each looks first for the limits that the one before has met, at their
-instants (`parts`).
+The solutions of one interval differ little: each first tries the limits, and their instants, that the one before has
+met (`parts`).
 """
 
 from __future__ import annotations
@@ -45,18 +45,18 @@ from .correct import fitting_loss, project
 from .ledger import account_part
 from .parts import begin_as_before, begin_next, meets_limit, note_part, weaken_lead
 
-# What comes after a solve: another one, the limit that was searched, the end of the step, nothing as it fails.
+# What follows a solve: another one; the searched limit is met; the step ends; the step fails.
 GOES_ON, MEETS, ENDS, FAILS = 0, 1, 2, 3
 
 
 @nonallocating
 def stop_at(W: Workspace, k: int, side: int, at_once: bool, stays: bool, ledger: JointLedger) -> None:
-    """Let joint k stand on its limit at this side, where it is: velocities into the bound vanish, and what that costs
-    enters `ledger`. The next part begins without impulses.
+    """Let joint k stand on its limit at this side: velocities into the bound vanish, and the loss enters `ledger`. The
+    next part begins without impulses.
 
     Args:
-        at_once: the part before is empty but for round-off.  stays: velocities out of the bound vanish, too, and none
-            that stands is let go.
+        at_once: the part before is empty but for round-off.  stays: velocities out of the bound vanish as well, and no
+            joint that stands on a limit is released.
     """
     link = W.link
     link[k].side = side
@@ -65,7 +65,7 @@ def stop_at(W: Workspace, k: int, side: int, at_once: bool, stays: bool, ledger:
     project(W, SPEEDS)
     begin_part(link, W.joints)
     if at_once:
-        link[k].side = side  # the velocity that lets go is round-off: forces press it to its bound at once
+        link[k].side = side  # a velocity that released it is round-off: forces press it to its bound at once
     ledger.limited += fitting_loss(W.J.LOCAL, W.bodies, ledger)
     drop_impulses(W)
     hold_present_gaps(W)
@@ -73,20 +73,20 @@ def stop_at(W: Workspace, k: int, side: int, at_once: bool, stays: bool, ledger:
 
 @nonallocating
 def search_for(S: Parts, k: int, side: int, when: float, high: float) -> None:
-    """Search the instant at which joint k meets its limit at this side, from `when` on, before `high`."""
+    """Begin the search for the instant at which joint k meets its limit at this side: at `when`, below `high`."""
     S.limit, S.side, S.when, S.low, S.high, S.secants = k, side, when, 0.0, high, 0
 
 
 @nonallocating
 def late(W: Workspace, S: Parts) -> bool:
-    """Whether no limit is searched any more: those that are met land."""
+    """Whether instants are no longer searched: limits that are met then land."""
     return bool(S.events >= LIMIT_EVENTS or W.J.PROGRESS.effort > W.J.PROGRESS.hurry)
 
 
 @nonallocating
 def end_part(W: Workspace, S: Parts, linear: bool, h: float, whole: bool, ledger: JointLedger) -> int:
-    """End a part at whose end no limit is passed: that of the step, or, where one has been passed and passed again, an
-    instant between. Arguments as of `step_with_limits`."""
+    """End a part at whose end no limit is passed; or, if a limit was passed and passed back within it, solve again to
+    an instant in between. Arguments as of `step_with_limits`."""
     component = W.J.COMPONENT[W.s]
     within = S.when if linear or late(W, S) else passed_within(W, S.when)
     if within != S.when:
@@ -109,8 +109,8 @@ def end_part(W: Workspace, S: Parts, linear: bool, h: float, whole: bool, ledger
 
 @nonallocating
 def at_end(W: Workspace, S: Parts, linear: bool, h: float, whole: bool, ledger: JointLedger) -> int:
-    """What comes after a solve to the end of the step. Arguments as of `step_with_limits`."""
-    most = LIMIT_SOLVES if linear else 2 * W.joints + 100  # more of them neither let go nor search
+    """Decide what follows a solve to the end of the step. Arguments as of `step_with_limits`."""
+    most = LIMIT_SOLVES if linear else 2 * W.joints + 100  # after these, none is released or searched
     if S.solves < most and release(W):
         return GOES_ON
     k, side, instant = first_bound(W, S.when)
@@ -132,13 +132,13 @@ def at_end(W: Workspace, S: Parts, linear: bool, h: float, whole: bool, ledger: 
 
 @nonallocating
 def seek(W: Workspace, S: Parts, gap_now: float) -> None:
-    """The next instant at which to look for the limit, whose gap has been looked at: a secant, or the middle."""
+    """Choose the next instant of the search from the gap at the present one: by a secant, or the middle."""
     if gap_now > 0.0:
         S.low = S.when
     else:
         S.high = S.when
     _, rate = gap_rates(W, S.limit, S.side)
-    # Not the secant from beyond the bound to before a gap that opens first: it hardly moves.
+    # From beyond the bound, a flat secant (of a gap that opens first) hardly moves: the rate is used instead.
     if S.secants > 1 and S.when != S.last:
         secant = (gap_now - S.gap) / (S.when - S.last)
         rate = secant if gap_now > 0.0 or secant < 0.5 * rate else rate
@@ -149,11 +149,11 @@ def seek(W: Workspace, S: Parts, gap_now: float) -> None:
 
 @nonallocating
 def at_limit(W: Workspace, S: Parts) -> int:
-    """What comes after a solve to the instant at which a limit may be met: MEETS if it is, and no other one before."""
+    """Decide what follows a solve to the instant of a limit: MEETS if that is met, and no other one before."""
     update_idle(W, S.limit, S.when)
     gap_now, touch = limit_gap(W, S.limit, S.side), JOINT_TOUCH * W.J.HINGE[S.limit].size
     S.secants += 1
-    if S.foreseen > 0:  # perhaps it is not met now
+    if S.foreseen > 0:  # met by the last solution, perhaps not by this one
         _, rate = gap_rates(W, S.limit, S.side)
         if not (rate < 0.0 and 0.0 < S.when - gap_now / rate < S.left):
             S.limit, S.when, S.secants, S.events, S.foreseen = -1, S.left, 0, S.events - 1, 0
@@ -180,14 +180,14 @@ def at_limit(W: Workspace, S: Parts) -> int:
 
 @nonallocating
 def meet_limit(W: Workspace, S: Parts, h: float, ledger: JointLedger) -> None:
-    """Let the joint stand on the limit that it meets at the end of the part; the bodies go there unless that is within
-    round-off of the start."""
+    """Let the joint stand on the limit that it meets at the end of the part; bodies move there unless the way is
+    round-off."""
     at_once = not is_solved(S, h)
     if not at_once:
         rate, after = gap_rates(W, S.limit, S.side)
         near = rate < 0.0 and -S.when * min(rate, after) <= LIMIT_WAY * W.J.HINGE[S.limit].size
         at_once = near or S.when <= MEET_INSTANT * abs(h)
-    if not at_once:  # round-off of places would be velocities
+    if not at_once:  # else round-off of places, over S.when, would become velocities
         account_part(W, S.when, ledger)
         accept_part(W.J.LOCAL, W.bodies, S.when)
         note_part(W, S.part, S.limit, S.side, S.when)
@@ -200,7 +200,7 @@ def meet_limit(W: Workspace, S: Parts, h: float, ledger: JointLedger) -> None:
 
 @inlined
 def is_solved(S: Parts, h: float) -> bool:
-    """Whether the part is longer than round-off of the step h, so that there is something to solve."""
+    """Whether the part is longer than round-off of the step h: only then it is solved."""
     return bool(S.when > 1e-13 * abs(h) or h < 0.0)
 
 

@@ -1,9 +1,9 @@
-"""Energy that a step of joints has gained without any work: taken from the motion of bodies against each other.
+"""Energy that a step of joints has gained without work is taken from the relative motion of the bodies.
 
-A step whose joints did not hold (elastic stand-ins, linear rows), and closing what it left apart, may gain energy. Of
-all velocities with the same momentum and angular momentum those of a rigid body have the least energy, and they fit all
-joints. So velocities go part of the way to these, v = v_r + s (v - v_r), K = K_r + s^2 K_rel, until the gain is
-gone; where a component hangs on something that stands still v_r = 0.
+A step whose joints did not hold (elastic or linear rows), and closing what it left apart, may gain energy. Of all
+velocities with the same momentum and angular momentum, those of a rigid body have the least energy, and they satisfy
+all joints. So v = v_r + s (v - v_r), K = K_r + s^2 K_rel, with s such that the gain is gone; if the component has a
+partner at rest, v_r = 0.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from ..model.parameters.joints import LOCK_ITERATIONS
 
 @nonallocating
 def centre_of(local: Rows[BodyStep], bodies: int) -> tuple[bool, float, float, float, float, float, float]:
-    """Whether the component hangs on something; and the centre of mass (x, y) of its moving bodies, with its velocity
-    (vx, vy) and acceleration (ax, ay)."""
+    """Whether the component has a partner (`hangs`), and the centre of mass (x, y) of its moving bodies with its
+    velocity (vx, vy) and acceleration (ax, ay)."""
     mass = x = y = vx = vy = ax = ay = 0.0
     hangs = False
     for i in range(bodies):
@@ -37,8 +37,8 @@ def centre_of(local: Rows[BodyStep], bodies: int) -> tuple[bool, float, float, f
 
 @nonallocating
 def spin_about(local: Rows[BodyStep], bodies: int, x: float, y: float, vx: float, vy: float) -> tuple[float, float]:
-    """The spin that a rigid body with the angular momentum of the component about its centre of mass (x, y), of
-    velocity (vx, vy), would have, and its moment of inertia; 0 if there is none."""
+    """Spin of a rigid body with the angular momentum of the component about its centre of mass (x, y), of velocity (vx,
+    vy), and its moment of inertia; 0 if that is 0."""
     turning, inertia = 0.0, 0.0
     for i in range(bodies):
         if local[i].freedoms > 0 and local[i].mobility[0] > 0.0:
@@ -53,7 +53,7 @@ def spin_about(local: Rows[BodyStep], bodies: int, x: float, y: float, vx: float
 
 @nonallocating
 def lock_energy(local: Rows[BodyStep], bodies: int, gain: float) -> float:
-    """Take energy `gain` > 0 from the velocities v0; how much of it could be. Nothing where supports move: these
+    """Take the energy `gain` > 0 from the velocities v0; returns how much was taken. Nothing if partners move: they do
     work."""
     if not supports_rest(local, bodies):
         return 0.0
@@ -69,7 +69,7 @@ def lock_energy(local: Rows[BodyStep], bodies: int, gain: float) -> float:
 
 @nonallocating
 def supports_rest(local: Rows[BodyStep], bodies: int) -> bool:
-    """Whether nothing that the component hangs on moves."""
+    """Whether all partners of the component are at rest."""
     for i in range(bodies):
         for c in range(3):
             if local[i].freedoms == 0 and local[i].v0[c] != 0.0:
@@ -81,8 +81,8 @@ def supports_rest(local: Rows[BodyStep], bodies: int) -> bool:
 def relative_energy(
     local: Rows[BodyStep], bodies: int, x: float, y: float, vx: float, vy: float, spin: float, s: float
 ) -> float:
-    """Kinetic energy of the motion against that of a rigid body with velocity (vx, vy) at (x, y); s >= 0: let there be
-    s times as much of this motion."""
+    """Kinetic energy of the motion relative to a rigid body with velocity (vx, vy) at (x, y) and `spin`; s >= 0: scale
+    this motion by s."""
     total = 0.0
     for i in range(bodies):
         for c in range(local[i].freedoms):
@@ -101,12 +101,11 @@ def relative_energy(
 
 @nonallocating
 def move_rigidly(local: Rows[BodyStep], bodies: int, h: float) -> None:
-    """Move all bodies over a step h as one rigid body under their accelerations, or stop them where they hang on
-    something: joints keep their shape, and the end has no more energy than the start, but for the work of the
-    accelerations.
+    """Move all bodies over a step h as one rigid body under their accelerations, or stop them if the component has a
+    partner: joints keep their shape, and energy does not rise except by the work of the accelerations.
 
-    r1 - r0 = chi z x r_m for the arms r about the common centre: with torques about r_m the work of the accelerations
-    is exact. Bodies that joints do not turn keep their own spin.
+    r1 - r0 = chi z x r_m for the arms r about the common centre: with torques about r_m that work is exact. Bodies that
+    joints do not turn keep their own spin.
     """
     hangs, x, y, vx, vy, ax, ay = centre_of(local, bodies)
     spin, inertia = spin_about(local, bodies, x, y, vx, vy)

@@ -62,10 +62,10 @@ def order_nodes(start: IntArray, near: IntArray, nodes: int, order: IntArray) ->
 def order_unknowns(
     component: Rows[Component], member: Rows[ComponentBody], link: Rows[Coupling], s: int, condensed: bool
 ) -> None:
-    """Give the bodies and joints of component s their unknowns (`column`, `first_row`); fill in the number of unknowns
-    and the half-width of the band, and those outside the matrix (`impulses`).
+    """Number the unknowns of the bodies and joints of component s (`column`, `first_row`); set the number of unknowns,
+    the half-width of the band, and the number of unknowns outside the matrix (`impulses`).
 
-    In a condensed system the bodies come first, and joints are the edges between them.
+    In a condensed system only bodies are nodes, and joints are the edges between them.
     """
     b0, b1, j0, j1 = component[s].first_body, component[s].end_body, component[s].first_joint, component[s].end_joint
     bodies, joints = b1 - b0, j1 - j0
@@ -112,8 +112,8 @@ def order_unknowns(
 
 @kernel
 def order_rows(component: Rows[Component], member: Rows[ComponentBody], link: Rows[Coupling], s: int) -> None:
-    """Give the joints of component s their unknowns in a system of rows alone, in which joints of one body are coupled;
-    fill in its size and band, and the lists of the joints on each body."""
+    """Number the unknowns of the joints of component s in a system of rows alone, in which joints on one body are
+    coupled; set its size and band, and the lists of the joints on each body."""
     b0, b1, j0, j1 = component[s].first_body, component[s].end_body, component[s].first_joint, component[s].end_joint
     joints = j1 - j0
     for i in range(b0, b1):

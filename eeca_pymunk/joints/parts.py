@@ -1,9 +1,9 @@
-"""The parts of a step between the instants at which limits are met, as the solution before has taken them.
+"""The parts of a step between instants at which limits are met, stored for the next solution of the same step.
 
-The solutions of one interval, under impulses of contacts that come nearer to the right ones, differ by little: each
-part begins with the accelerations and forces of joints that the same part of the last solution has ended with, and with
-the limit that it has met, at its instant. This is where iterations begin, and changes no result. A step that meets
-limits has no parts of order 4 (`foresight`), whose memory serves.
+The solutions of one interval, under successive impulses of contacts, differ little. Each part begins with the
+accelerations and impulses of joints at the end of the same part of the last solution, and with the limit that it met,
+at its instant. Only the start of iterations depends on this. A step that meets limits has no parts of order 4
+(`foresight`), whose memory is used.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ def meets_limit(component: Component) -> bool:
 
 @nonallocating
 def begin_next(W: Workspace, S: Parts, cold: bool) -> None:
-    """Begin the next part as the last solution took it, if that is known: with the search for the limit that it met, at
-    its instant, or to the end of the step if it met none. cold: without impulses, as rows are redundant."""
+    """Begin the next part as the last solution took it, if that is known: search the limit that it met, from its
+    instant; else solve to the end of the step. cold: without impulses, as rows are redundant."""
     link, component, part = W.link, W.J.COMPONENT[W.s], S.part
     S.limit, S.side, S.when = -1, 0, S.left
     if part < component.parts:
@@ -43,8 +43,8 @@ def begin_next(W: Workspace, S: Parts, cold: bool) -> None:
 
 @nonallocating
 def note_part(W: Workspace, part: int, k: int, side: int, when: float) -> None:
-    """Note that a part of length `when` has been taken, at whose end joint k met its limit at this side; -1: none, it
-    was the last one."""
+    """Store that part number `part`, of length `when`, ends where joint k meets its limit at this side; -1 if it was
+    the last one."""
     component = W.J.COMPONENT[W.s]
     if part >= DEPTH:
         return
@@ -56,8 +56,8 @@ def note_part(W: Workspace, part: int, k: int, side: int, when: float) -> None:
 
 @nonallocating
 def begin_as_before(W: Workspace, before: float, h: float) -> None:
-    """Let the solve of a part h begin with the mean accelerations and forces of the last solve, of a part `before` from
-    the same start: `lead` and `lam`."""
+    """Begin the solve of a part h with the mean accelerations (`lead`) and forces (`lam`) of the last solve from the
+    same start, of length `before`."""
     local, hinge, longer = W.J.LOCAL, W.J.HINGE, h / before
     for i in range(W.bodies):
         for c in range(3):
@@ -69,8 +69,8 @@ def begin_as_before(W: Workspace, before: float, h: float) -> None:
 
 @nonallocating
 def weaken_lead(W: Workspace, share: float) -> None:
-    """Let the next part begin with this share of the accelerations by joints in the part before: the shorter that was,
-    the more of them is due to velocities that did not fit, and the less to forces."""
+    """Begin the next part with only this share of the accelerations by joints in the part before. In a short part most
+    of them correct velocities that violate joints, and are no forces."""
     for i in range(W.bodies):
         for c in range(3):
             W.J.LOCAL[i].lead[c] *= share

@@ -1,8 +1,8 @@
 """Which bodies joints connect to components, and the order of the unknowns of each in its banded matrix.
 
-A plan stays valid while the set of bodies and joints, their kinds, anchors and bodies, and what moves, stay the same.
-Bodies that joints cannot move bind nothing: they are partners of several components. Nodes of a component's graph
-are its movable bodies (two or three unknowns) and its joints with impulses; their order is reverse Cuthill-McKee.
+A plan stays valid while the set of bodies and joints, their kinds, anchors and bodies, and which bodies move, stay the
+same. Bodies that joints cannot move do not connect: they are partners of several components. Nodes of a component's
+graph are its movable bodies (two or three unknowns) and its joints with impulses; the order is reverse Cuthill-McKee.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from .ordering import order_rows, order_unknowns
 
 @kernel
 def root(parent: IntArray, i: int) -> int:
-    """The representative of i in the forest `parent` (n,) of sets; its paths are halved."""
+    """The representative of i in the forest `parent` (n,) of sets. Halves the paths to it."""
     while parent[i] != i:
         parent[i] = parent[parent[i]]
         i = parent[i]
@@ -67,7 +67,7 @@ def movable(bodies: Rows[Body], i: int) -> bool:
 
 @kernel
 def moves_body(bodies: Rows[Body], joint: Joint) -> bool:
-    """Whether a joint can move one of its bodies: not if it binds the angles of two that nothing turns."""
+    """Whether a joint can move one of its bodies; a joint of angles cannot move bodies of infinite moment."""
     a, b = joint.body[0], joint.body[1]
     if joint.kind >= GEAR:
         return bool(bodies[a].inv_inertia > 0.0 or bodies[b].inv_inertia > 0.0)
@@ -76,9 +76,9 @@ def moves_body(bodies: Rows[Body], joint: Joint) -> bool:
 
 @kernel
 def find_turning(bodies: Rows[Body], joint: Rows[Joint], joints: int, turns: IntArray, cayley: IntArray) -> None:
-    """Set turns (bodies,) to 1 for bodies that joints turn, and cayley (bodies,) to 1 for those of them that turn by
-    2 atan(chi/2) (`..model.joint_steps.BodyStep`): those held off their centre, and those bound to one of these by
-    their angle. Both are 0 before."""
+    """Set turns (bodies,) to 1 for bodies that joints turn, and cayley (bodies,) to 1 for those of them that turn by 2
+    atan(chi/2) (`..model.joint_steps.BodyStep`): bodies held off their centre, and bodies whose angle a joint binds to
+    such a body's. Both arrays are 0 before."""
     for j in range(joints):
         a, b, kind = joint[j].body[0], joint[j].body[1], joint[j].kind
         off_a = kind == GROOVE or (kind < GEAR and (joint[j].anchor_a[0] != 0.0 or joint[j].anchor_a[1] != 0.0))
@@ -142,9 +142,9 @@ def make_plan(
                     used += 1
                 link[k].body[end] = place[body] - component[s].first_body
         component[s].end_body = used
-        for way in range(2):
-            if way == 0 or (component[s].band > CONDENSE_BAND and not has_disc(joint, link, component, s)):
-                order_unknowns(component, member, link, s, way > 0)
+        order_unknowns(component, member, link, s, False)
+        if component[s].band > CONDENSE_BAND and not has_disc(joint, link, component, s):
+            order_unknowns(component, member, link, s, True)
         order_rows(component, member, link, s)
         cost = component[s].unknowns * component[s].band ** 2
         pays = 0 < component[s].dual_size * component[s].dual_band ** 2 <= cost
@@ -160,8 +160,8 @@ def make_plan(
 
 @kernel
 def has_disc(joint: Rows[Joint], link: Rows[Coupling], component: Rows[Component], s: int) -> bool:
-    """Whether a joint with two bounded impulses is in component s: their disc couples both, for which condensed systems
-    have no place."""
+    """Whether component s has a joint with two bounded impulses: their disc couples both, which condensed systems
+    cannot represent."""
     for k in range(component[s].first_joint, component[s].end_joint):
         if joint[link[k].joint].bounded != 0 and link[k].rows == 2:
             return True
@@ -170,7 +170,7 @@ def has_disc(joint: Rows[Joint], link: Rows[Coupling], component: Rows[Component
 
 @kernel
 def hard(joint: Rows[Joint], link: Rows[Coupling], component: Rows[Component], s: int) -> bool:
-    """Whether all joints of component s hold exactly, those with limits included."""
+    """Whether all joints of component s hold exactly, including those with limits."""
     for k in range(component[s].first_joint, component[s].end_joint):
         j = link[k].joint
         if link[k].rows == 0 or joint[j].kind == MOTOR or joint[j].bounded != 0:
@@ -183,10 +183,10 @@ def cycles(
     bodies: Rows[Body], joint: Rows[Joint], link: Rows[Coupling], member: Rows[ComponentBody],
     component: Rows[Component], s: int,
 ) -> int:  # fmt: skip
-    """Number of joints of component s that close a cycle of the graph of joints between points, or of that of joints of
-    angles; bodies that nothing moves, or nothing turns, are one node. Without cycles rows are independent, limits
-    included: those of points by what they do to places, those of angles by what they do to angles alone. Boxed rows are
-    in no matrix."""
+    """Number of joints of component s that close a cycle in the graph of joints of points, or in that of joints of
+    angles; all bodies that nothing moves, or nothing turns, are one node. Without cycles rows are independent,
+    including limits: those of points by their effect on places, those of angles on angles. Boxed rows do not count:
+    they are in no matrix."""
     b0, n = component[s].first_body, component[s].end_body - component[s].first_body
     parent, ends = np.arange(2 * (n + 1)), np.empty(2, np.int64)
     count = 0

@@ -1,4 +1,4 @@
-"""The start of a step: what joints bring from the last one, and what they shall reach."""
+"""The start of a step: what joints keep from the last one, and their targets."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ def mark_bounded(W: Workspace) -> None:
 
 @nonallocating
 def most_impulse(W: Workspace, h: float, length: float) -> float:
-    """The angular momentum of all that moves a component in a step h, to whose size of `length` all arms are taken:
-    momenta, those by accelerations, springs and bounded joints, and what motors bring to their rate, or partners that
-    impulses do not move to their speed and spin; through all gears."""
+    """The scale of angular momentum in a component over a step h, with arms of its size `length`: the sum of the
+    magnitudes of momenta, of those by accelerations, springs and bounded joints, and of what motors, or partners with
+    their velocities, would transfer; times the ratios of all gears."""
     total, geared, mass, moment, speed, spin = 0.0, 1.0, 0.0, 0.0, 0.0, 0.0
     for i in range(W.bodies):
         local = W.J.LOCAL[i]
@@ -50,26 +50,26 @@ def most_impulse(W: Workspace, h: float, length: float) -> float:
         moment += 1.0 / local.mobility[2] if local.mobility[2] > 0.0 else 0.0
     total += length * mass * (speed + spin * length) + moment * spin
     for k in range(W.joints):
-        joint, kind, turns = W.J.JOINT[W.link[k].joint], W.link[k].kind, 0.0
+        joint, kind, turning = W.J.JOINT[W.link[k].joint], W.link[k].kind, 0.0
         a, b = W.J.LOCAL[W.link[k].body[0]], W.J.LOCAL[W.link[k].body[1]]
         if kind == SPRING:
-            turns = abs(h) * length * (abs(joint.push) + joint.stiffness * length)
+            turning = abs(h) * length * (abs(joint.push) + joint.stiffness * length)
         elif kind == ROTARY_SPRING:
-            turns = abs(h) * (abs(joint.push) + joint.stiffness * abs(a.pose[2] - b.pose[2] - joint.rest))
+            turning = abs(h) * (abs(joint.push) + joint.stiffness * abs(a.pose[2] - b.pose[2] - joint.rest))
         elif joint.bounded != 0:
-            turns = abs(h) * joint.max_force * (1.0 if kind >= GEAR else length)
+            turning = abs(h) * joint.max_force * (1.0 if kind >= GEAR else length)
         elif kind == MOTOR and a.mobility[2] + b.mobility[2] > 0.0:
-            turns = abs(joint.rate) / (a.mobility[2] + b.mobility[2])
+            turning = abs(joint.rate) / (a.mobility[2] + b.mobility[2])
         elif kind == GEAR:
             geared *= max(abs(joint.ratio), 1.0 / abs(joint.ratio))
-        total += turns
+        total += turning
     return geared * total
 
 
 @nonallocating
 def bound_motors(W: Workspace, h: float, length: float) -> None:
-    """Bound the torque of motors that may have any by STALLED of all that moves their component: where they drive
-    against a limit, no finite impulse would hold both."""
+    """Bound the torque of motors of unlimited force by STALLED times `most_impulse`: if a motor drives against a limit,
+    no finite impulse satisfies both."""
     most = -1.0
     for k in range(W.joints):
         if W.link[k].kind == MOTOR and not W.J.HINGE[k].bound < np.inf:
@@ -79,12 +79,9 @@ def bound_motors(W: Workspace, h: float, length: float) -> None:
 
 @nonallocating
 def read_joints(W: Workspace, h: float, length: float) -> tuple[bool, bool]:
-    """Fill in what the joints bring from the last step to one of h: impulses, over the length of the step, `lead`, the
-    limits on which they stand.
-
-    Returns whether a joint was `touched`, and whether there is a bounded joint, which `bounded_targets` gives a speed;
-    a motor has its own.
-    """
+    """Read what joints keep from the last step: impulses, scaled to the length h of this one, `lead`, the limits on
+    which they stand. Returns whether a joint was `touched`, and whether there is a bounded joint other than a motor,
+    whose target `bounded_targets` sets."""
     joint, hinge, link = W.J.JOINT, W.J.HINGE, W.link
     touched, bounded = False, False
     mark_bounded(W)
@@ -111,7 +108,7 @@ def read_joints(W: Workspace, h: float, length: float) -> tuple[bool, bool]:
 
 @nonallocating
 def compute_rows(W: Workspace) -> None:
-    """Compute rows and values g of all joints at the present poses; of bounded ones too, as if they held exactly."""
+    """Compute rows and values g of all joints at the present poses; bounded ones as if they held exactly."""
     link = W.link
     first_iterate(W, POSES, 2.0)
     for k in range(W.joints):
@@ -123,14 +120,14 @@ def compute_rows(W: Workspace) -> None:
 
 @nonallocating
 def springs_of(W: Workspace) -> float:
-    """The energy that springs hold at the present poses, after `compute_rows`."""
+    """Energy stored in springs at the present poses, after `compute_rows`."""
     compute_rows(W)
     return springs_hold(W)
 
 
 @nonallocating
 def closing_share(joint: Rows[Joint], j: int, error: float, h: float) -> float:
-    """The share of the error of joint j that pymunk takes back in a step h: 1 - error_bias^h, not faster than max_bias.
+    """Share of the error of joint j that pymunk corrects in a step h: 1 - error_bias^h, at most at the speed max_bias.
     error: an amount, length or rad."""
     part = 1.0 - joint[j].error_bias ** h
     return float(min(part, joint[j].max_bias * h / error)) if error > 0.0 else part
@@ -139,10 +136,7 @@ def closing_share(joint: Rows[Joint], j: int, error: float, h: float) -> float:
 @nonallocating
 def bounded_targets(W: Workspace, h: float) -> None:
     """Set the speeds at which bounded joints close (`target`), and which bounded limits act (`side`): those beyond
-    their bound or about to pass it.
-
-    Rows must be those of the present poses.
-    """
+    their bound or about to pass it. Rows must be those of the present poses."""
     joint, hinge, link = W.J.JOINT, W.J.HINGE, W.link
     for k in range(W.joints):
         kind, j, rows = link[k].kind, link[k].joint, link[k].rows

@@ -1,8 +1,8 @@
 """One step of a component without contacts.
 
-Joints that are apart, by the user or by earlier steps, are closed; the ladder (`ladder`) takes the step, or one linear
-system where it fails (`unheld`); joints keep what the next step begins with. What elastic and linear joints gain is
-taken from what moves (`lock`).
+Joints that are apart, by an edit or by earlier steps, are closed. The ladder (`ladder`) takes the step, or one linear
+system if it fails (`unheld`). Joints store what the next step begins with. Energy that elastic and linear joints gain
+is taken from the motion (`lock`).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from ..newton.motion import save
 from ..newton.solve import drop_impulses
 from .bounds import closes_on_limit, hold_present_gaps, standing
 from .closing import close_joints, farthest
-from .correct import fitting_loss, kinetic_of_component, project
+from .correct import NOW, fitting_loss, kinetic_of_component, project
 from .ladder import climb, limit_work
 from .ledger import add_part, clear_ledger, close_ledger
 from .start import bounded_targets, compute_rows, read_joints
@@ -27,7 +27,7 @@ from .unheld import step_linearly, take_gain
 
 @nonallocating
 def write_joints(W: Workspace, h: float, loose: int) -> None:
-    """Leave what the next step begins with in the joints' own rows: impulses, limits, notches, accelerations.
+    """Store what the next step begins with in the rows of the joints: impulses, limits, notches, accelerations.
 
     loose: how the step has left joints that it did not hold, GIVES_WAY or LEFT_APART; 0 if it held them.
     """
@@ -66,7 +66,7 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
     clear_ledger(ledger)
     component.factored = 0
     touched, bounded = read_joints(W, h, length)
-    # Redundant rows begin without impulse, unless it is what holds bodies.
+    # Redundant rows begin without impulses, unless their pull holds bodies.
     component.taut = 1 if component.loops > 0 and is_taut(W, h) else 0
     if component.loops > 0 and component.taut == 0:
         drop_impulses(W)
@@ -81,21 +81,21 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
     if bounded:
         bounded_targets(W, h)
     if stands and closes_on_limit(W, h):
-        # An impact on its bodies has given it velocities into a bound on which it stands: these are met at once.
+        # An impact has left velocities into a bound on which a joint stands: it is met at once.
         project(W, SPEEDS)
         ledger.limited += fitting_loss(local, W.bodies, ledger)
         save(local, W.bodies)
     if stands:
         hold_present_gaps(W)
     for k in range(W.joints):
-        W.J.JOINT[W.link[k].joint].side = W.link[k].side  # where the ladder begins anew
+        W.J.JOINT[W.link[k].joint].side = W.link[k].side  # to which the ladder returns
     limit_work(W)
     apart = farthest(W)
     status = climb(W, h, order, length, touched, own)
     before = step_linearly(W, h, length) if status == LINEAR else 0.0
     if status >= ELASTIC:
         status = take_gain(W, h, status, before)
-    elif abs(W.J.PART.closed) > kinetic_of_component(local, W.bodies, False):  # works that cancel but for round-off
+    elif abs(W.J.PART.closed) > kinetic_of_component(local, W.bodies, NOW):  # works that cancel but for round-off
         close_ledger(local, W.bodies, W.J.PART)
     ledger.gave = max(farthest(W) - apart, 0.0) if status >= ELASTIC else 0.0
     add_part(ledger, W.J.PART)

@@ -115,7 +115,7 @@ def hold_chains(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, spins: 
     list_points(bodies, joint, X, HEAD, NEXT)
     total, found = 0, 1
     while found > 0:
-        # What is pinned holds others.
+        # Bodies pinned in one round hold others in the next.
         found, stamp = 0, -1
         SEEN[:] = -1
         for first in range(points):

@@ -1,6 +1,6 @@
 """Components whose joints pull so hard that bodies hardly move across them: a string, a bridge as long as its gap.
 
-To first order such joints allow motion across; only their pull, which turns as the bodies move, holds the bodies. A
+To first order such joints allow motion across. Only their pull, whose direction turns with the motion, prevents it: a
 solution has to begin with that pull.
 """
 
@@ -16,9 +16,9 @@ from ..newton.rows import start_joint
 
 @nonallocating
 def is_taut(W: Workspace, h: float) -> bool:
-    """Whether the impulse F of some joint between points pulls so that (h/4) dF/dx > TAUT of a body's inertia, as its
-    STIFF takes (`..newton.response.inertia_taken`): `turn` is -dF/dx for its angle, arm . F, `per` that across a pin or
-    slide, F over its length."""
+    """Whether (h/4) dF/dx > TAUT of a body's inertia, for the impulse F of a joint between points that pulls; this is
+    the entry of STIFF (`..newton.response.inertia_taken`). `turn` is -dF/dx for the body's angle, arm . F; `per` that
+    across a pin or slide, F over its length."""
     hinge, link = W.J.HINGE, W.link
     for k in range(W.joints):
         kind = link[k].kind

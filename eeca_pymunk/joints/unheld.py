@@ -1,4 +1,4 @@
-"""Steps whose joints did not hold: linear rows, bodies that move as one, and the energy that these gain taken back."""
+"""Steps whose joints did not hold: linear rows, or all bodies as one; the energy that they gain is taken back."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from ..model.parameters.joints import JOINT_GAIN, LINEAR_APART
 from ..newton.motion import accept_part, go_back, move
 from ..newton.solve import drop_impulses
 from .closing import farthest
-from .correct import kinetic_of_component, saved_energy
+from .correct import NOW, SAVED, kinetic_of_component
 from .foresight import forget_parts
 from .ladder import restore_start, undo_impulses
 from .ledger import clear_ledger, close_ledger
@@ -20,9 +20,8 @@ from .start import springs_of
 
 @nonallocating
 def step_linearly(W: Workspace, h: float, length: float) -> float:
-    """Take the step h by linear systems, one for each limit that is let go, or in free flight if they have no solution.
-    Returns how far joints were apart at its start, over the size of the component. PART has what springs have
-    stored."""
+    """Take the step h by linear systems, one for each limit that is released, or in free flight if they have no
+    solution. Returns `farthest` at its start. PART has the energy that springs have stored."""
     local, part = W.J.LOCAL, W.J.PART
     stored, apart = springs_of(W), farthest(W)
     drop_impulses(W)
@@ -43,7 +42,7 @@ def step_linearly(W: Workspace, h: float, length: float) -> float:
 
 @nonallocating
 def stop_joints(W: Workspace, h: float) -> None:
-    """Take the step h again as `move_rigidly` does, where nothing else can: what that loses is `projected` in PART."""
+    """Take the step h again by `move_rigidly`, which needs no solution; the loss is `projected` in PART."""
     local, part = W.J.LOCAL, W.J.PART
     go_back(local, W.bodies)
     stored = springs_of(W)
@@ -57,18 +56,18 @@ def stop_joints(W: Workspace, h: float) -> None:
 
 @nonallocating
 def take_gain(W: Workspace, h: float, status: int, before: float) -> int:
-    """Close the ledger of a step that was ELASTIC or LINEAR, and take what it has gained from the motion; the status.
-    Where that is not enough, or linear rows have moved joints apart, which were `before`, all bodies move as one.
+    """Close the ledger of an ELASTIC or LINEAR step, and take its gain from the motion; returns the status. If that is
+    not enough, or joints are farther apart than `before`, all bodies move as one.
 
-    Joints that close within a short h make bodies fast: such a gain is large beside what bodies had, and what is left
-    of it, the work of the way that they have gone, may be small beside the gain. So it is measured by what they had.
+    Joints that close within a short h make bodies fast. That gain, and what remains of it, the work on the way, are
+    compared with the kinetic energies before and after.
     """
     local, part, stopped = W.J.LOCAL, W.J.PART, False
     close_ledger(local, W.bodies, part)
     if part.closed > 0.0:
         lock_energy(local, W.bodies, part.closed)
         close_ledger(local, W.bodies, part)
-        had = saved_energy(local, W.bodies) + kinetic_of_component(local, W.bodies, False)
+        had = kinetic_of_component(local, W.bodies, SAVED) + kinetic_of_component(local, W.bodies, NOW)
         if part.closed > JOINT_GAIN * had and supports_rest(local, W.bodies):
             status, stopped = LINEAR, True
     if status == LINEAR and not farthest(W) <= before + LINEAR_APART:

@@ -1,8 +1,8 @@
-"""Welded bodies: a pivot and a gear of unlimited force, both closed, hold each on static or other welded bodies.
+"""Welded bodies: a closed pivot and a closed gear of unlimited force hold each on static or other welded bodies.
 
-They have no joints but these, and those of bodies welded to them. They stay in their places, so that the impulses of
-the two joints follow from the balance of momentum over a step, with P the sum of all impulses on the body, by gravity,
-forces, contacts and what is welded to it, and L that of their moments about the pivot:
+They have no joints but these, and those of bodies welded to them. As they do not move, the impulses of both joints
+follow from the balance of momentum over a step. With P the sum of all impulses on the body (gravity, forces, contacts,
+bodies welded to it) and L that of their moments about the pivot:
 
     impulse of the pivot = -P,      impulse of the gear = -L.
 """
@@ -35,8 +35,7 @@ def closed(bodies: Rows[Body], joint: Joint) -> bool:
 def grow(
     bodies: Rows[Body], joint: Rows[Joint], still: IntArray, loose: IntArray, pinned: IntArray, welds: IntArray
 ) -> int:  # fmt: skip
-    """Weld bodies that are not `loose` (n,) to those that are still or welded, one layer after the other; how many
-    there are. See `weld`."""
+    """Weld bodies that are not `loose` (n,) to still or welded ones, layer by layer; how many there are. See `weld`."""
     count, layer, found = 0, 0, 1
     while found > 0:
         found, layer = 0, layer + 1
@@ -59,11 +58,9 @@ def grow(
 
 @kernel
 def weld(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, pinned: IntArray, welds: IntArray) -> int:
-    """Hold the welded bodies: pinned (n,) is WELDED, and welds (n, 3) as `Pinned.weld` and `Pinned.link`; how many
-    there are.
-
-    A body with other joints than its weld and those of bodies welded to it is none: their impulses would be unknown.
-    """
+    """Find the welded bodies: pinned (n,) becomes WELDED, and welds (n, 3) has `Pinned.weld` and `Pinned.link`; how
+    many there are. A body is only welded if it has no other joints than its weld and those of bodies welded to it,
+    since their impulses would be unknown."""
     loose, spare = np.zeros(len(bodies), np.int64), np.zeros(len(bodies), np.int64)
     while True:
         welds[:] = -1
@@ -105,8 +102,8 @@ def pivot_place(J: Joints, pinned: Pinned) -> tuple[float, float]:
 
 @nonallocating
 def push_weld(J: Joints, pinned: Pinned, x: float, y: float, px: float, py: float, twist: float) -> None:
-    """Add the answer to an impulse (px, py) at (x, y), and an angular one `twist`, to the impulses of a welded body's
-    joints; nothing for other bodies."""
+    """Add the reaction to an impulse (px, py) at (x, y), and to an angular one `twist`, to the impulses of a welded
+    body's joints; nothing for other bodies."""
     if pinned.kind != WELDED:
         return
     pivot, gear = J.JOINT[pinned.weld[0] // 2], J.JOINT[pinned.weld[1] // 2]
@@ -119,7 +116,7 @@ def push_weld(J: Joints, pinned: Pinned, x: float, y: float, px: float, py: floa
 
 @nonallocating
 def pass_on(J: Joints, PINNED: Rows[Pinned], pinned: Pinned) -> None:
-    """Add the impulses of a welded body's joints to the bodies that it is welded to."""
+    """Apply the impulses of a welded body's joints to the bodies that it is welded to."""
     pivot, gear = J.JOINT[pinned.weld[0] // 2], J.JOINT[pinned.weld[1] // 2]
     under = pinned_row(PINNED, pivot.body[1 - pinned.weld[0] % 2])
     beside = pinned_row(PINNED, gear.body[1 - pinned.weld[1] % 2])

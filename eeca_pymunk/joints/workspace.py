@@ -19,7 +19,7 @@ from .plan import make_plan, together
 
 @inlined
 def workspace(J: Joints, s: int) -> Workspace:
-    """The memory of component s."""
+    """The workspace of component s."""
     C = J.COMPONENT[s]
     return Workspace(
         J, s, J.COUPLING[C.first_joint : C.end_joint], C.end_joint - C.first_joint, C.end_body - C.first_body
@@ -28,7 +28,7 @@ def workspace(J: Joints, s: int) -> Workspace:
 
 @nonallocating
 def measure_plan(J: Joints, ROOM: IntArray) -> bool:
-    """Write to ROOM the most that one component needs; whether the arrays of J have it.
+    """Write to ROOM the largest needs of one component; returns whether the arrays of J suffice.
 
     Args:
         ROOM (6,): out, bodies, joints, numbers of pivots, entries of a matrix, entries of a right side, and of scratch.
@@ -76,7 +76,7 @@ def _arrays() -> Plan[Joints]:
 
 
 class JointMemory:
-    """Memory for one plan of joints after the other."""
+    """Memory for successive plans of joints."""
 
     def __init__(self) -> None:
         self._layout = Layout(_arrays())
@@ -84,7 +84,7 @@ class JointMemory:
         self._most: tuple[int, ...] = (1, 1, 1, 1, 2, 1)  # of one component so far
 
     def plan(self, BODY: Rows[Body], JOINT: Rows[Joint], PARTNER: Rows[Body]) -> Table:
-        """The table of joints, `Joints`, with their plan; the last one is lost.
+        """The table of joints, `Joints`, with their plan; replaces the last one.
 
         Args:
             BODY: (n,) those of the scene.  JOINT: (j,), kept, not copied.  PARTNER: (x,), which joints cannot move.

@@ -12,11 +12,9 @@ from .springs import mean_force
 
 @nonallocating
 def shared_turn(a: BodyStep, b: BodyStep) -> float:
-    """(turned_b - turned_a) / (chi_b - chi_a): the one factor with which torques are opposite and energy is kept.
-
-    Of bodies that turn by 2 atan(chi/2). Where the quotient would be 0/0: the difference of both arctangents is
-    2 atan(y), with y below, and atan(y)/y has a series.
-    """
+    """s = (turned_b - turned_a) / (chi_b - chi_a) of bodies that turn by 2 atan(chi/2): with this common factor torques
+    are opposite and energy is conserved. Near 0/0 it is (atan(y)/y) / p, y = (chi_b - chi_a)/2p, p = 1 + chi_a
+    chi_b/4."""
     chi_a, chi_b = a.way[2], b.way[2]
     if abs(chi_b - chi_a) > 0.1:
         return float((b.turned - a.turned) / (chi_b - chi_a))
@@ -32,11 +30,8 @@ def angle_rows(
 ) -> int:  # fmt: skip
     """`joint_rows` of gears, rotary limits, ratchets, motors and rotary springs. `arm_a[0]` and `arm_b[0]` are the
     angles of both bodies at the start; `measure` is angle_b - angle_a at the end, of a spring its mean torque without
-    damping.
-
-    `share` is 1/ratio of a gear; `factor` the common s of both bodies, if there is one, else each has its own
-    turned/chi.
-    """
+    damping. The local `share` is 1/ratio of a gear; `factor` the common s of both bodies, if there is one, else each
+    has its own turned/chi."""
     find_turned(a)
     find_turned(b)
     for r in range(2):

@@ -11,7 +11,7 @@ def factor_banded(matrix: FloatArray, size: int, band: int, pivots: IntArray) ->
     """LU factors in place of `matrix`, reciprocals on the diagonal; False if a pivot vanishes.
 
     `matrix` (size (3 band + 1) or more,): A[i, j] at i (3 band + 1) + j - i + band for |i - j| <= band; the last `band`
-    entries of each row are room for what rows swap in, and begin at 0. `pivots` (2 size or more,): out, the row that
+    entries of each row are 0, room for the rows that exchanges bring in. `pivots` (2 size or more,): out, the row that
     each row was exchanged with, then the last column of each that is not 0. Cost: size band^2 operations.
     """
     width, end = 3 * band + 1, 0
@@ -64,7 +64,7 @@ def back_banded(matrix: FloatArray, size: int, band: int, pivots: IntArray, righ
     for k in range(size - 1, -1, -1):
         total = right[k]
         at = k * width + band
-        # What was found last comes last: nothing else waits for it.
+        # The unknown found last is used last, so that no other product waits for it.
         for j in range(pivots[size + k] - k, 0, -1):
             total -= matrix[at + j] * right[k + j]
         right[k] = total * matrix[at]

@@ -1,14 +1,14 @@
-"""Rows of bounded impulses that are BOXED, decided together: motors, and joints whose max_force is finite.
+"""Rows of bounded impulses that are BOXED, solved together: motors, and joints whose max_force is finite.
 
-Each iteration linearises all else. Let u be the velocity along a boxed row after that, less its target, and w (n, n)
-the change of u per boxed impulse, answered by all joints that hold exactly. The n impulses solve, together,
+Each iteration linearises all other equations. Let u be the velocity along a boxed row after that, less its target, and
+w (n, n) the change of u per boxed impulse, with the response of all joints that hold exactly. The n impulses solve,
+together,
 
     |lam| <= max_force h,    u = 0 inside of the bound,    u of the other sign than lam where lam is at the bound,
 
-(a pivot's two as a disc; where other joints hold u, which no impulse changes, lam is at its bound unless u = 0), so
-that lam never exceeds its bound, in no iteration and in no rung of `..joints.ladder`: the work of such a row is at most
-max_force times the way along it. Sweeps find which rows are at their bounds, a direct solution on the others does the
-rest.
+(a pivot's two as a disc; if exact joints fix u, which no impulse changes, lam is at its bound unless u = 0), so that
+lam never exceeds its bound, in no iteration and on no rung of `..joints.ladder`: the work of such a row is at most
+max_force times the way along it. Sweeps find which rows are at their bounds, a direct solution solves for the others.
 
 MORE has, with N unknowns of the component, one after the other:
 
@@ -16,7 +16,7 @@ MORE has, with N unknowns of the component, one after the other:
     n columns and a right side (N each): the scaled changes of all unknowns by unit impulses
     from number w:   w (n, n), factors (n, n)
     from number u:   seven arrays (n,): u; the impulses; their least, their largest values; SINGLE or the place in a
-                     disc (`..rows.bounded`); steps; 1 for what is inside its bounds
+                     disc (`..rows.bounded`); steps; 1 for impulses inside their bounds
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ ROW_ARRAYS = 8  # arrays of one number per row, beside the columns (and a right 
 
 @nonallocating
 def rows_of(link: Rows[Coupling], k: int) -> int:
-    """The rows of joint k that act, if it is boxed; 0 if not."""
+    """Number of rows of joint k that act, if it is boxed; else 0."""
     if link[k].bounded != BOXED or not acts(link, k, 0):
         return 0
     return 1 if link[k].kind == GROOVE and link[k].side == 0 else int(link[k].rows)
@@ -64,7 +64,7 @@ def boxed_rows(link: Rows[Coupling], joints: int) -> int:
 
 @nonallocating
 def unit_impulse(W: Workspace, k: int, r: int) -> None:
-    """Let RIGHT be a unit impulse along row r of joint k, scaled."""
+    """Write a unit impulse along row r of joint k, scaled, to RIGHT."""
     component = W.J.COMPONENT[W.s]
     for i in range(component.unknowns + component.impulses):
         W.J.RIGHT[i] = 0.0
@@ -87,7 +87,7 @@ def rate_along(W: Workspace, k: int, r: int, change: FloatArray, at: int) -> flo
 
 @nonallocating
 def measure_boxes(W: Workspace, w: int, u: int, n: int, h: float, fresh: bool) -> None:
-    """Write w, if columns are `fresh`; u after the solution in RIGHT; impulses and their bounds."""
+    """Write w, if columns are `fresh`; u for the solution in RIGHT; impulses and their bounds."""
     hinge, link, component, more = W.J.HINGE, W.link, W.J.COMPONENT[W.s], W.J.MORE
     size = component.unknowns + component.impulses
     cols = STRIDE * component.dual_size
@@ -114,7 +114,7 @@ def measure_boxes(W: Workspace, w: int, u: int, n: int, h: float, fresh: bool) -
 
 @nonallocating
 def change_box(more: FloatArray, w: int, u: int, n: int, i: int, to: float) -> float:
-    """Let impulse i be `to`, and u follow; the amount by which it has changed."""
+    """Set impulse i to `to`, and update u; returns the amount of the change."""
     change = to - more[u + n + i]
     if change != 0.0:
         more[u + n + i] = to
@@ -159,7 +159,7 @@ def free_of_bounds(more: FloatArray, u: int, n: int, i: int) -> bool:
 
 @nonallocating
 def direct_boxes(more: FloatArray, w: int, u: int, n: int) -> None:
-    """Bring u to 0 on all rows inside of their bounds, as if they had none; then clamp each impulse to its bounds."""
+    """Solve u = 0 for the rows inside of their bounds, as if these had none; then clamp each impulse to its bounds."""
     lu, step, width = w + n * n, u + 5 * n, 2 * n - 1
     for i in range(n):
         inside = free_of_bounds(more, u, n, i)
@@ -183,7 +183,7 @@ def direct_boxes(more: FloatArray, w: int, u: int, n: int) -> None:
 
 @nonallocating
 def count_discs(more: FloatArray, u: int, n: int) -> int:
-    """How many of the n rows begin a disc, over which sweeps are more work."""
+    """Number of the n rows that begin a disc, whose sweeps are more work."""
     count = 0
     for i in range(n):
         count += int(more[u + 4 * n + i] == FIRST_OF_DISC)
@@ -208,7 +208,7 @@ def solve_boxes(more: FloatArray, w: int, u: int, n: int) -> int:
 
 @nonallocating
 def apply_boxes(W: Workspace, u: int, n: int) -> None:
-    """Add to the solution in RIGHT what the changes of the boxed impulses do, and these changes, scaled."""
+    """Add the effect of the changes of the boxed impulses, and these changes, scaled, to the solution in RIGHT."""
     hinge, link, component, more = W.J.HINGE, W.link, W.J.COMPONENT[W.s], W.J.MORE
     size = component.unknowns + component.impulses
     cols = STRIDE * component.dual_size
@@ -229,8 +229,8 @@ def apply_boxes(W: Workspace, u: int, n: int) -> None:
 
 @nonallocating
 def bound_impulses(W: Workspace, n: int, h: float, fresh: bool) -> None:
-    """Complete the solution in RIGHT, which is that without a change of the n boxed impulses. fresh: whether the
-    columns are new, by `solve.find_columns`."""
+    """Complete the solution in RIGHT, which has no change of the n boxed impulses. fresh: whether the columns are new,
+    by `solve.find_columns`."""
     component = W.J.COMPONENT[W.s]
     w = STRIDE * component.dual_size + (n + 1) * (component.unknowns + component.impulses)
     u = w + 3 * n * n
@@ -243,7 +243,8 @@ def bound_impulses(W: Workspace, n: int, h: float, fresh: bool) -> None:
 
 @nonallocating
 def leave_box(W: Workspace, k: int, system: int, build: bool) -> None:
-    """Put in the rows of joint k, which are boxed: no change of their impulses; of a row that does not act, to 0."""
+    """Write equations for the rows of joint k, which are boxed: the impulse of a row stays, or becomes 0 if it does not
+    act."""
     for r in range(W.link[k].rows):
         put_free(W, k, r, system, build)
         if r < rows_of(W.link, k):

@@ -1,11 +1,11 @@
-"""Systems of wide components in the bodies' unknowns alone, the joints' rows as stiff springs that are then corrected.
+"""Systems of wide components in the bodies' unknowns alone: the joints' rows are stiff springs, and then corrected.
 
 [A  -J^T; G  give] [x; mu] = [b; c], with A the bodies' part, x and mu the changes of velocities and impulses, all
-scaled, becomes (A + R J^T G) dx = b + R J^T (c - G x), dmu = R (c - G x - G dx), and again with what is left of c
+scaled, becomes (A + R J^T G) dx = b + R J^T (c - G x), dmu = R (c - G x - G dx), repeated with the remaining c
 (`missing`). R is the stiffness of the rows, their `weight`. The balance of the bodies holds after the first pass, each
-further one multiplies the rows' error by 1/(1 + R s), s the least eigenvalue of G A^-1 J^T. Redundant rows do no harm.
-The band is that of the bodies' graph, and needs no pivots. Factors also serve for later iterates: therefore the scaled
-rows with which they were made are kept, *frozen* (`frozen_rows`, `frozen_slopes`).
+further one multiplies the rows' error by 1/(1 + R s), s the least eigenvalue of G A^-1 J^T. Rows may be redundant. The
+band is that of the bodies' graph, and needs no pivots. Factors also serve for later iterates, so the scaled rows with
+which they were made are stored, *frozen* (`frozen_rows`, `frozen_slopes`).
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ def subtract(row: FloatArray, other: FloatArray, amount: float) -> None:
 
 @nonallocating
 def dot(row: FloatArray, other: FloatArray) -> float:
-    """The product of two arrays of one length, in four sums that do not wait for each other."""
+    """The product of two arrays of one length, in four independent sums, which the processor overlaps."""
     n = len(row)
     a = b = c = d = 0.0
     for j in range(0, n - 3, 4):
@@ -89,7 +89,7 @@ def substitute(matrix: FloatArray, size: int, band: int, right: FloatArray, at: 
         if band >= CONDENSED_BAND:
             total -= dot(matrix[begin + 1 : begin + 1 + n], right[at + i + 1 : at + i + 1 + n])
         else:
-            # What was found last comes last: nothing else waits for it.
+            # The unknown found last is used last, so that no other product waits for it.
             for j in range(n, 0, -1):
                 total -= matrix[begin + j] * right[at + i + j]
         right[at + i] = total * matrix[begin]
@@ -97,8 +97,8 @@ def substitute(matrix: FloatArray, size: int, band: int, right: FloatArray, at: 
 
 @inlined
 def freeze_end(hinge: Rows[JointStep], k: int, end: int, r: int, slopes: bool, x: float, y: float, z: float) -> None:
-    """Freeze the entries of row r of joint k for its body at one end, J and G (`slopes`, else J for both): scaled by
-    the row's scale and the body's roots x, y, z."""
+    """Store the entries J and G (`slopes`, else J for both) of row r of joint k for its body at one end: scaled by the
+    row's scale and the body's roots x, y, z."""
     scale = hinge[k].scale[r]
     u, v, w, at = scale * x, scale * y, scale * z, 3 * end
     joint = hinge[k]
@@ -113,7 +113,7 @@ def freeze_end(hinge: Rows[JointStep], k: int, end: int, r: int, slopes: bool, x
 
 @inlined
 def freeze_row(W: Workspace, k: int, r: int, slopes: bool) -> None:
-    """Freeze row r of joint k at both ends."""
+    """`freeze_end` for both ends of row r of joint k."""
     for end in range(2):
         root = W.J.LOCAL[W.link[k].body[end]].root
         freeze_end(W.J.HINGE, k, end, r, slopes, root[0], root[1], root[2])
@@ -121,7 +121,7 @@ def freeze_row(W: Workspace, k: int, r: int, slopes: bool) -> None:
 
 @inlined
 def put_row(W: Workspace, k: int, r: int, slopes: bool, system: int) -> None:
-    """Put row r of joint k, which acts, into a condensed or a whole system; arguments as of `freeze_row`."""
+    """Add row r of joint k, which acts, to a condensed or a whole system; arguments as of `freeze_row`."""
     if system == CONDENSED:
         freeze_row(W, k, r, slopes)
         put_condensed(W, k, r)
@@ -140,7 +140,7 @@ def add_column(W: Workspace, k: int, r: int, amount: float, right: FloatArray, a
 
 @inlined
 def row_times(W: Workspace, k: int, r: int, right: FloatArray, at: int) -> float:
-    """The frozen row G of number r of joint k times right[at :]."""
+    """The frozen row G number r of joint k times right[at :]."""
     total = 0.0
     for end in range(2):
         body = W.J.LOCAL[W.link[k].body[end]]

@@ -1,9 +1,9 @@
 """Systems of components in the rows alone, the bodies' unknowns eliminated: S mu = c - G A^-1 b, S = G A^-1 J^T, with
 the symbols of `condensed`.
 
-A is taken to be diagonal: the masses, and of the bending of rows the diagonal of STIFF. For pivots that is all there
-is; for other joints without springs what is left out is of the order (h w)^2, w the rate at which they turn, by which
-errors shrink at each iteration. `solve.solve` takes the component's other system where that is too slow.
+A is taken as diagonal: the masses, and the diagonal of the rows' STIFF. For pivots this is exact. For other joints
+without springs the neglected part is of the order (h w)^2, w the rate at which they turn; errors shrink by this factor
+in each iteration. `solve.solve` uses the component's other system if that is too slow.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ def factor_dual(W: Workspace, slopes: bool, add: float) -> bool:
 
     Args:
         slopes: whether the rows G are the slopes of the joints, or J; they and the rows J are frozen (`condensed`).
-        add: on the diagonal, for rows that give way or may be redundant.
+        add: on the diagonal, for rows that are elastic or may be redundant.
 
     `inertia` of the bodies is the diagonal of A as `systems.assemble` left it; its reciprocal on return. MORE and
     PIVOTS are scratch, STRIDE and 1 times the rows.
@@ -73,8 +73,8 @@ def factor_dual(W: Workspace, slopes: bool, add: float) -> bool:
 
 @inlined
 def refresh(W: Workspace, slopes: bool) -> None:
-    """Freeze the rows of the present iterate for `back_dual`, though the factors are of an earlier one: they say how
-    impulses change velocities, and in long steps these rows turn."""
+    """Freeze the rows of the present iterate for `back_dual`, although the factors are of an earlier one: these rows
+    say how impulses change velocities, and they turn in long steps."""
     local = W.J.LOCAL
     for k in range(W.joints):
         for end in range(2):

@@ -1,4 +1,4 @@
-"""How many operations the parts of an iteration take, for the budget of a step: each part adds its own where it is
+"""Number of operations of the parts of an iteration, for the budget of a step; each part adds its own where it is
 computed (`systems`, `boxes`)."""
 
 from __future__ import annotations
@@ -10,23 +10,23 @@ from ..model.parameters.joints import BACK_WORK, FACTOR_BAND, FACTOR_WORK, REFIN
 
 @inlined
 def work_of_rows(joints: int) -> float:
-    """Work of the rows of so many joints, and of the balance of their bodies."""
+    """Operations of the rows of so many joints, and of the balance of their bodies."""
     return ROW_WORK * (joints + 1)
 
 
 @inlined
 def work_of_factors(system: int, component: Component) -> float:
-    """Work of the factors of a system."""
+    """Operations to factor a system."""
     size, band = (component.dual_size, component.dual_band) if system == DUAL else (component.unknowns, component.band)
-    # Wide bands take several numbers at once; in those of whole systems most rows are 0.
+    # Wide bands are factored several numbers at a time; in those of whole systems most entries are 0.
     each = 0.5 if system == WHOLE or band >= FACTOR_BAND else 2.0
     return float(size * (FACTOR_WORK + each * band * band))
 
 
 @inlined
 def work_of_solution(system: int, passes: int, joints: int, component: Component) -> float:
-    """Work of a solution with these factors; of a condensed system so many `passes`, each refined by all rows."""
-    # To a dual system there also belong products with its rows, 24 numbers each.
+    """Operations of a solution with these factors; in a condensed system of `passes`, each refined by all rows."""
+    # A dual system also has products with its rows, of 24 numbers each.
     size, more = (
         (component.dual_size, component.dual_band + 24) if system == DUAL else (component.unknowns, component.band)
     )
@@ -36,6 +36,6 @@ def work_of_solution(system: int, passes: int, joints: int, component: Component
 
 @inlined
 def work_of_iteration(system: int, passes: int, boxes: int, joints: int, component: Component) -> float:
-    """Work of an iteration with new factors, with the columns of `boxes` boxed rows."""
+    """Operations of an iteration with new factors, and with the columns of `boxes` boxed rows."""
     solutions = (1 + boxes) * work_of_solution(system, passes, joints, component)
     return work_of_rows(joints) + work_of_factors(system, component) + solutions

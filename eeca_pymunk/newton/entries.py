@@ -1,9 +1,8 @@
-"""What one joint puts into the linear system of its component: rows, columns, stiffness, all scaled (see `systems`).
+"""Entries of one joint in the linear system of its component: rows, columns, stiffness, all scaled (see `systems`).
 
 Entries are scaled by the `root` of a body's direction and by the `scale` of a row, so that the bodies' part of the
-matrix is 1 but for stiffness, and the diagonal of G M^-1 G^T is 1. `matrix` is banded: A[i, j] stands at
-i (3 band + 1) + j - i + band in a whole system (`banded`), at i (2 band + 1) + j - i + band in the others
-(`condensed`).
+matrix is 1 but for stiffness, and the diagonal of G M^-1 G^T is 1. `matrix` is banded: A[i, j] stands at i (3 band + 1)
++ j - i + band in a whole system (`banded`), at i (2 band + 1) + j - i + band in the others (`condensed`).
 """
 
 from __future__ import annotations
@@ -19,13 +18,13 @@ from ..model.joints import DUAL, GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, WHOLE, Co
 
 @inlined
 def is_limit(kind: int) -> bool:
-    """Whether joints of this kind are limits alone, with one row that acts on one side only."""
+    """Whether joints of this kind are limits alone, with one row that acts on one side."""
     return kind in (SLIDE, ROTARY_LIMIT, RATCHET)
 
 
 @inlined
 def acts(link: Rows[Coupling], k: int, r: int) -> bool:
-    """Whether row r of joint k acts: rows of limits do where the joint stands on one."""
+    """Whether row r of joint k acts: a limit's row does if the joint stands on it."""
     kind = link[k].kind
     if kind == GROOVE:
         return r == 0 or link[k].side != 0
@@ -34,15 +33,15 @@ def acts(link: Rows[Coupling], k: int, r: int) -> bool:
 
 @inlined
 def idle(link: Rows[Coupling], k: int) -> bool:
-    """Whether joint k is a limit on which it does not stand: steps go without it, and look at it when they are solved
+    """Whether joint k is a limit on which it does not stand: it is left out of solves and tested afterwards
     (`..joints.bounds.first_bound`)."""
     return not acts(link, k, 0) and link[k].bounded == 0
 
 
 @inlined
 def interval_of(kind: int, side: int, bound: float) -> tuple[float, float]:
-    """Least and largest impulse of a row whose impulse is at most `bound`: (-bound, bound), of a limit at `side` that
-    half of it which pushes inwards."""
+    """Least and largest impulse of a row with |impulse| <= `bound`: (-bound, bound); of a limit at `side` the half of
+    it that pushes inwards."""
     if is_limit(kind):
         return (0.0, bound) if side < 0 else (-bound, 0.0)
     return -bound, bound
@@ -50,7 +49,7 @@ def interval_of(kind: int, side: int, bound: float) -> tuple[float, float]:
 
 @inlined
 def along(joint: JointStep, r: int, v_a: FloatArray, v_b: FloatArray) -> float:
-    """Row J of number r of a joint times the velocities v_a and v_b (3,) of its bodies, or their ways."""
+    """Row J number r of a joint times the velocities v_a and v_b (3,) of its bodies, or their ways."""
     total = 0.0
     for c in range(3):
         total += joint.rows[r, c] * v_a[c] + joint.rows[r, 3 + c] * v_b[c]
@@ -91,10 +90,8 @@ def put_condensed(W: Workspace, k: int, r: int) -> None:
 
 @inlined
 def put_stiffness(W: Workspace, k: int, bend: int, h: float, system: int) -> None:
-    """Add -(h/2) STIFF of joint k, scaled, to the matrix; of a dual system what is on the diagonal, to `inertia`.
-
-    x changes by h/2 of v1. bend: what of STIFF there is, NO_BEND ... FULL_BEND.
-    """
+    """Add -(h/2) STIFF of joint k, scaled, to the matrix (x changes by h/2 per change of v1); of a dual system its
+    diagonal alone, to `inertia`. bend: which part of STIFF is not 0, NO_BEND ... FULL_BEND."""
     link, local, stiff, matrix, band = W.link, W.J.LOCAL, W.J.STIFF, W.J.MATRIX, W.J.COMPONENT[W.s].band
     low = 0 if bend == FULL_BEND else 2
     width = 3 * band + 1 if system == WHOLE else 2 * band + 1
@@ -118,8 +115,8 @@ def put_stiffness(W: Workspace, k: int, bend: int, h: float, system: int) -> Non
 
 @inlined
 def put_free(W: Workspace, k: int, r: int, system: int, build: bool) -> None:
-    """Put in row r of joint k, which does not act: its equation lets its impulse become 0, or, with 0 written over this
-    right side (`boxes.leave_box`), stay as it is."""
+    """Write the equation of row r of joint k, which does not act: its impulse becomes 0; or stays, if the right side is
+    then set to 0 (`boxes.leave_box`)."""
     hinge, row, band = W.J.HINGE, W.link[k].first_row + r, W.J.COMPONENT[W.s].band
     hinge[k].weight[r] = 0.0
     W.J.RIGHT[row] = -hinge[k].lam[r] / hinge[k].scale[r]
@@ -129,7 +126,7 @@ def put_free(W: Workspace, k: int, r: int, system: int, build: bool) -> None:
 
 @inlined
 def put_idle(W: Workspace, k: int, system: int, build: bool) -> None:
-    """Put in the row of a limit on which joint k does not stand (`idle`): it has no impulse, and stays without."""
+    """Write the equation of the row of joint k, which is `idle`: its impulse is 0 and stays 0."""
     hinge, band = W.J.HINGE, W.J.COMPONENT[W.s].band
     hinge[k].weight[0] = hinge[k].lam[0] = 0.0
     if build and system == WHOLE:

@@ -1,4 +1,4 @@
-"""How the bodies of a component move over a step, where they are at its end, and back to its start."""
+"""Motion of the bodies of a component over a step, and back to its start."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from ..model.joints import ComponentBody, Joints
 
 @inlined
 def seat(local: BodyStep, joined: ComponentBody) -> None:
-    """Copy what the plan says of a body to its scratch: its unknowns, how it turns, its list of joints."""
+    """Copy the plan's values of a body to its scratch: its unknowns, how it turns, its list of joints."""
     local.column, local.freedoms = joined.column, joined.freedoms
     local.first, local.cayley = joined.first, joined.cayley
 
 
 @inlined
 def read_body(local: BodyStep, body: Body) -> None:
-    """Copy pose, velocity and mobility of a body to its scratch; accelerations are left to the caller."""
+    """Copy pose, velocity and mobility of a body to its scratch; accelerations are set by the caller."""
     local.pose[0], local.pose[1], local.pose[2] = body.x, body.y, body.angle
     local.v0[0], local.v0[1], local.v0[2] = body.vx, body.vy, body.spin
     local.mobility[0], local.mobility[1], local.mobility[2] = body.inv_mass, body.inv_mass, body.inv_inertia
@@ -28,11 +28,9 @@ def read_body(local: BodyStep, body: Body) -> None:
 
 @nonallocating
 def size_up(J: Joints, s: int, h: float) -> float:
-    """Complete the scratch of the bodies of component s: roots of mobilities, cosine and sine of the angle.
-
-    Their pose, velocity and mobility are there. Returns the component's size, the length by which errors of its joints
-    are measured: its largest coordinate, way in h, anchor or radius of gyration, as round-off is relative to these.
-    """
+    """Complete the scratch of the bodies of component s, whose pose, velocity and mobility are there: roots of
+    mobilities, cosine and sine of the angle. Returns the component's size, the length by which errors of its joints are
+    measured: its largest coordinate, way in h, anchor or radius of gyration, as round-off is relative to these."""
     C, local, length = J.COMPONENT[s], J.LOCAL, 0.0
     for i in range(C.end_body - C.first_body):
         for c in range(3):
@@ -73,8 +71,8 @@ def move(local: Rows[BodyStep], bodies: int, h: float) -> None:
 
 @nonallocating
 def find_turned(body: BodyStep) -> None:
-    """Fill in the angle by which a body turns (`turned`), that over chi (`per`), and the derivative of `per` by chi
-    (`bend`), after `move`: for joints of angles. Small angles take the series of 2 atan(chi/2)."""
+    """Compute the angle by which a body turns (`turned`), its ratio to chi (`per`), and the derivative of `per` by chi
+    (`bend`), after `move`: for joints of angles. Small angles use the series of 2 atan(chi/2)."""
     chi = body.way[2]
     t = 0.5 * chi
     if body.cayley > 0:
@@ -94,8 +92,8 @@ def find_turned(body: BodyStep) -> None:
 
 @inlined
 def balance_velocities(local: Rows[BodyStep], bodies: int, h: float) -> None:
-    """Set the velocities v1 from the balance of momentum, which then holds to round-off: v0 + h a + M^-1 J^T lam, of
-    `impulse`; and what follows from them (`move`)."""
+    """Set the velocities v1 to v0 + h a + M^-1 `impulse`, so that the balance of momentum holds to round-off, and
+    `move`."""
     for i in range(bodies):
         for c in range(3):
             change = h * local[i].acceleration[c] + local[i].mobility[c] * local[i].impulse[c]
@@ -121,15 +119,15 @@ def accept_part(local: Rows[BodyStep], bodies: int, h: float) -> None:
             local[i].v0[c] = local[i].v1[c]
         if chi != 0.0:
             local[i].pose[2] += 2.0 * np.arctan(0.5 * chi) if local[i].cayley > 0 else chi
-            # As of that angle, to the round-off of the parts of a step.
+            # cos and sin of the new angle, up to round-off of each part.
             x, y, turn_x, turn_y = local[i].cos, local[i].sin, local[i].turn_cos, local[i].turn_sin
             local[i].cos, local[i].sin = x * turn_x - y * turn_y, y * turn_x + x * turn_y
 
 
 @nonallocating
 def save(local: Rows[BodyStep], bodies: int) -> None:
-    """Let the present poses and velocities be the start of the step, to which `go_back` returns; no way is made yet but
-    the `shift` by the closing of joints."""
+    """Make the present poses and velocities the start of the step, to which `go_back` returns; ways are 0 but for the
+    `shift` by the closing of joints."""
     for i in range(bodies):
         for c in range(3):
             local[i].saved_pose[c], local[i].saved_velocity[c] = local[i].pose[c], local[i].v0[c]
@@ -139,7 +137,7 @@ def save(local: Rows[BodyStep], bodies: int) -> None:
 
 @nonallocating
 def go_back(local: Rows[BodyStep], bodies: int) -> None:
-    """Back to the poses and velocities at the start of the step."""
+    """Return to the poses and velocities at the start of the step."""
     for i in range(bodies):
         for c in range(3):
             local[i].pose[c], local[i].v0[c] = local[i].saved_pose[c], local[i].saved_velocity[c]

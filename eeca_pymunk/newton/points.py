@@ -17,10 +17,7 @@ def point_rows(
     bends: bool, stiff: FloatArray,
 ) -> int:  # fmt: skip
     """`joint_rows` of pins, slides, pivots and springs; `measure` of a slide is its length at the end, of a spring its
-    mean force without damping.
-
-    Names end in 0 at the start, 1 at the end, nothing at the mean of both.
-    """
+    mean force without damping. Names end in 0 at the start, 1 at the end, nothing at the mean of both."""
     ca, sa, slope_a, lever_a = a.turn_cos, a.turn_sin, a.slope, a.lever
     cb, sb, slope_b, lever_b = b.turn_cos, b.turn_sin, b.slope, b.lever
     rax0, ray0, rbx0, rby0 = hinge.arm_a[0], hinge.arm_a[1], hinge.arm_b[0], hinge.arm_b[1]
@@ -107,11 +104,9 @@ def point_rows(
 
 @nonallocating
 def groove_rows(side: int, joint: Joint, hinge: JointStep, a: BodyStep, b: BodyStep, stiff: FloatArray) -> int:
-    """`joint_rows` of a groove: row 0 keeps the point of b on the line of the groove, row 1, which acts where the joint
-    stands on an end, inside that end (`side`); `measure` is the place of the point along the groove.
-
-    y is the vector from the centre of mass of a to the point of b.
-    """
+    """`joint_rows` of a groove: row 0 keeps the point of b on the line of the groove; row 1, which acts if the joint
+    stands on an end (`side`), inside that end. `measure` is the place of the point along the groove. y is the vector
+    from the centre of mass of a to the point of b."""
     ca, sa, slope_a, lever_a = a.turn_cos, a.turn_sin, a.slope, a.lever
     cb, sb, slope_b, lever_b = b.turn_cos, b.turn_sin, b.slope, b.lever
     rbx0, rby0 = hinge.arm_b[0], hinge.arm_b[1]

@@ -1,10 +1,10 @@
-"""How a component of joints answers impulses on its bodies: the change of velocities per impulse.
+"""Response of a component of joints to impulses on its bodies: the change of velocities per impulse.
 
 About a solved step, d v1 = S p for impulses p spread over the step, S the bodies' block of the inverse of Newton's
-matrix, with springs and bounded joints. Rows turn as bodies move, and the force of joints with them: without that taut
-joints would allow motion across. Of joints that press hard it is left out: S would not be positive. At one instant (an
-impact), S = M^-1 - M^-1 G^T (G M^-1 G^T)^-1 G M^-1: joints that hold exactly let no velocity through, and all others no
-impulse.
+matrix, with springs and bounded joints. Rows turn with the bodies, and so does the force of joints (STIFF): without it
+taut joints would allow motion across. It is left out for joints that press hard, with which S would not be positive. At
+one instant (an impact), S = M^-1 - M^-1 G^T (G M^-1 G^T)^-1 G M^-1: exact joints let no velocity through, and all
+others exert no impulse.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ from .systems import assemble, back, decompose, first_iterate
 
 @nonallocating
 def inertia_taken(W: Workspace, k: int, c: int, full: bool, h: float) -> float:
-    """The largest part of a body's inertia that STIFF of joint k may take: (h/2) times the sum of amounts in its row c
-    (0 to 5: body c // 3, direction c % 3), scaled by the roots of mobilities; of OWN_TURN (not `full`), the diagonal
-    alone."""
+    """A bound of the part of a body's inertia that STIFF of joint k takes: (h/2) times the sum of the magnitudes in its
+    row c (0 to 5: body c // 3, direction c % 3), scaled by the roots of mobilities; of OWN_TURN (not `full`), the
+    diagonal alone."""
     link, local = W.link[k], W.J.LOCAL
     root = local[link.body[c // 3]].root[c % 3]
     total = 0.0
@@ -39,8 +39,8 @@ def inertia_taken(W: Workspace, k: int, c: int, full: bool, h: float) -> float:
 
 @nonallocating
 def turns_over(W: Workspace, k: int) -> bool:
-    """Whether the force F of joint k, between points of two bodies, turns one of them away as it turns about its point,
-    r . F < 0 with the arm r of the point at the end: F pushes the centre of mass, whatever it does at the point."""
+    """Whether the force F of joint k, between points of two bodies, makes the rotation of one of them about its point
+    unstable: r . F < 0, with the arm r of the point at the end; F pushes the point towards the centre of mass."""
     hinge = W.J.HINGE[k]
     for end in range(2):
         body, arm = W.J.LOCAL[W.link[k].body[end]], hinge.arm_a if end == 0 else hinge.arm_b
@@ -52,11 +52,11 @@ def turns_over(W: Workspace, k: int) -> bool:
 
 @nonallocating
 def bend_rows(W: Workspace, k: int, h: float) -> None:
-    """Let joint k have the impulse of the whole step in `lam`, so that its rows take their force along as they turn;
-    none if it presses, and all that presses on one of its bodies would take more than TAUT of that body's `inertia`.
+    """Give joint k the impulse of the whole step in `lam`, so that its rows turn with their force; 0 if it presses, and
+    all joints that press on one of its bodies would take more than TAUT of that body's `inertia`.
 
-    What a full STIFF takes is bounded by the sums of its rows (Gershgorin), so that what is left of the inertia of all
-    bodies is positive. A groove pushes along where it turns: its STIFF has both signs, whatever its diagonal. So has
+    The part that a full STIFF takes is bounded by the sums of its rows (Gershgorin), so that the remaining inertia of
+    all bodies is positive. A groove's force turns with body a: its STIFF has both signs, whatever its diagonal. So has
     that of a pin or slide that pulls, if it `turns_over` a body. Bounded impulses that are given bend as others do.
     """
     hinge, local = W.J.HINGE, W.J.LOCAL
@@ -83,7 +83,7 @@ def prepare_response(W: Workspace, what: int, h: float) -> int:
 
     `what` is STEP, after `take_step` (whose start becomes that of `local` again), or SPEEDS, at the present poses.
     """
-    # Boxed rows are in the matrix meanwhile: those inside of their bounds hold.
+    # Boxed rows are in the matrix meanwhile: those inside of their bounds are exact.
     boxed = bound_otherwise(W.link, W.joints, BOXED, BOUNDED)
     system = factor_response(W, what, h)
     if boxed:
@@ -131,10 +131,11 @@ def factor_response(W: Workspace, what: int, h: float) -> int:
 
 @nonallocating
 def respond(W: Workspace, system: int, push: FloatArray, gives: bool) -> None:
-    """Replace impulses on the bodies by the changes of velocity that they cause, by the factors of `prepare_response`.
+    """Replace impulses on the bodies by the changes of velocity that they cause, with the factors of
+    `prepare_response`.
 
     Args:
-        system: that of the factors, from `prepare_response`.  gives: whether joints give way elastically.
+        system: its result.  gives: whether joints are elastic.
         push: (bodies, 3) impulses (mass length/time, mass length²/time) in, velocities (length/time, 1/time) out.
     """
     local, component, right = W.J.LOCAL, W.J.COMPONENT[W.s], W.J.RIGHT

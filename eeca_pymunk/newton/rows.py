@@ -33,9 +33,9 @@ from .points import groove_rows, point_rows
 def joint_rows(W: Workspace, k: int, h: float, bends: bool) -> int:
     """Compute the rows of joint k at the present iterate, `way` of its bodies and its `lam`.
 
-    Fills in `value`, `force`, `rows`, `slopes`, of limits `measure`, of springs `lam`, `ended` and `measure`, their
-    mean force without damping; and STIFF if it is needed (`bends`). h: length of the part. Returns which entries of
-    STIFF are not 0, and written: NO_BEND, OWN_TURN, FULL_BEND.
+    Sets `value`, `force`, `rows`, `slopes`, of limits `measure`, of springs `lam`, `ended` and `measure`, their mean
+    force without damping; and STIFF if it is needed (`bends`). h: length of the part. Returns which entries of STIFF
+    are not 0, and set: NO_BEND, OWN_TURN, FULL_BEND.
     """
     joint, hinge, link, local, stiff = W.J.JOINT, W.J.HINGE, W.link, W.J.LOCAL, W.J.STIFF
     kind, a, b, side = link[k].kind, link[k].body[0], link[k].body[1], link[k].side
@@ -59,8 +59,8 @@ def joint_rows(W: Workspace, k: int, h: float, bends: bool) -> int:
 
 @inlined
 def start_joint(W: Workspace, k: int, h: float) -> None:
-    """Fill in what stays the same over the iterations of a part of length h: arms, distance and normal at its start; of
-    joints of angles the angles, in arm_a[0] and arm_b[0]; a spring's length or angle, and its `drag`."""
+    """Set what is constant over the iterations of a part of length h: arms, distance and normal at its start; of joints
+    of angles the angles, in arm_a[0] and arm_b[0]; a spring's length or angle, and its `drag`."""
     joint, hinge, link, local = W.J.JOINT, W.J.HINGE, W.link, W.J.LOCAL
     kind, a, b, j = link[k].kind, link[k].body[0], link[k].body[1], link[k].joint
     if kind >= GEAR:

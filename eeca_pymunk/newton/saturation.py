@@ -1,7 +1,7 @@
-"""Rows of bounded impulse, BOUNDED, that are in the matrix: motors, and joints whose max_force is finite.
+"""Rows of bounded impulse, BOUNDED, in the matrix: motors, and joints whose max_force is finite.
 
-Each joint is decided by itself in each iteration, by Alart and Curnier (see `systems`): it sticks or is at its bound.
-Of rows that are BOXED only the residual is taken here: `boxes` decides them together, as long as they are few.
+In each iteration each joint is decided by itself, by Alart and Curnier (see `systems`): it sticks or is at its bound.
+For rows that are BOXED only the residual is computed here: `boxes` solves for them together, if they are few.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from .entries import interval_of, put_free, put_rows
 
 @nonallocating
 def bound_otherwise(link: Rows[Coupling], joints: int, before: int, after: int) -> bool:
-    """Let joints whose `bounded` is `before` have it `after`; whether there are any."""
+    """Change `bounded` of joints from `before` to `after`; returns whether there are any."""
     some = False
     for k in range(joints):
         if link[k].bounded == before:
@@ -28,10 +28,11 @@ def bound_otherwise(link: Rows[Coupling], joints: int, before: int, after: int) 
 
 @nonallocating
 def put_bounded(W: Workspace, k: int, slopes: bool, h: float, system: int, build: bool) -> float:
-    """Put in the rows of joint k, which has bounded impulses; their residual, as `value`: a length or an angle.
+    """Write the equations of the rows of joint k, whose impulses are bounded; their residual, as `value`: length or
+    angle.
 
-    With p = lam - rho u, u = 2 value/h, rho = scale^2 (the smaller one of two): u = 0 where p is within the bounds,
-    else lam is the nearest impulse within them. `turn` is the derivative of that of a disc, bound p/|p|, by p.
+    With p = lam - rho u, u = 2 value/h, rho = scale^2 (the smaller one of two): u = 0 if p is within the bounds, else
+    lam is the nearest impulse within them. `turn` is the derivative of that of a disc, bound p/|p|, by p.
     """
     hinge, link, local, matrix, right, band = (
         W.J.HINGE, W.link, W.J.LOCAL, W.J.MATRIX, W.J.RIGHT, W.J.COMPONENT[W.s].band

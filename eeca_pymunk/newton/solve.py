@@ -1,7 +1,7 @@
 """The implicit step of a component by Newton's iteration, and the step by one linear system.
 
-`epsilon` on the diagonal of the impulses makes redundant rows solvable: it acts on increments alone, so that what is
-solved stays the same.
+`epsilon` on the diagonal of the impulses makes redundant rows solvable. It acts on increments only, so the solution
+does not depend on it.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from .systems import apply, back, factorise, first_iterate, linearise
 
 @nonallocating
 def drop_impulses(W: Workspace) -> None:
-    """Let iterations begin without impulses of joints."""
+    """Set the impulses with which iterations begin to 0."""
     for k in range(W.joints):
         W.J.HINGE[k].lam[0] = W.J.HINGE[k].lam[1] = 0.0
 
@@ -44,8 +44,8 @@ def bounded_rows(link: Rows[Coupling], joints: int) -> bool:
 
 @nonallocating
 def find_columns(W: Workspace, system: int, passes: int, boxes: int) -> None:
-    """Write the columns of `boxes` with the factors of `decompose`: what a unit impulse along each of the `boxes` boxed
-    rows does to all unknowns. RIGHT is kept."""
+    """Compute the columns of the `boxes` boxed rows with the factors of `decompose`: the change of all unknowns by a
+    unit impulse along each. RIGHT is kept."""
     component, right, more = W.J.COMPONENT[W.s], W.J.RIGHT, W.J.MORE
     size = component.unknowns + component.impulses
     first = STRIDE * component.dual_size
@@ -65,8 +65,8 @@ def find_columns(W: Workspace, system: int, passes: int, boxes: int) -> None:
 
 @nonallocating
 def iterate(W: Workspace, what: int, system: int, passes: int, boxes: int, h: float, fresh: bool) -> None:
-    """Solve the system for the right side with its factors, and change velocities and impulses by that. The impulses of
-    `boxes` rows stay within their bounds, by columns that are computed anew if factors are `fresh`. passes: of
+    """Solve the system for the right side with its factors, and change velocities and impulses by the solution. The
+    impulses of `boxes` rows stay within their bounds, by columns that are computed if factors are `fresh`. passes: of
     `condensed`."""
     if boxes > 0 and fresh:
         find_columns(W, system, passes, boxes)
@@ -82,10 +82,10 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
     """Solve the implicit step h of a component of size `length` from the present `lam` and `lead`, for v1 and `lam`.
 
     At convergence g is within 3e-16 of that size (or at round-off) of its targets, or within PROGRESS.near if that is
-    more, and the balance of momentum holds to round-off. Returns False if it is given up: after 25 iterations, or more
-    than 6 in which the error did not fall, or beyond PROGRESS.limit. Factors serve for as long as errors fall by
-    NEWTON_PROGRESS with them (`lasting`), the dual system where they do with fresh ones; bounded rows change the matrix
-    with each decision, so that there factors serve once.
+    more, and the balance of momentum holds to round-off. False if there is none after 25 iterations, after more than 6
+    in which the error did not fall, or beyond PROGRESS.limit. Factors are kept while errors fall by NEWTON_PROGRESS
+    with them (`lasting`), the dual system while they do with new ones; bounded rows in the matrix change it in each
+    iteration, so that factors serve once.
 
     Args:
         loops: whether rows may be redundant.  give: compliance over h², see `systems`.
@@ -95,12 +95,13 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
     best, last, stalls = 1e300, 1e300, 0
     system = DUAL if component.rigid > 1 else component.system
     lasting = system == DUAL or not bounded_rows(W.link, W.joints)
-    # A wide matrix is dear to factor: the parts of a step have one, while errors fall with it.
-    # ready: there are factors to go on with; fresh: those of the last iteration were new; since: first of full Newton.
+    # A wide matrix is expensive to factor: the parts of a step share one while errors fall with it.
+    # ready: factors can be used again; fresh: those of the last iteration were new; since: iteration from which on each
+    # has new ones (full Newton).
     ready, fresh, since = lasting and component.factored > 0, False, 0
     component.factored = 0
     boxes = boxed_rows(W.link, W.joints)
-    unscaled = hinge[0].scale[0] == 0.0  # rows have not been in this step yet
+    unscaled = hinge[0].scale[0] == 0.0  # the rows have no scales in this step yet
     for iteration in range(NEWTON_ITERATIONS + 1):
         built = not ready
         worst = linearise(W, STEP, h, length, give, unscaled and iteration == 0, system, built)
@@ -110,7 +111,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
             component.factored = 1 if ready and system == CONDENSED and boxes == 0 else 0
             balance_velocities(local, W.bodies, h)
             return True
-        # What began next to its solution has not far to fall.
+        # Next to the solution errors cannot fall by much.
         slow = not worst <= NEWTON_PROGRESS * last and (iteration > 2 or not worst <= JOINT_ROUND_OFF)
         if worst < best:
             best = worst
@@ -122,7 +123,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
         if ready and slow:
             ready = False
             if fresh:
-                # Hardly any step that is not nearly singular, or long, comes here: full Newton from now on.
+                # Only nearly singular or long steps come here: full Newton from now on.
                 lasting, system, since = False, component.system, iteration
                 best, stalls = worst, 0
                 if loops:

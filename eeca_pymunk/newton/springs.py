@@ -21,7 +21,7 @@ def cap_integral(f: float, bound: float) -> float:
 
 @nonallocating
 def mean_force(push: float, slope: float, bound: float, began: float, ended: float) -> float:
-    """The mean over [began, ended] of push + slope x, capped, a force or torque; both ends are counted from rest."""
+    """The mean over [began, ended], relative to the rest position, of push + slope x, capped: a force or torque."""
     f0, f1 = push + slope * began, push + slope * ended
     if abs(f0) <= bound and abs(f1) <= bound:
         return 0.5 * (f0 + f1)
@@ -32,8 +32,8 @@ def mean_force(push: float, slope: float, bound: float, began: float, ended: flo
 
 @nonallocating
 def potential(push: float, slope: float, bound: float, at: float) -> float:
-    """The potential energy of that law with slope <= 0, at a length or angle counted from rest: Psi(f)/|slope|, or
-    -f x of a constant force f. A rotary spring, of slope > 0, is one of slope -k in the angle with the other sign."""
+    """Potential energy of that law with slope <= 0, at a length or angle relative to rest: Psi(f)/|slope|, or -f x of a
+    constant force f. A rotary spring, of slope > 0, is one of slope -k in the angle with the other sign."""
     if slope == 0.0:
         return -max(-bound, min(bound, push)) * at
     return cap_integral(push + slope * at, bound) / -slope

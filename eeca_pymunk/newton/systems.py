@@ -41,9 +41,8 @@ from .saturation import put_bounded
 
 @inlined
 def first_iterate(W: Workspace, what: int, h: float) -> None:
-    """Fill in what stays the same over the iterations, and the first iterate: motion with the accelerations that joints
-    gave before (`lead`); for POSES and SPEEDS, and in a LINEAR_STEP for bodies that joints move, no motion, v1 =
-    -v0."""
+    """Set what is constant over the iterations, and the first iterate: motion with the accelerations that joints gave
+    before (`lead`); for POSES and SPEEDS, and in a LINEAR_STEP for bodies that joints move, no motion, v1 = -v0."""
     local = W.J.LOCAL
     for k in range(W.joints):
         start_joint(W, k, h)
@@ -57,8 +56,8 @@ def first_iterate(W: Workspace, what: int, h: float) -> None:
 
 @inlined
 def put_exact(W: Workspace, what: int, k: int, h: float, give: float, system: int, build: bool) -> float:
-    """Put in the rows of joint k that hold exactly or give way; the largest of their errors for `what`. Rows that do
-    not act, and bounded ones where bodies are still, are put in as free."""
+    """Write the equations of the rows of joint k that are exact or elastic; returns the largest of their errors for
+    `what`. Rows that do not act, and bounded ones if bodies are still, are written as free."""
     hinge, link, local, band = W.J.HINGE, W.link, W.J.LOCAL, W.J.COMPONENT[W.s].band
     a, b = link[k].body[0], link[k].body[1]
     per, slopes, bounded, farthest = 2.0 / h, what == STEP, link[k].bounded != 0, 0.0
@@ -88,10 +87,10 @@ def put_exact(W: Workspace, what: int, k: int, h: float, give: float, system: in
 
 @inlined
 def assemble(W: Workspace, what: int, h: float, give: float, first: bool, system: int, build: bool) -> float:
-    """Write the residuals of the rows for `what`, scaled, to RIGHT, and the joints' rows to HINGE.
+    """Write the residuals of the rows for `what`, scaled, to RIGHT, and the joints' rows to HINGE; if `build`, also the
+    matrix of the `system`, or for a dual one what it is made of. first: whether to compute the scales of rows. The
+    bodies' `impulse` becomes that of all joints.
 
-    Where it is to `build`, the matrix of the `system` too, or of a dual one what it is made of. first: scales of rows
-    are taken from the present ones. Bodies' `impulse` becomes that of all joints.
     Returns how far rows are from their targets, over the size of the component; for SPEEDS, the worst G v over it.
     """
     hinge, link, local, matrix = W.J.HINGE, W.link, W.J.LOCAL, W.J.MATRIX
@@ -158,8 +157,8 @@ def balance(W: Workspace, h: float, length: float) -> float:
 def linearise(
     W: Workspace, what: int, h: float, length: float, give: float, first: bool, system: int, build: bool
 ) -> float:
-    """Build the right side anew, and the matrix where it is to `build`; the largest error, over the size of the
-    component. length: that size, for the balance of momentum, which POSES and SPEEDS do not have."""
+    """Build the right side, and the matrix if `build`; returns the largest error, over the size of the component.
+    length: that size, for the balance of momentum, which POSES and SPEEDS do not have."""
     for i in range(W.J.COMPONENT[W.s].unknowns + W.J.COMPONENT[W.s].impulses):
         W.J.RIGHT[i] = 0.0
     worst = assemble(W, what, h, give, first, system, build)
@@ -171,8 +170,7 @@ def linearise(
 
 @inlined
 def decompose(W: Workspace, what: int, system: int, epsilon: float, give: float) -> bool:
-    """Take the factors of what `assemble` has built, in its place, with `epsilon` on the diagonal of the rows; False if
-    there are none."""
+    """Factor what `assemble` has built, in place, with `epsilon` on the diagonal of the rows; False if that fails."""
     matrix = W.J.MATRIX
     size, band = W.J.COMPONENT[W.s].unknowns, W.J.COMPONENT[W.s].band
     W.J.PROGRESS.effort += work_of_factors(system, W.J.COMPONENT[W.s])
@@ -189,8 +187,8 @@ def decompose(W: Workspace, what: int, system: int, epsilon: float, give: float)
 
 @inlined
 def factorise(W: Workspace, what: int, h: float, length: float, give: float, system: int, epsilon: float) -> int:
-    """Take the factors of what `linearise` has built; where a dual system has none, of the component's other system,
-    which is built for that. Returns the system that has factors, -1 for none."""
+    """Factor what `linearise` has built; if that fails for a dual system, build and factor the component's other
+    system. Returns the system that is factored, -1 for none."""
     if decompose(W, what, system, epsilon, give):
         return system
     if system == DUAL:

@@ -58,8 +58,8 @@ _KERNELS = copy_start, write_ends, write_stopped_ends, alter_end, accept_roundin
 
 
 class _Writers(dict[int, Callable[[], None]]):
-    """Functions that write the tables of ENDS, by the keys of _TABLES; made at the first use. Those of `past` are
-    changed for this and can no longer be used."""
+    """Functions that write the tables of ENDS, by the keys of _TABLES; made at the first use from those of `past`,
+    which can then no longer be used."""
 
     def __init__(self, states: BodyStates, past: _Writers | None) -> None:
         self._states = weakref.proxy(states)

@@ -11,7 +11,7 @@ from ..model.values import DYNAMIC, KINEMATIC, STATIC
 from .private import spaces as private
 
 _KIND = {pymunk.Body.DYNAMIC: DYNAMIC, pymunk.Body.KINEMATIC: KINEMATIC, pymunk.Body.STATIC: STATIC}
-_VALUES = struct.Struct("4q9d2q")
+_VALUES = struct.Struct("4q9d2q")  # a `BodyValues`
 # Mass, moment and their inverses; in the bytes they are [_FROM:_TO], and the centre of gravity [_TO:_CENTRE].
 _MASSES, _FROM, _TO, _CENTRE = struct.Struct("4d"), 32, 64, 80
 FIXED = math.inf, math.inf, 0.0, 0.0  # those of static, kinematic and sleeping bodies
