@@ -71,7 +71,7 @@ MUTATIONS = (
     Mutation("rest: other laws of springs wake nothing", "jointed/rest.py", "if joint.push != kept.push or",
              "if False and",
              "jointed/test_rest.py", "law_of_a_spring"),
-    Mutation("rest: what was hit stays at rest", "jointed/rest.py", "        mark_changed(A, root)\n", "        pass\n",
+    Mutation("rest: what was hit stays at rest", "jointed/rest.py", "        set_awake(A, root)\n", "        pass\n",
              "jointed/test_rest.py", "hit_moves_it"),
     Mutation("rest: edited joints, and partners that begin to move, wake nothing", "jointed/rest.py",
              "moves(A, J, joint.body[1]):\n            return True",

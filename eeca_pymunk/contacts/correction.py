@@ -76,8 +76,8 @@ def lifting(
             work, square = work + turn * spin, 0.5 * inertia * turn * turn
         if not work + square > budget + CORRECTION_ROUND_OFF * against(np.abs(ACC), IM, II, n, np.abs(D)):
             break
-        # The spin is that with what D adds to the angular momentum: with the moment of inertia as it is, p D cost
-        # p linear - p^2 square.
+        # p D cost p linear - p^2 square = most, as the part p of D changes `spin`, which is that after D; the moment
+        # of inertia is taken as constant.
         linear, most = work + 2.0 * square, CORRECTION_SHARE * budget
         part = 2.0 * most / (linear + math.sqrt(max(linear * linear - 4.0 * square * most, 0.0)))
         D = (part if tries + 2 < CORRECTION_TRIES else 0.0) * D

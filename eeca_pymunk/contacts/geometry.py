@@ -7,8 +7,8 @@ impulses.
 
 A pair has the geometry now instead if it moves too far in half an interval (an impact at high speed), hardly moves, or
 has another number of contact points at the middle. How far it moves is measured in the frame of a wall that turns
-(`turning.py`) if it has one. Arms are then those now too; but in a free island they are still those at the middle, and
-the points of the pair are displaced by the mean of the displacements of its two bodies.
+(`turning.py`) if it has one. Arms are then those now too. In a free island they must be those at the middle, for its
+angular momentum: there the points of the pair are displaced by the mean of the displacements of its two bodies.
 """
 
 from __future__ import annotations
@@ -74,6 +74,7 @@ def gather_contacts(
         centre = MIDDLE
         # Normals rotate as circles move around each other, slowly around a large one.
         far = SHAPE[s].rounding + SHAPE[r].rounding if LINK[s].vertices == 1 and LINK[r].vertices == 1 else small
+        # ahead: normal and point are those of the middle.
         ahead = MIDPOINT_SAME * small < way and about <= 0.5 * INTERVAL_WAY * far
         if ahead:
             again = manifold(A, s, r, MIDDLE, a, b, reach + about, MANIFOLD_ROUND_OFF * small, THEN)

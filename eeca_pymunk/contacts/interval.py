@@ -38,13 +38,13 @@ from .walls import stop_at_walls
 
 
 @nonallocating
-def recall(A: Scene, ROWS: Rows[Row], m: int, h: float, forces: bool, L: FloatArray, EXPECTED: FloatArray) -> None:
+def recall(A: Scene, ROWS: Rows[Row], m: int, h: float, whole: bool, L: FloatArray, EXPECTED: FloatArray) -> None:
     """Set the initial impulses L (m, 2), and those of loads EXPECTED (m,), from remembered forces of this step or the
     last.
 
-    forces: they act over the whole of h, as loads do. Else L is no more than the impulses from which forces are known:
-    what stops bodies in a short interval is a force that grows as the interval shrinks. Sweeps over many contacts,
-    which do not end, are better off with loads; Newton's method is far off with such a force.
+    whole: L is force times h, best where sweeps over many contacts end before they converge. Else the force acts no
+    longer than in the interval of which it is known: a force that stopped bodies in a short interval is large, and over
+    a long h Newton's method of jointed bodies would start far from its solution.
     """
     for i in range(m):
         L[i, 0] = L[i, 1] = 0.0
@@ -52,7 +52,7 @@ def recall(A: Scene, ROWS: Rows[Row], m: int, h: float, forces: bool, L: FloatAr
         row = find(A.KEYS, ROWS[i].key)
         if row >= 0 and A.FORCES[row].stamp >= A.PAR.stamp - 1.0:
             force = A.FORCES[row]
-            span = h if forces else min(h, force.length)
+            span = h if whole else min(h, force.length)
             L[i, 0], L[i, 1] = span * force.normal, span * force.tangential
             EXPECTED[i] = h * force.load
 
@@ -163,11 +163,11 @@ def step_island(
         worst = relax(
             problem, L, VN, FREE, rounds, INTERVAL_RESIDUAL * scale, coarse, A.RESTING[isle.WHO[0]], most, OUT[0]
         )
+        # Few contacts are solved to INTERVAL_UNMET; more are left as far as their budget of sweeps solves them.
         quick, exactly = fast + pull * h, few and m <= COLUMN_CONTACTS
         if not exactly:
             stop_at_walls(A, problem, n, np.zeros(m, np.int64), L, VN)
-        # Velocities are computed again from the impulses, without the round-off of many sweeps.
-        velocities(problem, L, FREE, VN)
+        velocities(problem, L, FREE, VN)  # without the round-off of many sweeps
         wedged = exactly and (worst > WEDGED * scale or excessive(L, m, IM, n, quick))
         OUT[0].lock, OUT[0].owed = lock(problem, L, VN, FREE, owed, elastic)
         if wedged or (exactly and OUT[0].lock < 1.0 - WEDGED):

@@ -1,8 +1,8 @@
 """The bounded solve of an island: sweeps while it moves; sweeps and direct solves in turn while it is near rest.
 
 Sweeps pass a stack's weight to its floor slowly; a direct solve does it at once, as soon as sweeps have found the
-active contacts. In disordered moving piles these change with every step, and sweeps alone cost less. Where both come to
-no end, as with light bodies wedged between heavy ones, few contacts are solved by homotopies (`..rows.laws`).
+active contacts. In disordered moving piles these change with every step, and sweeps alone cost less. Where neither
+converges, as with light bodies wedged between heavy ones, few contacts are solved by homotopies (`..rows.laws`).
 
 The state of an island lasts across steps (`Rest.augmentation`, `wait`, `backoff`): log10 of the augmentation R, steps
 to wait before the next direct solve, and the wait after its next failure.
@@ -67,7 +67,7 @@ def relax(
     fails, done, few = 0, 0, problem.m <= COLUMN_CONTACTS and problem.n < LARGE_ISLAND
     last = worst
     while done < rounds:
-        passes = 6 if STATE.augmentation > 6.0 else 1
+        passes = 6 if STATE.augmentation > 6.0 else 1  # R is small after steps of which little was taken
         STATE.augmentation, worst, taken = refine_and_sweep(
             problem, L, V, FREE, STATE.augmentation, passes, fine, worst, SWEEPS_AFTER
         )  # fmt: skip

@@ -33,9 +33,9 @@ from ..rows.inplace import copy
 
 @nonallocating
 def set_motionless(ROWS: Rows[Row], V: FloatArray, n: int, m: int, close: float) -> bool:
-    """Set targets and velocities of the rows to those without motion, 0. Returns False if a surface moves, or one of
-    the fixed bodies, from n on: rows before that surface's are then changed. close: length/time; a contact whose gap
-    would have to close faster keeps its target, which is below 0, and so exerts no static force."""
+    """Set targets and velocities of the rows to 0, those without motion. Returns False if a surface or one of the fixed
+    bodies, from n on, moves; some rows may be changed then. close: length/time; a contact whose gap would have to close
+    faster keeps its target, which is below 0, and so exerts no static force."""
     for i in range(n, len(V)):
         if V[i, 0] != 0.0 or V[i, 1] != 0.0 or V[i, 2] != 0.0:
             return False

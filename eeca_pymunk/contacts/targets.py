@@ -10,10 +10,10 @@ bounce is e max(-u, 0) for e < 1, -u for e = 1.
   inactive while u_n+ is above its activation velocity `wake`, with which the gap is just closed at the end.
 * Else the surfaces meet softly at the end of the interval: b = min(bounce, -u - 2 max(g, 0)/h).
 
-Where a wall turns (`turning.py`), u is by a part c of -u less than with the geometry of the start, and u+ more
-than with that of the end: u + c bounces, and c is added to the bounce. What a wall carries along neither sinks nor
-loses energy so, to second order: with the bounce 0 it would go along the tangent of the middle, through the wall. 2 c/h
-is an acceleration, too.
+Where a wall turns (`turning.py`, c = c_0), u is less by c than with the geometry of the start, and u+ more by c than
+with that of the end: u + c bounces, for c >= 0 and up to -u, and c is added to the bounce. So a body that the wall
+carries along neither sinks nor loses energy, to second order; with the bounce 0 it would follow the tangent of the
+middle, through the wall. 2 c/h is an acceleration, too.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ from ..model.parameters.intervals import IMPACT_SPEED
 
 @inlined
 def hardly_bounces(e: float, u: float, press: float) -> bool:
-    """Whether a contact with elasticity e and gap rate u would bounce by less than half of what presses it together
-    (velocities), so that its bounces cannot be resolved one by one."""
+    """Whether a contact with elasticity e and gap rate u would bounce with less than half of `press`, the velocity by
+    which forces close it in the interval: it would return within that."""
     return -e * min(u, 0.0) < 0.5 * press
 
 

@@ -1,15 +1,16 @@
-"""Contacts of bodies with a wall, which impulses do not move, that turns by w h within an interval.
+"""Contacts of bodies with a wall, a body without mobility, that turns with spin w: by w h in an interval h.
 
-With the geometry of the middle of the interval (`geometry.py`) what the wall carries along has the relative velocities
--c_0 at its start and c_1 at its end, both about w^2 h x/2 with the way x between the bodies, along the normal as along
-the tangent.
+Rows have the geometry of the middle of the interval (`geometry.py`). With it a body that the wall carries along, which
+has no velocity in the wall's frame, has the relative velocity -c_0 at the start and c_1 at the end of the interval.
+Along the normal both are about -w^2 h (x.n)/2, with x from body a to body b; likewise along the tangent.
 
 * u_n + c_0 bounces, see `targets.py`.
-* u_t is counted from -c_0 + m and from c_1 + m. By m the mean velocity exceeds the mean of both, (w h)^2/12 of it: what
-  sticks has no slip, in its position neither, and friction does no work on it in the frame of the wall. How arms change
-  as a body turns by itself is no motion of the wall, and as on a wall that rests u_t has those of the middle.
+* u_t counts from -c_0 + m at the start and from c_1 + m at the end. The mean of the velocity over h exceeds that of
+  start and end by m, which is about (w h)^2/12 of it: so a contact that sticks does not slip, in its position either,
+  and its friction does no work in the wall's frame. Arms that change as a body turns relative to the wall remain those
+  of the middle, as on a wall at rest.
 
-Between bodies that impulses move neither is done: what rocks in piles, or rides on what rocks, would bounce for ever.
+Between bodies that impulses move neither is done: bodies that rock in piles, or on others, would bounce without end.
 """
 
 from __future__ import annotations
@@ -49,12 +50,12 @@ def gap_rate(POSE: FloatArray, V: FloatArray, a: int, b: int, nx: float, ny: flo
 
 @nonallocating
 def carried_along(isle: Island, row: Row, w: float, h: float) -> tuple[float, float, float]:
-    """If the bodies of a row turn together with spin w for h: the change of their tangential velocity, and what it has
-    at the end, with the geometry of the middle, for no slip in the frame that turns; and the error of that.
+    """c_0 + c_1 and c_1 + m of the module, along the tangent of a row whose bodies turn with spin w for h; then the
+    error of c_1 + m.
 
-    Let x lead from a to b, r = v_b - v_a - w x x be the velocity in the rotating frame, and R the rotation by w h. Then
-    x' = R x + h R^(1/2) r, and v_b' - v_a' = w x x' + R r. In the frame of the middle the bodies have R^(1/2) r: the
-    rest of v_b - v_a, with both spins w, is carried along. By `mean` the mean velocity is above that of start and end.
+    Let x lead from a to b, r = v_b - v_a - w x x be the velocity in the rotating frame, and R the rotation by w h. At
+    the end x' = R x + h R^(1/2) r, and v_b' - v_a' = w x x' + R r. With the geometry of the middle the bodies have the
+    velocity R^(1/2) r of their own; v_b - v_a less that, with both spins w, is carried along: -c_0.
     """
     POSE, V, a, b = isle.POSE, isle.V, row.a, row.b
     x, y = POSE[b, 0] - POSE[a, 0], POSE[b, 1] - POSE[a, 1]
@@ -72,17 +73,18 @@ def carried_along(isle: Island, row: Row, w: float, h: float) -> tuple[float, fl
 
 
 @nonallocating
-def follow_rotation(isle: Island, ROWS: Rows[Row], m: int, count: int, NOW: FloatArray, w: float, h: float) -> None:
-    """Let `count` rows from m on know the geometry of the start, NOW (2, 5): normal, point, gap of each point.
+def follow_rotation(isle: Island, ROWS: Rows[Row], first: int, count: int, NOW: FloatArray, w: float, h: float) -> None:
+    """Set what the rotation of a wall changes in `count` rows from `first` on: `turned`, `surface`, `swung`, `unsure`.
 
+    NOW: (2, 5) normal, point and gap of each at the start of the interval.
     w: the spin of the wall.  h: 0 if that is a disk, whose spin does not turn the tangent.
     """
-    POSE, V, a, b = isle.POSE, isle.V, ROWS[m].a, ROWS[m].b
+    POSE, V, a, b = isle.POSE, isle.V, ROWS[first].a, ROWS[first].b
     swing, counted, unsure = 0.0, 0.0, 0.0
-    if h > 0.0 and ROWS[m].friction > 0.0:
-        swing, counted, unsure = carried_along(isle, ROWS[m], w, h)
+    if h > 0.0 and ROWS[first].friction > 0.0:
+        swing, counted, unsure = carried_along(isle, ROWS[first], w, h)
     for z in range(count):
-        row = ROWS[m + z]
+        row = ROWS[first + z]
         u = gap_rate(POSE, V, a, b, NOW[z, 0], NOW[z, 1], NOW[z, 2], NOW[z, 3])
         row.turned = max(u - normal_rate(row, V), 0.0)
         row.surface -= counted

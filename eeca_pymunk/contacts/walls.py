@@ -1,8 +1,8 @@
-"""Contacts with bodies that no impulse moves, after a solve of many contacts, which may have come to no end.
+"""Contacts with bodies that no impulse moves, after a solve of many contacts, which may not have converged.
 
-What such a solve leaves lets light bodies under heavy ones sink: in each interval by a part of what it allows, and in
-the end through a floor. Where they are deeper than an interval allows, impulses of the wall alone bring their contacts
-to their law at the end of it. These act on no other body, and heavy ones go into light ones instead.
+Its residuals let light bodies under heavy ones sink: by a part of the depth that each interval allows, and in the end
+through a floor. Where contacts are deeper than an interval allows, further impulses of the wall alone bring them to
+their law at its end. They act on no other body: heavy bodies then go into light ones instead.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from .memory import shapes_of
 
 @kernel
 def stop_at_walls(A: Scene, problem: AnyProblem, n: int, OUT: IntArray, L: FloatArray, V: FloatArray) -> None:
-    """Let no contact with a body without mobility, one of those from number n on, close at velocities V (k, 3) faster
-    than its law says, if it is deeper than an interval allows. Adds normal impulses to L, so that frictions remain
-    within their limits. OUT (m,): not 0 for contacts that no impulse moves."""
+    """Bring contacts with bodies without mobility, those from number n on, to u_n >= b at velocities V (k, 3), where
+    they are deeper than an interval allows. Normal impulses L only grow, so that frictions remain within their limits.
+    OUT (m,): not 0 for contacts that no impulse moves."""
     LACK = np.full(problem.m, inf)
     for i in range(problem.m):
         row = problem.ROWS[i]

@@ -67,7 +67,8 @@ def kinetic_energy(V: FloatArray, IM: FloatArray, II: FloatArray, n: int) -> flo
 
 @nonallocating
 def gained_energy(V: FloatArray, BEFORE: FloatArray, IM: FloatArray, II: FloatArray, n: int) -> float:
-    """`kinetic_energy` at velocities V less that at velocities BEFORE, to the round-off of velocities only."""
+    """`kinetic_energy` at velocities V less that at velocities BEFORE, from (V - BEFORE) (V + BEFORE): without the
+    round-off of two large energies."""
     total = 0.0
     for q in range(n):
         for c in range(3):

@@ -173,7 +173,7 @@ def closest(
     second = prefers_second(P, p, edge_p, apart_p, Q, q, edge_q, apart_q, AXIS_TIE * size)
     apart = apart_q if second else apart_p
     if apart > -near:
-        # The face nearest to a vertex; without one, any vertex and edge.
+        # If the foot of the nearest vertex is not on the edge, some other vertex and edge are closest.
         if second:
             along, squared = along_edge(Q, q, edge_q, P[vertex_p, 0], P[vertex_p, 1])
         else:

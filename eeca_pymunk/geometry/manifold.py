@@ -25,8 +25,8 @@ def clip(
     P: FloatArray, p: int, edge: int, Q: FloatArray, q: int, r_p: float, r_q: float, sign: float, reach: float,
     OUT: FloatArray,
 ) -> int:  # fmt: skip
-    """Write the contact points on an edge of P as reference face to OUT; returns their number. sign: 1 if the normal
-    from a to b is P's, else -1."""
+    """Write the contact points on an edge of P as reference face to OUT; returns their number. r_p, r_q: roundings.
+    sign: 1 if the normal from a to b is P's, else -1."""
     nx, ny = P[edge, 2], P[edge, 3]
     tx, ty = -ny, nx
     end = edge + 1 if edge + 1 < p else 0
@@ -58,7 +58,7 @@ def clip(
         if k == points:
             if count > 0:
                 break
-            # What is on the edge is beyond reach: the end that is as near as the cores are is beside it.
+            # The part on the edge is beyond reach: the closest point of the cores is an end beside it.
             u, h = (u_0, h_0) if h_0 < h_1 else (u_1, h_1)
         g = h - r_p - r_q
         if g <= reach:

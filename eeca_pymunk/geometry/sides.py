@@ -94,13 +94,6 @@ def near_side(A: Scene, a: int, b: int) -> float:
 
 
 @nonallocating
-def known_side(A: Scene, a: int, b: int) -> bool:
-    """Whether the pair a < b of thin shapes has a remembered normal."""
-    key = pair_number(A, a, b)
-    return bool(A.SIDE[side_row(A, key)].key == key)
-
-
-@nonallocating
 def half_width(A: Scene, s: int) -> float:
     """Half the least width of shape s: a shape that is less deep inside is on the side from which it came."""
     VERTEX, first, count, least = A.VERTEX, A.LINK[s].first, A.LINK[s].vertices, math.inf
@@ -170,10 +163,12 @@ def side_of(A: Scene, a: int, b: int) -> tuple[float, float]:
 def corner_of(
     A: Scene, W: FloatArray, w: int, o: int, x: float, y: float, nx: float, ny: float, deep: float
 ) -> tuple[int, float, float]:  # fmt: skip
-    """The corner of segment w in which shape o lies, whose nearest point of w is (x, y), with the normal n to o: the
-    end of w there, -1 if there is none, and the normal (2) of the inner side of w. Extends the placed segment W by
-    `deep` beyond that end. Where w ends on another segment, both of its sides are inner ones: o is on the one that the
-    pair remembers, else on that of n."""
+    """Find the corner of segment w in which shape o lies. (x, y): point of w nearest to o, n the normal from w to o.
+
+    Returns the end of w at the corner, -1 if there is none, and the normal (2) of the inner side of w; extends the
+    placed segment W by `deep` beyond that end. Where w ends on another segment, both of its sides are inner ones: o is
+    on the one that the pair remembers, else on that of n.
+    """
     ex, ey = W[1, 0] - W[0, 0], W[1, 1] - W[0, 1]
     length = math.sqrt(ex * ex + ey * ey)
     ux, uy = ex / length, ey / length

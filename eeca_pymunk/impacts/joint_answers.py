@@ -36,7 +36,7 @@ def has_prescribed_motion(J: Joints, s: int) -> bool:
 
 @nonallocating
 def begin_impact(J: Joints, groups: Groups) -> None:
-    """Let neither limits of the components take part in the impact, nor joints of bounded force."""
+    """Let no limit of the components, and no joint of bounded force, take part in the impact."""
     for s in groups.JOINTED:
         W = workspace(J, s)
         mark_bounded(W)
@@ -46,8 +46,8 @@ def begin_impact(J: Joints, groups: Groups) -> None:
 
 @nonallocating
 def activate_limits(A: Scene, J: Joints, block: Block, groups: Groups, t: float) -> bool:
-    """Let limits on their bounds into which the velocities of the block move take part in the impact at instant t;
-    whether there are any that did not before."""
+    """Let limits on their bounds take part in the impact at instant t if the velocities of the block move into them.
+    Returns whether there are any that did not before."""
     more = False
     for s in groups.JOINTED:
         length = gather_component(A, J, s, block.POSE, block.V, block.V, block.IM, block.II, t, 0.0)
@@ -61,8 +61,8 @@ def activate_limits(A: Scene, J: Joints, block: Block, groups: Groups, t: float)
 
 @kernel
 def answer_impact(A: Scene, J: Joints, block: Block, groups: Groups, C: Columns, n: int, t: float) -> bool:
-    """Fill in the columns C of the contacts of the block at instant t, and take from its velocities the part that
-    joints do not allow; whether partners drive a component."""
+    """Set the columns C of the contacts of the block at instant t, and project its velocities onto those that joints
+    allow. Returns whether partners drive a component."""
     ROWS, V = block.ROWS, block.V
     INDEX, driven = np.full(len(block.IM), -1, np.int64), False
     for g in range(len(groups.COMPONENT)):
@@ -100,8 +100,8 @@ def put_momenta(block: Block, groups: Groups, g: int, n: int, V: FloatArray, IND
 
 @nonallocating
 def keep_allowed(J: Joints, block: Block, groups: Groups, g: int, n: int, INDEX: IntArray, PUSH: FloatArray) -> None:
-    """Of the velocities of group g, whose component is `ready`, only what joints allow: M^-1 G^T impulses take the
-    rest."""
+    """Project the velocities of group g, whose component is `ready`, onto those that joints allow, by M^-1 G^T times
+    impulses of joints."""
     V = block.V
     PUSH[:] = 0.0
     put_momenta(block, groups, g, n, V, INDEX, PUSH)
@@ -113,10 +113,11 @@ def keep_allowed(J: Joints, block: Block, groups: Groups, g: int, n: int, INDEX:
 
 
 @kernel
-def bear(A: Scene, J: Joints, block: Block, groups: Groups, L: FloatArray, FREE: FloatArray, t: float) -> None:
-    """Add to the joints' `struck` their impulses in answer to the impulses L of an impact at instant t, and to the part
-    of the velocities FREE before it that they do not allow; of components that partners move, to the impulses alone.
-    """
+def add_joint_impulses(
+    A: Scene, J: Joints, block: Block, groups: Groups, L: FloatArray, FREE: FloatArray, t: float
+) -> None:
+    """Add to `Joint.struck` the impulses of joints caused by the impulses L of an impact at instant t, and by the part
+    of the velocities FREE that they do not allow; in components that partners move, by L alone."""
     ROWS = block.ROWS
     INDEX = np.full(len(block.IM), -1, np.int64)
     for g in range(len(groups.COMPONENT)):

@@ -11,7 +11,7 @@ from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, zeros
 from ..contacts.counts import spend
 from ..contacts.works import carried, gained_energy, kinetic_energy
-from ..islands.building import comes_to_rest
+from ..islands.building import persists_from
 from ..islands.local import clear_places, set_places
 from ..islands.membership import jointed, members
 from ..jointed.columns import count_operations, fill_free, make_columns, set_effective_masses
@@ -33,7 +33,7 @@ from ..rows.energy import offset_gain, scale_to_lose
 from ..rows.gentle import excessive, sweep_gently
 from ..rows.inplace import copy
 from ..rows.sweeps import velocities
-from .joint_answers import activate_limits, answer_impact, bear, begin_impact
+from .joint_answers import activate_limits, add_joint_impulses, answer_impact, begin_impact
 from .resolution import finish_block, rejoin
 from .simultaneous import Block, energy_owed, gather_block, make_block
 
@@ -141,9 +141,9 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
         if again:
             clear_places(A, A.BLOCK[:n])
             n, m, PAIRS = gather_block(A, a, b, t)
-    rest = comes_to_rest(A, a, b, t)
+    lasts = persists_from(A, a, b, t)
     owed, _ = energy_owed(A, n)
-    block = make_block(A, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
+    block = make_block(A, n, m, PAIRS, min(a, b) * k + max(a, b), lasts, t)
     ROWS, V = block.ROWS, block.V
     rows = len(ROWS)
     L, OUT = np.zeros((rows, 2)), zeros(1, SOLVED)
@@ -190,7 +190,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     if fits:
         velocities(problem, L, FITTED, V)
     settle_energy(A, block, n, L, BEFORE, FITTED if fits else BEFORE, driven, owed, exact, OUT)
-    bear(A, J, block, groups, L, BEFORE if fits else 0.0 * BEFORE, t)
+    add_joint_impulses(A, J, block, groups, L, BEFORE if fits else 0.0 * BEFORE, t)
     lost = OUT[0].restitution + OUT[0].friction - owed
     finish_block(A, block, n, m, L, OUT, status, t)
     spend(A, n, m, 0.0)  # besides what its solutions take
@@ -198,7 +198,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     A.STATE[i].version += 1
     if A.BODY[j].inv_mass > 0.0:
         A.STATE[j].version += 1
-    n = rejoin(A, a, b, t, n, rest, lost)
+    n = rejoin(A, a, b, t, n, lasts, lost)
     n = list_ended(A, n)
     for q in range(n):
         A.RESTING[A.BLOCK[q]].longest = math.inf  # they move otherwise now

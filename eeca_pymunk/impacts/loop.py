@@ -11,7 +11,7 @@ from ..contacts.counts import note_unmet
 from ..contacts.single import alone, strike_disk
 from ..geometry.sides import remembers
 from ..islands.accounting import end_interval
-from ..islands.building import comes_to_rest, hits_of, most_hits, passed_over
+from ..islands.building import hits_of, most_hits, passed_over, persists_from
 from ..islands.membership import jointed, members
 from ..jointed.ends import end_here
 from ..jointed.ledger import most_looks, work_left
@@ -50,12 +50,13 @@ def met_too_often(A: Scene, i: int, j: int) -> bool:
 
 
 @nonallocating
-def run_events(A: Scene, may_rest: bool, most: float) -> int:
+def run_events(A: Scene, may_persist: bool, most: float) -> int:
     """Process events up to the end of the step, or up to the next one that the loop does not process itself (BLOCK_DUE)
     or that needs more memory.
 
     Args:
-        may_rest: whether contacts may persist.  most: COUNT.work after which the step is to be cut short.
+        may_persist: False if no contact can, without losses, gravity and forces.  most: COUNT.work after which the step
+            is to be cut short.
     """
     BODY, STATE, COUNT, TIME, OF = A.BODY, A.STATE, A.COUNT, A.HEAP_TIME, A.HEAP_BODY
     disks, moving, end = COUNT.disks, A.LIST.shape[0], A.PAR.dt
@@ -102,8 +103,8 @@ def run_events(A: Scene, may_rest: bool, most: float) -> int:
             one = i
             continue
         single = STATE[i].island < 0 and STATE[j].island < 0 and i < disks and (o < disks or o >= moving)
-        if single and may_rest:
-            single = not comes_to_rest(A, s, o, t)
+        if single and may_persist:
+            single = not persists_from(A, s, o, t)
         body, other = i, o
         for _ in range(2):
             if single and body >= 0:
@@ -138,15 +139,15 @@ def end_of_interval(A: Scene, J: Joints, i: int, t: float) -> int:
 
 
 @kernel
-def follow(A: Scene, J: Joints, may_rest: bool) -> int:
+def follow(A: Scene, J: Joints, may_persist: bool) -> int:
     """Process all events of the step, with simultaneous impacts and islands. After a status other than DONE: provide
-    more memory, and call again. may_rest: whether contacts may persist."""
+    more memory, and call again. may_persist: as in `run_events`."""
     COUNT, STATE = A.COUNT, A.STATE
     end = A.PAR.dt
     while True:
         status = start_waiting(A, J) if COUNT.waiting > 0 else DONE
         if status == DONE:
-            status = run_events(A, may_rest, most_looks(A, J))
+            status = run_events(A, may_persist, most_looks(A, J))
         if status != BLOCK_DUE:
             return status
         t, i = A.PAR.now, COUNT.struck
@@ -167,14 +168,14 @@ def follow(A: Scene, J: Joints, may_rest: bool) -> int:
             continue
         joints = jointed(A, i) or jointed(A, j)
         if met and not joints:
-            rest = False
-            if may_rest:
+            lasts = False
+            if may_persist:
                 bring_to(A, i, t)
                 if A.BODY[j].inv_mass > 0.0:
                     bring_to(A, j, t)
-                rest = comes_to_rest(A, s, o, t)
-            COUNT.waiting = strike(A, s, o, t, rest)
-            joints = COUNT.waiting < 0
+                lasts = persists_from(A, s, o, t)
+            COUNT.waiting = strike(A, s, o, t, lasts)
+            joints = COUNT.waiting < 0  # others of the block are jointed: nothing was done
         if joints and work_left(A, J) < 0.0:
             COUNT.waiting = 0
             return cut_short(A, J, i, t)

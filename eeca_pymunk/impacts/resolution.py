@@ -66,12 +66,12 @@ def holds_joints(A: Scene, n: int) -> bool:
 
 
 @kernel
-def strike(A: Scene, a: int, b: int, t: float, rest: bool) -> int:
+def strike(A: Scene, a: int, b: int, t: float, lasts: bool) -> int:
     """The simultaneous impact of shapes a and b at instant t. Writes the bodies to predict to A.BLOCK, after their
     islands have begun new intervals; returns their number, or -1, with nothing done, if joints take part.
 
     Args:
-        rest: whether the contact of a and b persists from now on.
+        lasts: whether the contact of a and b persists from now on.
     """
     k = A.SHAPE.shape[0]
     n, m, PAIRS = gather_block(A, a, b, t)
@@ -79,7 +79,7 @@ def strike(A: Scene, a: int, b: int, t: float, rest: bool) -> int:
         clear_places(A, A.BLOCK[:n])
         return -1
     owed, piled = energy_owed(A, n)
-    block = make_block(A, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
+    block = make_block(A, n, m, PAIRS, min(a, b) * k + max(a, b), lasts, t)
     rows = len(block.ROWS)
     L, OUT = np.zeros((rows, 2)), zeros(1, SOLVED)
     problem = Problem(block.ROWS, block.IM, block.II, block.POSE, n, rows)
@@ -87,20 +87,20 @@ def strike(A: Scene, a: int, b: int, t: float, rest: bool) -> int:
     lost = OUT[0].restitution + OUT[0].friction - owed
     finish_block(A, block, n, m, L, OUT, status, t)
     spend(A, n, m, looks_of(rows, OUT[0]))
-    return rejoin(A, a, b, t, n, rest, lost)
+    return rejoin(A, a, b, t, n, lasts, lost)
 
 
 @kernel
-def rejoin(A: Scene, a: int, b: int, t: float, n: int, rest: bool, lost: float) -> int:
+def rejoin(A: Scene, a: int, b: int, t: float, n: int, lasts: bool, lost: float) -> int:
     """After the impact of the n bodies in A.BLOCK: unite their islands, and with them the bodies of shapes a and b if
-    their contact persists (`rest`). lost: energy lost in the impact. Returns the number of bodies in A.BLOCK: those of
+    their contact persists (`lasts`). lost: energy lost in the impact. Returns the number of bodies in A.BLOCK: those of
     the block and of that island."""
     STATE, BODIES = A.STATE, A.BLOCK
     root = -1
     for q in range(n):
         if STATE[BODIES[q]].island >= 0:
             root = unite(A, BODIES[q], BODIES[q] if root < 0 else root)
-    if root < 0 and not rest:
+    if root < 0 and not lasts:
         return n
     QUEUE = np.empty(A.BODY.shape[0], np.int64)
     queued = 0

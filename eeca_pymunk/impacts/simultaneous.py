@@ -32,8 +32,8 @@ from ..rows.inplace import sort
 
 @nonallocating
 def takes_part(A: Scene, s: int, o: int, t: float) -> bool:
-    """Whether shapes s and o touch at instant t, or are a loaded contact of an island. That of o's body does not whose
-    path begins later, as jointed bodies may meet before the last event (`..jointed.meet`)."""
+    """Whether shapes s and o touch at instant t, or are a loaded contact of an island. False if the path of o's body
+    begins later, as jointed bodies may meet before the last event (`..jointed.meet`)."""
     if barred(A, s, o) or A.BODY[A.LINK[o].owner].since > t:
         return False
     if touches(A, s, o, t):
@@ -116,14 +116,13 @@ def gather_block(A: Scene, a: int, b: int, t: float) -> tuple[int, int, IntArray
 
 @nonallocating
 def energy_owed(A: Scene, n: int) -> tuple[float, bool]:
-    """Energy owed by the islands of the n bodies in A.BLOCK, which their block is to take out, and whether there are
-    any islands."""
+    """Energy owed by the islands of the n bodies in A.BLOCK, as shortened intervals have given it: their block has to
+    lose it, and they owe it no longer. Also whether there are any islands."""
     owed, piled = 0.0, False
     for q in range(n):
         root = A.STATE[A.BLOCK[q]].island
         if root >= 0:
             piled = True
-            # A block takes out the energy that shortened intervals have given.
             owes = max(-A.RESTING[root].lost, 0.0)
             A.RESTING[root].lost += owes
             owed += owes
@@ -146,11 +145,11 @@ class Block(NamedTuple):
 
 
 @kernel
-def make_block(A: Scene, n: int, m: int, PAIRS: IntArray, hit: int, rest: bool, t: float) -> Block:
+def make_block(A: Scene, n: int, m: int, PAIRS: IntArray, hit: int, lasts: bool, t: float) -> Block:
     """The block of the n bodies in A.BLOCK, which are sorted by row here, and of m PAIRS, at instant t.
 
     Args:
-        hit: the pair that meets now.  rest: whether its contact persists from now on.
+        hit: the pair that meets now.  lasts: whether its contact persists from now on.
     """
     BODY, LINK, BODIES = A.BODY, A.LINK, A.BLOCK
     k = A.SHAPE.shape[0]
@@ -180,7 +179,7 @@ def make_block(A: Scene, n: int, m: int, PAIRS: IntArray, hit: int, rest: bool, 
                 p, q = (place, q) if side == 0 else (p, place)
                 place += 1
         e, mu, sx, sy = law(A, sa, sb)
-        if rest and PAIRS[z] == hit:
+        if lasts and PAIRS[z] == hit:
             e = 0.0
         load = remembered_force(A, sa, sb, A.PAR.stamp - 1.0)[1]
         count = face(A, sa, sb, POSE, p, q, face_tolerance(A, sa, sb), found)

@@ -17,7 +17,7 @@ from ..model.contacts import ENDED, LASTED
 from ..model.scene import Scene, scene_of
 from ..pairs.lists import far_apart, mark_pair
 from ..rows.energy import offset_gain
-from .at_rest import log_contact, mark_changed, wake_supported
+from .at_rest import log_contact, set_awake, wake_supported
 from .membership import unite
 from .rest import spins_freely
 from .shortened import losses, repay
@@ -85,14 +85,14 @@ def remove_angular_momentum(A: Scene, root: int, excess: float) -> None:
         vx, vy = vx + m * BODY[i].vx, vy + m * BODY[i].vy
         i = A.MEMBER[i].following
     x, y, vx, vy = x / mass, y / mass, vx / mass, vy / mass
-    whirl, inertia = 0.0, 0.0
+    angular, inertia = 0.0, 0.0
     i = root
     while i >= 0:
         rx, ry = BODY[i].x - x, BODY[i].y - y
-        whirl += (rx * (BODY[i].vy - vy) - ry * (BODY[i].vx - vx)) / BODY[i].inv_mass
+        angular += (rx * (BODY[i].vy - vy) - ry * (BODY[i].vx - vx)) / BODY[i].inv_mass
         inertia += (rx * rx + ry * ry) / BODY[i].inv_mass
         if not spins_freely(A, i):
-            whirl += BODY[i].spin / BODY[i].inv_inertia
+            angular += BODY[i].spin / BODY[i].inv_inertia
             inertia += 1.0 / BODY[i].inv_inertia
         i = A.MEMBER[i].following
     turn = -excess / inertia
@@ -103,7 +103,7 @@ def remove_angular_momentum(A: Scene, root: int, excess: float) -> None:
         if not spins_freely(A, i):
             BODY[i].spin += turn
         i = A.MEMBER[i].following
-    lost = -turn * (whirl + 0.5 * inertia * turn)
+    lost = -turn * (angular + 0.5 * inertia * turn)
     A.PAR.restitution += lost
     A.RESTING[root].lost += lost
 
@@ -117,7 +117,7 @@ def wake(A: Scene, root: int, t: float) -> int:
     wake_supported(A)
     for i in range(A.BODY.shape[0] - 1):
         if A.STATE[i].island == i and A.BODY[i].inv_mass > 0.0 and MEMBER[i].rest == CHANGED:
-            mark_changed(A, i)
+            set_awake(A, i)
             close_interval(A, i, t)
             one = unite(A, one, i)
     return one
@@ -177,7 +177,7 @@ def lift_way(A: Scene, i: int) -> float:
 
 @nonallocating
 def hold_sides(A: Scene, i: int, end: float) -> None:
-    """Let the thin shapes of body i that its correction may move into others stay on the sides where they are. The
+    """Note the sides of thin shapes of body i that its correction may move into others, so that they stay there. The
     contacts of the interval do not have all of these pairs, and no impact is predicted on a displacement."""
     own = lift_way(A, i)
     for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes if own > 0.0 else 0):
@@ -194,8 +194,8 @@ def hold_sides(A: Scene, i: int, end: float) -> None:
 @nonallocating
 def apply_correction(A: Scene, root: int, end: float) -> None:
     """Apply the penetration correction of an island's bodies, displacements D, dtheta and changes of velocity, at the
-    end of its interval. It costs the change of kinetic energy, less the work of forces m a.D + I alpha dtheta. The cost
-    is deducted from the losses of the step, and is external work beyond `Rest.payable`."""
+    end of its interval. It costs the change of kinetic energy, less the work of forces m a.D + I alpha dtheta. Up to
+    `Rest.payable` the cost is deducted from the losses of the step; beyond it is external work."""
     PAR, BODY, PULL, JUMP = A.PAR, A.BODY, A.PULL, A.RESTING
     spent = 0.0
     i = root

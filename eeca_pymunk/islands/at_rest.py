@@ -79,7 +79,7 @@ def wake_supported(A: Scene) -> None:
 
 @nonallocating
 def checksum(RULE: FloatArray) -> float:
-    """A number by which other laws of pairs are noticed: the sum of their values, weighted by their places."""
+    """A number that other laws of pairs change: the sum of their values, weighted by their places."""
     total, weight, golden = 0.0, 0.0, 0.5 * (math.sqrt(5.0) - 1.0)
     for r in range(RULE.shape[0]):
         for c in range(RULE.shape[1]):
@@ -90,8 +90,8 @@ def checksum(RULE: FloatArray) -> float:
 
 @nonallocating
 def wake_changed(A: Scene) -> None:
-    """At the start of a step: dissolve all islands but those at rest that nothing has changed. The contacts of these
-    stay in PUSHED, with the impulses of this step; the others are LASTED. Also advances rest timers."""
+    """At the start of a step: dissolve all islands except those at rest for which nothing has changed. The contacts of
+    these stay in PUSHED, with the impulses of this step; the others are LASTED. Also advances rest timers."""
     STATE, MEMBER, BODY = A.STATE, A.MEMBER, A.BODY
     ground = BODY.shape[0] - 1
     dt = A.PAR.dt
@@ -139,7 +139,7 @@ def wake_changed(A: Scene) -> None:
             continue
         if MEMBER[root].rest != AT_REST:
             STATE[i].island = -1
-            if i != root:
+            if i != root:  # the others of its island read that of the root
                 MEMBER[i].rest = AWAKE
         else:
             A.RESTING[i].lost, MEMBER[i].hits = 0.0, 0
@@ -149,9 +149,9 @@ def wake_changed(A: Scene) -> None:
 
 
 @nonallocating
-def mark_changed(A: Scene, root: int) -> None:
-    """Set the bodies of an island at rest, which is hit or joined in this step, AWAKE, and keep the forces of its
-    contacts as those of this step; its interval then ends as any other."""
+def set_awake(A: Scene, root: int) -> None:
+    """Set the bodies of an island at rest, which is hit or joined in this step, AWAKE; its interval then ends as any
+    other. The remembered forces of its contacts count as those of this step."""
     for c in range(A.COUNT.pushes):
         if A.PUSHED_BY[c].root == root:
             renew_forces(A, c, A.PAR.stamp)

@@ -153,7 +153,7 @@ def build_islands(A: Scene) -> int:
 
 
 @nonallocating
-def comes_to_rest(A: Scene, a: int, b: int, t: float) -> bool:
+def persists_from(A: Scene, a: int, b: int, t: float) -> bool:
     """Whether the contact of shapes a and b, which meet at instant t, persists from then on.
 
     e < 1: all bounces of e |u| under the closing acceleration a_n end within the step, 2 e |u| <= a_n (1 - e) (dt - t);

@@ -59,6 +59,7 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
             for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
                 o = int(A.POOL[w])
                 j = LINK[o].owner
+                # Each pair of two bodies of the island once; else pairs with fixed bodies only.
                 if j < i if STATE[j].island == root else not fixed_support(A, j):
                     continue
                 if barred(A, s, o):
@@ -86,13 +87,12 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                     if g > reach:
                         continue
                     e = law(A, s, o)[0]
-                    if together:
-                        pass
-                    elif e >= 1.0 and not lossy:
+                    if e >= 1.0 and not lossy and not together:
                         if not persists(A, s, o, t, False):
                             continue
-                    elif g > TOUCH * small and not busy and not hardly_bounces(e, u, max(closing, load / mass) * h):
-                        continue
+                    elif g > TOUCH * small and not (together or busy):
+                        if not hardly_bounces(e, u, max(closing, load / mass) * h):
+                            continue
                 if p == found.shape[0]:
                     more = np.empty((2 * p, 2), np.int64)
                     for c in range(p):
@@ -105,8 +105,8 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
 
 @nonallocating
 def in_haste(A: Scene) -> bool:
-    """Whether intervals last to the end of the step: for `Midstep`, and after as many solves in the step as there are
-    bodies, N; in small scenes after RESOLUTION - 2 N if that is more."""
+    """Whether intervals last to the end of the step: for `Midstep`, and to bound the work, after as many solves in the
+    step as there are bodies, N; in small scenes after RESOLUTION - 2 N if that is more."""
     bodies = A.BODY.shape[0]
     return A.COUNT.together > 0 or A.COUNT.solves >= max(RESOLUTION - 2.0 * bodies, bodies)
 
@@ -120,7 +120,7 @@ def before_end(A: Scene, t: float) -> bool:
 @nonallocating
 def sweeps_of(n: int, t: float) -> int:
     """Sweeps of an island of n bodies in an interval from instant t: fewer after a hit on a large one, whose solve
-    begins with good forces."""
+    begins with the forces of the interval before."""
     if n < LARGE_ISLAND:
         return SMALL_SWEEPS
     return LARGE_SWEEPS if t == 0.0 else LARGE_SWEEPS_HIT

@@ -81,7 +81,8 @@ def closes_too_far(A: Scene, isle: Island, ROWS: Rows[Row], VN: FloatArray, m: i
     led to the other side of a shape.
 
     Args:
-        VN: (k, 3) velocities at the end, or of a way W the velocities 2 W/h - v, v being those at the start.
+        VN: (k, 3) velocities at the end; of jointed bodies, whose paths are no parabolas, 2 W/h - v with the way W and
+            the velocity v at the start.
     """
     far, last, known, END = 0.0, -1, 0.0, np.empty((0, 3))
     for z in range(m):
@@ -137,9 +138,9 @@ def deep_at_end(A: Scene, isle: Island, END: FloatArray, ROWS: Rows[Row], m: int
 def rises_too_far(A: Scene, ROWS: Rows[Row], L: FloatArray, VN: FloatArray, m: int, h: float) -> float:
     """How many times too long an interval h is within which one of m contacts is too far open; 0 if it is not.
 
-    A contact that pushes, opens with u at the start, and closes with u+ at the end, comes back in truth from a height
-    u^2/2a. Under a force that is constant it comes back by the end, from (1/2) h u^2 / (u - u+). Cut before, its bodies
-    have the energy of that height, and are elsewhere if they are solved again.
+    A contact with an impulse that opens with u at the start and closes with u+ at the end has a constant force in
+    between, under which it rises to (1/2) h u^2 / (u - u+); in truth it is open, without a force, and rises to u^2/2a
+    only. If the interval is cut, its bodies have the energy of the larger height, and are elsewhere if solved again.
     """
     far = 0.0
     for z in range(m):

@@ -59,10 +59,9 @@ def begin_interval(A: Scene, root: int, t: float) -> int:
     """
     longest = A.PAR.dt - t
     for attempt in range(INTERVAL_TRIES):
-        status, far = try_interval(A, root, t, longest, attempt + 1 == INTERVAL_TRIES or A.COUNT.together > 0)
+        status, longest = try_interval(A, root, t, longest, attempt + 1 == INTERVAL_TRIES or A.COUNT.together > 0)
         if status != AGAIN:
             return status
-        longest = far
     return DONE
 
 
@@ -80,7 +79,7 @@ def payable_by_placed(A: Scene, isle: Island, n: int) -> float:
 @nonallocating
 def begin_paths(A: Scene, MINE: IntArray, V: FloatArray, VN: FloatArray, h: float, TOUCHED: FlagArray) -> int:
     """Set the paths of the bodies MINE over the interval h, from velocities V to VN (k, 3), and join those that are
-    TOUCHED (k,) to the chain of the island; others leave it, and fly on by themselves.
+    TOUCHED (k,) to the chain of the island; others leave it, without forces of contacts.
 
     Returns the first body of the chain, the root of the island, -1 if there is none.
     """
@@ -215,9 +214,12 @@ def find_lifts(
     lost: float, before: float, payable: float,
 ) -> float:  # fmt: skip
     """Find the penetration corrections JUMP at the end of an interval h, with poses POSE in its middle and velocities
-    VN at its end. They may cost the energy `lost` in it, less what was owed `before`; any if a body without mobility
-    does the work beyond what losses pay, as it has been placed into others (payable = 0), or drives into them: then all
-    losses of the step pay, as bodies have also gone deeper by their own motion. Returns what losses pay."""
+    VN at its end. Returns the cost up to which losses pay (`Rest.payable`).
+
+    Corrections may cost the energy `lost` in the interval, less what was owed `before`. They may cost any energy where
+    a body without mobility does the work beyond `payable`: it has been placed into others (payable = 0), or drives into
+    them; then all losses of the step pay, as bodies have also gone deeper by their own motion.
+    """
     ROWS = contacts.ROWS
     budget = budget_of(ROWS, m, lost, max(-before, 0.0))
     if driven(A, isle, ROWS, n, m):

@@ -69,7 +69,6 @@ def local_island(A: Scene, MINE: IntArray, found: IntArray, t: float) -> Island:
     """The island of the bodies MINE (n,), which are at instant t and have A.PLACE, with its contact candidates `found`
     (p, 2). Fixed bodies of these pairs are the local bodies n to k - 1."""
     BODY, n, p = A.BODY, len(MINE), len(found)
-    # Fixed bodies follow those of the island.
     FIXED, fixed = np.empty(p, np.int64), 0
     for c in range(p):
         j = A.LINK[found[c, 1]].owner
@@ -133,7 +132,7 @@ def write_contacts(
         A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, A.PUSHED_BY[c].root = a, b, root
         pushed = A.PUSHED[c]
         pushed.normal, pushed.tangential, pushed.start, pushed.length = L[z, 0], L[z, 1], t, h
-        # Those that do work: rates between them are linear.
+        # Rates that do work, without the swing of a turning wall: they are linear in between.
         pushed.un_before, pushed.ut_before = ROWS[z].un, ROWS[z].ut - ROWS[z].swung
         pushed.un_after, pushed.ut_after = normal_rate(ROWS[z], VN), tangent_rate(ROWS[z], VN) + ROWS[z].swung
         pushed.work = carried(ROWS[z : z + 1], L[z : z + 1], isle.V, VN, isle.IM, isle.II, 1)

@@ -2,10 +2,10 @@
 
 Forces of an interval are right for the whole of it: a soft landing pushes before the shapes touch. Cut after s, an
 impulse J with the mean relative velocity u has lost D = -J.u, and has given energy if that is negative. Then the island
-is solved again, from the start of its interval to the cut, whose impulses lose energy, or none. Where that is no
-interval (bodies would move too far, or too far from the paths on which impacts were predicted), all impulses of bodies
-that touch are scaled by one q instead. With E = sum J.u > 0 and the energy C = sum m w^2 / 2 of the changes of velocity
-w that they cause, they give q (E - C) + q^2 C, which is 0 for q = 1 - E / C.
+is solved again, over the interval from its start to the cut, and gives none. Where that is no interval (bodies would
+move too far, or too far from the paths on which impacts were predicted), all impulses of bodies that touch are scaled
+by one q instead. With E = sum J.u > 0 and the energy C = sum m w^2 / 2 of the changes of velocity w that they cause,
+scaled impulses give q (E - C) + q^2 C, which is 0 for q = 1 - E / C.
 """
 
 from __future__ import annotations
@@ -121,12 +121,8 @@ def scale_impulses(A: Scene, root: int, t: float) -> None:
     for c in range(first, end):
         R, part = A.PUSHED[c], Q[group_of(A, GROUP, c)]
         if part != 1.0:
-            R.normal, R.tangential, R.work, R.change = (
-                part * R.normal,
-                part * R.tangential,
-                part * R.work,
-                part * R.change,
-            )
+            R.normal, R.tangential = part * R.normal, part * R.tangential
+            R.work, R.change = part * R.work, part * R.change
             R.un_before, R.un_after, R.ut_before, R.ut_after = 0.0, 0.0, 0.0, 0.0
     clear_places(A, MINE)
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 
 from ..compiled import nonallocating
-from ..islands.at_rest import mark_changed, put_to_rest
+from ..islands.at_rest import put_to_rest, set_awake
 from ..joints.ledger import clear_interval
 from ..model.bodies import AT_REST, CHANGED
 from ..model.joint_steps import EXACT
@@ -151,4 +151,4 @@ def wake_disturbed(A: Scene, J: Joints) -> None:
 def end_rest(A: Scene, root: int) -> None:
     """End the rest of an island with joints that is hit in this step; its interval began at the start of the step."""
     if A.MEMBER[root].rest == AT_REST:
-        mark_changed(A, root)
+        set_awake(A, root)

@@ -32,7 +32,7 @@ class Body(Record):
     friction: float  # of a single disk
     # Time of the body's next event after the start of the step. Negative at the start of a step: the event has to be
     # predicted again. -1 after a new velocity or acceleration, `..layout.PLACED` if the body counts as placed by the
-    # program, `..layout.SHIFTED` less the way, over its extent, if it was placed elsewhere.
+    # program, `..layout.SHIFTED` - way / extent if the program has moved it by this way.
     due: float
 
 
@@ -62,7 +62,7 @@ RENEW = -4  # the interval of the body's island ends
 # of the root of an island at rest: to be solved again; of a kinematic body: it moves.
 AWAKE, AT_REST, CHANGED = 0, 1, 2
 
-# `Member.placed`: overlaps are looked for anew where the body is, or where the program has moved it.
+# `Member.placed`: overlaps are searched where the body is, or where the program has moved it.
 UNMOVED, MOVED = 1, 2
 
 
@@ -101,11 +101,11 @@ class Rest(Record):
     augmentation: float  # of the root: log10 of R in direct solves, see `contacts/relaxation.py`
     wait: float  # of the root: steps until the next direct solve
     backoff: float  # of the root: steps to wait after its next failure
-    payable: float  # of the root: energy up to which losses pay for the correction; what is beyond is external work
+    payable: float  # of the root: cost of the correction up to which losses pay; the rest is external work
     lost: float  # of the root: energy lost in this step; if negative, energy that later intervals have to take out
     until: float  # of the root: instant at which the interval ends
     longest: float  # of the root of an island with joints: length with which its next interval is tried, at most
-    strays: float  # of such a root: how many times too long its interval is, whose contacts are not solved
+    strays: float  # of such a root: how many times too long its interval has remained (`..jointed.solve`)
     rest_timer: float  # steps in a row at whose start the body was slow; negative after a failed test
     speed: float  # `Midstep`: bound of the speed of the body's points in the step, length/time
     rest_due: float  # `due` of a body at rest at the end of the last step

@@ -46,7 +46,9 @@ class Pushed(Record):
     ut_before: float  # tangential velocity likewise
     ut_after: float
     work: float  # energy that kinematic bodies and moving surfaces give over the interval
-    held: float  # normal impulse at the end of the interval, where velocities that fit joints would close it; booked
+    # Normal impulse at the end of the interval by which velocities fitted to joints do not close the contact; its loss
+    # is in the ledger.
+    held: float
     start: float  # instant at which the interval begins
     length: float  # of the interval: time
     nx: float  # unit normal from a to b
@@ -85,9 +87,10 @@ class Row(Record):
     # t.(surface velocity of B's shape - that of A's), length/time; on walls that turn (`..contacts.turning`) such that
     # u_t at the end of the interval is 0 for what sticks.
     surface: float
-    turned: float  # by how much u_n is less than with the geometry of the start, where a wall turns
-    swung: float  # half the change of u_t of what a turning wall carries along; surface + swung does work
-    unsure: float  # error of u_t of that
+    # Where a wall turns, by the symbols of `..contacts.turning`:
+    turned: float  # c_0, if positive: by so much u_n is less than with the geometry of the start
+    swung: float  # (c_0 + c_1) / 2 along t; the velocity surface + swung does work
+    unsure: float  # error of u_t
     # Activation velocity: the contact is inactive while u_n without its own impulse is above it; infinite once active.
     wake: float
     a_nn: float  # change of u_n and u_t by unit impulses along n and t: 1/mass

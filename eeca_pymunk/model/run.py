@@ -34,7 +34,7 @@ class Run(Record):
     rollouts: int  # number of the first rollout that is not to be computed
 
 
-# `Run.stage`: between two steps; within a step that asked for more memory; after one whose results are not stored yet.
+# `Run.stage`: between two steps; within a step that needs more memory; after one whose results are not stored yet.
 BETWEEN, WITHIN, AFTER = 0, 1, 2
 
 

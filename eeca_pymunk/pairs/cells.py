@@ -38,8 +38,8 @@ def level_of(radius: float, cell: float) -> int:
 
 
 @nonallocating
-def draw(A: Scene, s: int, x: float, y: float) -> None:
-    """Set the centre of the margin circle of shape s to (x, y)."""
+def set_circle(A: Scene, s: int, x: float, y: float) -> None:
+    """Set the centre of the margin circle of shape s to (x, y), and `reach` from its present margin."""
     mark = A.MARK[s]
     mark.x, mark.y, mark.reach = x, y, A.SHAPE[s].bound + mark.margin
 

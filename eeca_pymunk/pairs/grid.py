@@ -12,7 +12,7 @@ from ..compiled import Table, fetch, nonallocating
 from ..geometry.flight import norm, pose
 from ..model.scene import Scene, scene_of
 from ..model.shapes import BATCH, LEVELS
-from .cells import bucket, cell_at, draw, link, near, unlink
+from .cells import bucket, cell_at, link, near, set_circle, unlink
 from .lists import append, circle_centre, course, may_collide, place_in, remove
 from .walls import box_wall, seek_walls
 
@@ -103,10 +103,10 @@ def seek_moving(A: Scene, s: int) -> bool:
 
 
 @nonallocating
-def part(A: Scene, s: int) -> int:
-    """Keep in the list of s the moving shapes that are near its margin circle, with their flags, and remove s from the
-    lists of the others; returns how many are kept. Static shapes are dropped, since `seek_walls` finds them again,
-    except those with a flag, which would be lost."""
+def drop_distant(A: Scene, s: int) -> int:
+    """Drop the moving shapes from the list of s that are not near its margin circle, and s from theirs; returns how
+    many entries are kept, with their flags. Static shapes are dropped too, as `seek_walls` finds them again, except
+    those with a flag, which would be lost."""
     LIST, POOL, FLAG, MARK, moving = A.LIST, A.POOL, A.FLAG, A.MARK, A.GRID.moving
     start, kept = LIST[s].start, 0
     for q in range(start, start + LIST[s].number):
@@ -128,10 +128,10 @@ def part(A: Scene, s: int) -> int:
 def renew_circle(A: Scene, s: int, t: float, ahead: float) -> int:
     """Move the margin circle of s to its position at instant t, and renew its list.
 
-    If the shape goes round the body's centre of mass within a step, by more than its margin, the circle is about that
-    centre, with a margin of at least twice the arm: one arm contains the orbit of the shape, the other is left for the
-    motion of the body. For slower ones, such as the walls of a container, the list would be too long. The margin stays,
-    as bodies that spin fast go on to.
+    If the shape turns round the body's centre of mass more than once in a step, and by more than its margin, the circle
+    is about that centre, with a margin of at least twice the arm: one arm contains the orbit of the shape, the other is
+    left for the motion of the body. The larger margin stays. For slower shapes, such as the walls of a container, the
+    list would be too long.
 
     Args:
         ahead: distance of the circle's centre ahead of the shape, or body, along its velocity, as a part of the margin
@@ -157,9 +157,9 @@ def renew_circle(A: Scene, s: int, t: float, ahead: float) -> int:
     if ahead > 0.0:
         ux, uy = course(A, s, t)
         x, y = x + ahead * margin * ux, y + ahead * margin * uy
-    draw(A, s, x, y)
+    set_circle(A, s, x, y)
     A.GRID.renewals += 1
-    kept = part(A, s)
+    kept = drop_distant(A, s)
     found = seek_moving(A, s) and seek_walls(A, s)
     link(A, s)
     return kept if found else -1
@@ -177,7 +177,7 @@ def make_lists(A: Scene, t: float) -> bool:
         A.LIST[s].start, A.LIST[s].capacity, A.LIST[s].number = s * _FIRST_CAPACITY, _FIRST_CAPACITY, 0
         A.CELL[s].bucket = -1
         x, y = circle_centre(A, s, t)
-        draw(A, s, x, y)
+        set_circle(A, s, x, y)
     GRID.pool_end = moving * _FIRST_CAPACITY
     everybody = moving > 0 and A.MARK[0].margin == math.inf
     for s in range(moving):

@@ -26,8 +26,8 @@ def begin_lists(table: Table) -> int:
     """Write the boxes of static shapes; if shapes are so few that each is in all lists, make these lists too.
 
     Returns:
-        if shapes are few: DONE, or FULL if the pool is full; else the length that CSR must have, 0 if static shapes
-        need no grid.
+        if shapes are few: LISTS_MADE, or POOL_TOO_SMALL; else the length that CSR must have, 0 if static shapes need no
+        grid.
     """
     A = scene_of(table)
     for w in range(A.BOX.shape[0]):
@@ -53,8 +53,8 @@ def fill_lists(table: Table, BOUND: FloatArray, neighbours: float, halved: int, 
         halved: how often margins have been halved.  listed: whether there are lists for the present ones.
 
     Returns:
-        DONE; or, if the pool is full, how often margins have been halved: make the lists in a larger one, and call
-        again.
+        LISTS_MADE; or, if the pool is full, how often margins have been halved: make the lists in a larger one, and
+        call again.
     """
     A = scene_of(table)
     if halved == 0 and not listed:

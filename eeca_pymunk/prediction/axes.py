@@ -8,6 +8,9 @@ acceleration of the centres, b's less a's, V their relative speed, and L their d
 
     fixed axis n      B = max(-A . n, 0) + sum of r (w² + q) of both,
     axis of body a    B = A + r_b (w_b² + q_b) + 2 w_a (V + w_b r_b) + (w_a² + q_a) (L + r_b).
+
+The second bounds the terms of g'' = n.p'' + 2 n'.p' + n''.p, where n turns with a, and p leads from a's centre to a
+vertex of b.
 """
 
 from __future__ import annotations

@@ -25,7 +25,6 @@ from ..geometry.gap import gap_round_off
 from ..geometry.manifold import common_face
 from ..geometry.sides import (
     closest_on_side,
-    known_side,
     near_side,
     note_side,
     pair_number,
@@ -82,9 +81,9 @@ def begin_side(A: Scene, a: int, b: int, start: float, duration: float, toleranc
 
     For segments that touch and have no remembered side: if they move by less than `tolerance` (length) in the time
     `duration`, they are on the side against which they are pressed; else, if their distance is round-off, on the side
-    to which they part. For all other shapes the side follows from the geometry. What touches without overlap and
-    without forces that hold it, after an impact, parts: its side is known while it is as near, but not at the distance
-    at which contacts are held, as the bodies may turn by any angle before they come near again.
+    to which they part. For all other shapes the side follows from the geometry. Shapes that touch without overlap, and
+    that no forces hold, part: they keep their side up to `near_side` only, not up to `held_side`, as the bodies may
+    turn by any angle before they come near again.
     """
     i, j, P, Q = A.LINK[a].owner, A.LINK[b].owner, A.CORE[0], A.CORE[1]
     x_a, y_a, angle_a = pose(A.BODY, i, start)
@@ -92,9 +91,11 @@ def begin_side(A: Scene, a: int, b: int, start: float, duration: float, toleranc
     p = place_vertices(A, a, x_a, y_a, angle_a, P)
     q = place_vertices(A, b, x_b, y_b, angle_b, Q)
     d, nx, ny, px, py, _, _, _, _, _ = closest_on_side(A, P, p, Q, q, a, b)
+    key = pair_number(A, a, b)
+    side = A.SIDE[side_row(A, key)]
     if d > near_side(A, a, b):
         note_side(A, a, b, nx, ny, False)
-    elif not known_side(A, a, b):
+    elif side.key != key:
         parting = opening(motion(A.BODY, i, start), motion(A.BODY, j, start), nx, ny, px, py)
         pressing = nx * (A.BODY[i].ax - A.BODY[j].ax) + ny * (A.BODY[i].ay - A.BODY[j].ay)
         resting = abs(parting) * duration <= tolerance
@@ -102,9 +103,7 @@ def begin_side(A: Scene, a: int, b: int, start: float, duration: float, toleranc
         sign = -1.0 if p == 2 and q == 2 and other else 1.0
         note_side(A, a, b, sign * nx, sign * ny, True)
     else:
-        # The normal turns with the shapes.
-        side = A.SIDE[side_row(A, pair_number(A, a, b))]
-        side.nx, side.ny = nx, ny
+        side.nx, side.ny = nx, ny  # it turns with the shapes
         if d >= -near_side(A, a, b) and not in_one_island(A, i, j):
             side.deep = 0.0
 
@@ -157,12 +156,13 @@ def general(A: Scene, a: int, b: int, horizon: float) -> tuple[float, bool]:
 def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[float, bool]:
     """(t, certain) of any two shapes, as defined in `impact_times.py`.
 
-    Depends only on the two paths, from the later of their instants `since` on; "the time" is that from there to the
-    horizon. Shapes that touch and approach meet at once. Shapes that touch and part do not meet: the search goes on
-    where they may be as deep as TOUCH (`axes.first_close`), or ends where they touch again if that is before. After
-    ADVANCES looks within the time over RESOLUTION each advances by at least their ratio. Where shapes overlap, but do
-    not close, there are ADVANCES looks in the time. The search ends where it is once LONGEST_SEARCH of the step's work
-    is spent.
+    Depends only on the two paths, from the later of their instants `since` to the horizon, the `duration`. Shapes that
+    touch and approach meet at once. Shapes that touch and part do not meet: the search goes on where they may be as
+    deep as TOUCH (`axes.first_close`), or ends where they touch again if that is before.
+
+    Its work is bounded: after ADVANCES looks within an interval of duration / RESOLUTION each look advances by at least
+    that interval over ADVANCES; of shapes that overlap, but do not close, by duration / ADVANCES. Once LONGEST_SEARCH
+    of the step's work is spent, the search ends where it is.
 
     Args:
         a, b: a < b.
@@ -196,7 +196,7 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
     while True:
         looks += 1
         A.COUNT.work += 1
-        if s > mark + interval:  # progress resets the budget: fast rotation is followed for many turns
+        if s > mark + interval:  # a new interval: fast rotation is followed for many turns
             looks, mark = 0, s
         one, two = motion(BODY, i, start + s), motion(BODY, j, start + s)
         p = place_vertices(A, a, one.x, one.y, one.angle, P)
@@ -206,6 +206,7 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
             note_side(A, a, b, nx, ny, False)
         fixed = Closing(extent, around + pulled_along(A, a, b, nx, ny), tolerance, depth, still)
         safe, near, met = fixed_axis(P, p, Q, q, nx, ny, one, two, fixed)
+        # Edges along whose normals the shapes overlap more than along n do not bound when they meet.
         least = min(d - extent, 0.0) - tolerance
         if apart_a - extent >= least:
             may, gap, closes = turning_axis(P, edge_a, Q, q, one, two, of_a)

@@ -35,7 +35,7 @@ from ..model.parameters.intervals import DIRECT_MOVING, INTERVAL_RESIDUAL_SPEED,
 from .build import aim, conserves, largest_terms, rates, rubs
 from .conjugate import sweep_conjugate
 from .direct import refine, refine_and_sweep
-from .drift import go_along
+from .drift import skip_drift
 from .energy import lock, works
 from .sweeps import push, velocities
 
@@ -70,7 +70,7 @@ def resolve(
     log_R = AUGMENTATION
     for _ in range(rounds):
         if drifts > 0:
-            worst = go_along(problem, L, V, FREE, worst)
+            worst = skip_drift(problem, L, V, FREE, worst)
             OUT[0].sweeps += 1
         log_R, worst, taken = refine_and_sweep(problem, L, V, FREE, log_R, 8, tolerance, worst, BLOCK_SWEEPS_AFTER)
         OUT[0].sweeps += taken
@@ -90,7 +90,7 @@ def resolve(
     for _ in range(drifts):
         if worst <= tolerance:
             break
-        worst = go_along(problem, L, V, FREE, worst)
+        worst = skip_drift(problem, L, V, FREE, worst)
         log_R, worst = refine(problem, L, V, FREE, AUGMENTATION, 8, 0.1 * tolerance, worst)
         taken, worst = sweep_conjugate(problem, L, V, tolerance, last)
         OUT[0].sweeps += taken + 1

@@ -112,10 +112,13 @@ def assemble_blocks(
 
 @kernel
 def factor_blocks(n: int, factor: Factor) -> None:
-    """Left-looking Cholesky factorisation in place: DIAGONAL gets lower triangles, BELOW the blocks under them."""
+    """Left-looking Cholesky factorisation in place: DIAGONAL gets lower triangles, BELOW the blocks under them.
+
+    Column k acts next on column rows[first[k]], in whose chain (`head`, then `after`) it is until then.
+    """
     columns, rows, D, X = factor.columns, factor.rows, factor.DIAGONAL, factor.BELOW
     head, after, where = np.full(n, -1, np.int64), np.full(n, -1, np.int64), np.full(n, -1, np.int64)
-    first = np.zeros(n, np.int64)  # next block of a column that is still to be used
+    first = np.zeros(n, np.int64)
     for j in range(n):
         for q in range(columns[j], columns[j + 1]):
             where[rows[q]] = q

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import nonallocating
+from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Row
 from ..model.parameters.impulses import JAMMED, SINGULAR
@@ -81,9 +81,14 @@ def coulomb(
     return lam, beta
 
 
+@inlined
+def lossless_slip(row: Row, lam: float, beta: float) -> float:
+    """Tangential velocity u_t+ with which a contact with these impulses loses no energy: beta (u_t- + u_t+) =
+    -lam (u_n- + b)."""
+    return float(-row.ut - lam * min(row.un + row.target, 0.0) / beta)
+
+
 @nonallocating
 def limited_slip(row: Row, lam: float, beta: float) -> float:
-    """Tangential velocity with which a contact with these impulses loses no energy, where those of a stick would give
-    some: beta (u_t- + u_t+) = -lam (u_n- + b); 0 where it may stick."""
-    loss = lam * min(row.un + row.target, 0.0)
-    return float(-row.ut - loss / beta) if beta * row.ut > -loss else 0.0
+    """`lossless_slip` where a contact with these impulses would give energy if it stuck; else 0: it may stick."""
+    return lossless_slip(row, lam, beta) if beta * row.ut > -lam * min(row.un + row.target, 0.0) else 0.0

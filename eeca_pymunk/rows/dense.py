@@ -17,6 +17,7 @@ from ..model.parameters.impulses import PROXIMAL_DENSE
 from ..model.parameters.joints import COLUMN_PROXIMAL, MATRIX_WORK
 from .bounded import bounded_rate
 from .build import normal_rate, tangent_rate
+from .coulomb import lossless_slip
 from .polish import clamp, classify
 from .sweeps import velocities
 
@@ -189,7 +190,7 @@ def newton(
                 r[k] = ROWS[i].target - normal_rate(ROWS[i], V)
             else:
                 if stuck[i] == 2 and L[i, 1] != 0.0:
-                    rest[i] = -ROWS[i].ut - L[i, 0] * min(ROWS[i].un + ROWS[i].target, 0.0) / L[i, 1]
+                    rest[i] = lossless_slip(ROWS[i], L[i, 0], L[i, 1])
                 r[k] = rest[i] - tangent_rate(ROWS[i], V)
             worst = max(worst, abs(r[k]))
         if worst <= tolerance or done == passes or not worst <= 0.5 * last:

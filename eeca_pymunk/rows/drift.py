@@ -34,9 +34,9 @@ def sweeps_left(problem: AnyProblem, L: FloatArray, L0: FloatArray) -> float:
 
 
 @kernel
-def go_along(problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, worst: float) -> float:
-    """A sweep, and all that follow in the same way, if its residual is about that of the last one, `worst`, and they do
-    not make it larger: then impulses did not only go from contact to contact. Returns the change of velocity in the
+def skip_drift(problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, worst: float) -> float:
+    """One sweep; if its residual is about that of the sweep before, `worst`, then s (`sweeps_left`) times its change D
+    and another sweep, undone if that has a larger residual: D then was no drift. Returns the change of velocity in the
     last sweep."""
     L0 = L.copy()
     now = sweep(problem, L, V)
@@ -45,13 +45,13 @@ def go_along(problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray
     left = sweeps_left(problem, L, L0)
     if not 1.0 < left < math.inf:
         return now
-    LAST, VLAST = L.copy(), V.copy()
+    L1, V1 = L.copy(), V.copy()
     for i in range(problem.m):
         L[i, 0] = max(L[i, 0] + left * (L[i, 0] - L0[i, 0]), 0.0)
         L[i, 1] += left * (L[i, 1] - L0[i, 1])
     velocities(problem, L, FREE, V)
     after = sweep(problem, L, V)
     if after > now:
-        restore_impulses(L, V, LAST, VLAST)
+        restore_impulses(L, V, L1, V1)
         return now
     return after

@@ -74,8 +74,12 @@ def newton_step(
     edges: Problem, EDGE: Rows[Edge], SCALE: FloatArray, factor: Factor, LEFT: FloatArray, Y: FloatArray, f: FloatArray,
     V: FloatArray, DY: FloatArray, centre: float, second: bool,
 ) -> None:  # fmt: skip
-    """Newton's step dx, ds (fields of EDGE) and DY towards x s = centre; the corrector step (`second`) also subtracts
-    the product dx ds of the predictor.
+    """Newton's step dx, ds (fields of EDGE) and DY of
+
+        A_gg (x - w) = g.Y + s,   LEFT = 0,   x s = centre;
+
+    with a proximal term, LEFT + M^-1 sum g dx = -DY / R, for redundant edges. The corrector step (`second`) also
+    subtracts the product dx ds of the predictor from x s.
 
     Args:
         edges: rows of the edges, with k_n = Theta.  SCALE: (k, 3) roots of the inverse masses, the scale of

@@ -1,9 +1,8 @@
-"""Impulses where there is no solution, or one that makes no sense: they gain nothing however far they are from solved.
+"""Impulses of contacts whose problem has no solution, or only one of excessive impulses: a few sweeps from none.
 
-Rows that contradict one another (what is jammed between walls), or that friction alone holds (what is wedged in a
-corner), let impulses grow without bound; the work of what they lean on, and its round-off, are then without bound too.
-Sweeps from no impulses are descents of (1/2) lam.A lam + lam.(u - b), so that what is left of them is between nothing
-and the solution.
+Where rows contradict one another (a body jammed between walls), or friction alone holds (a body wedged in a corner),
+impulses grow without bound, and with them the work of moving walls and its round-off. Sweeps from no impulses decrease
+(1/2) lam.A lam + lam.(u - b): a few of them give bounded impulses, between none and a solution.
 """
 
 from __future__ import annotations
@@ -22,8 +21,8 @@ from .sweeps import sweep, velocities
 
 @nonallocating
 def excessive(L: FloatArray, m: int, IM: FloatArray, n: int, speed: float) -> bool:
-    """Whether the impulses L of m contacts are beyond all that n bodies of such a speed need: larger by
-    EXCESSIVE_IMPULSE than their momenta; not finite ones are, too. IM (n,): inverse masses."""
+    """Whether an impulse of L of m contacts is not finite, or exceeds EXCESSIVE_IMPULSE times the mass of the n bodies
+    times `speed`, the largest of theirs. IM (n,): inverse masses."""
     mass = 0.0
     for q in range(n):
         mass += 1.0 / IM[q]
@@ -35,8 +34,8 @@ def excessive(L: FloatArray, m: int, IM: FloatArray, n: int, speed: float) -> bo
 
 @nonallocating
 def sweep_gently(problem: AnyProblem, L: FloatArray, V: FloatArray) -> float:
-    """Impulses L by GENTLE_SWEEPS sweeps from those given, which are none of contacts; V (k, 3) are the velocities
-    under them. Returns the largest change of a contact's velocity in the last sweep."""
+    """GENTLE_SWEEPS sweeps from impulses L, 0 of contacts, with velocities V (k, 3). Returns the largest change of a
+    contact's velocity in the last sweep."""
     worst = 0.0
     for _ in range(GENTLE_SWEEPS):
         worst = sweep(problem, L, V)
@@ -47,9 +46,9 @@ def sweep_gently(problem: AnyProblem, L: FloatArray, V: FloatArray) -> float:
 def unwedge(
     problem: Problem, L: FloatArray, V: FloatArray, FREE: FloatArray, tolerance: float, speed: float, out: Solved
 ) -> float:
-    """Impulses L (m, 2) and velocities V (k, 3) of contacts that are wedged: without friction, which their rows lose;
-    or gentle ones, if these are excessive for such a speed, too. FREE (k, 3): velocities without impulses. Returns how
-    far from solved they are (velocity)."""
+    """Set impulses L (m, 2) and velocities V (k, 3) of wedged contacts: those without friction, which their rows lose;
+    or of `sweep_gently`, if these are `excessive` too. FREE (k, 3): velocities without impulses. Returns the residual,
+    a velocity."""
     L[:] = 0.0
     copy(V, FREE)
     columns = as_columns(problem)

@@ -6,8 +6,8 @@ miss the law by a residual in each row. They solve it exactly if the free veloci
 that each row's residual is 0. So they are the solution for q + theta p at theta = 1; that for q is at theta = 0. On the
 way there the solution is linear in theta until a state changes; then it goes on, with growing or falling theta, as the
 new state allows (Lemke 1965; of contacts Stewart and Trinkle 1996). A change is one pivot, also where contacts jam
-with redundant impulses, which sweeps carry round for ever. A homotopy that begins without impulses ends if no target is
-positive and no surface conveys (Anitescu and Potra 1997); others may run to infinity.
+with redundant impulses, among which sweeps cycle. A homotopy that begins without impulses ends if no target is positive
+and no surface conveys (Anitescu and Potra 1997); others may run to infinity.
 """
 
 from __future__ import annotations
@@ -100,8 +100,8 @@ def start_homotopy(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: 
 
 @nonallocating
 def set_direction_of_residuals(tableau: Tableau, m: int, X: FloatArray) -> None:
-    """Set the velocities per theta, T[:, size + 1], that take from those at impulses X (size,), T[:, size], by which
-    their states are not lawful."""
+    """Set p, the velocities per theta T[:, size + 1]: minus the residuals of the laws at impulses X (size,), at which
+    the velocities are T[:, size]."""
     T, size = tableau.T, len(tableau.T)
     for c in range(len(tableau.STATE)):
         k, state = unknown_of(m, c), tableau.STATE[c]
@@ -118,8 +118,8 @@ def set_direction_of_residuals(tableau: Tableau, m: int, X: FloatArray) -> None:
 
 @nonallocating
 def set_opening_direction(tableau: Tableau, m: int) -> None:
-    """Set the velocities per theta that open all contacts and keep rows at a bound, by different amounts: so they come
-    to their changes one by one."""
+    """Set p, the velocities per theta, so that all contacts open and rows stay at their bounds; by different amounts,
+    so that states change one by one."""
     T, size = tableau.T, len(tableau.T)
     most = 0.0
     for k in range(size):
@@ -133,7 +133,8 @@ def set_opening_direction(tableau: Tableau, m: int) -> None:
 
 @nonallocating
 def remove_impulses(tableau: Tableau, m: int, X: FloatArray) -> None:
-    """From velocities T[:, size] at impulses X (size,) to those without impulses of contacts, with rows at bounds."""
+    """Change T[:, size] from the velocities at impulses X (size,) to those without impulses of contacts, and with rows
+    at their bounds."""
     T, size = tableau.T, len(tableau.T)
     for k in range(size):
         at_bound = k >= 2 * m and tableau.STATE[k - m] == BOUND
@@ -145,7 +146,7 @@ def remove_impulses(tableau: Tableau, m: int, X: FloatArray) -> None:
 
 @nonallocating
 def restore_states(tableau: Tableau, m: int, X: FloatArray) -> None:
-    """The states of impulses X (size,), from those of no impulses of contacts, with rows at bounds."""
+    """Pivot from open contacts and rows at bounds to the states of the impulses X (size,)."""
     T, STATE, size = tableau.T, tableau.STATE, len(tableau.T)
     for c in range(len(STATE)):
         k = unknown_of(m, c)
@@ -176,8 +177,8 @@ def set_impulses(tableau: Tableau, m: int, X: FloatArray, L: FloatArray) -> None
 
 @nonallocating
 def correct_residual(problem: JointedProblem, tableau: Tableau, V: FloatArray, X: FloatArray) -> None:
-    """Correct the unknowns X (size,) by the velocities V that the present states fix and that are not 0: the proximal
-    term and round-off of pivots leave them."""
+    """Correct the unknowns X (size,) by what the proximal term and the round-off of pivots leave of the velocities that
+    the present states fix; V (k, 3) are those of the bodies."""
     ROWS, _, D, m = problem
     for c in range(len(tableau.STATE)):
         k, state = unknown_of(m, c), tableau.STATE[c]
@@ -205,6 +206,7 @@ def follow_homotopy(problem: JointedProblem, L: FloatArray, V: FloatArray, FREE:
     tableau = start_homotopy(problem, L, V, anew)
     T, count, size = tableau.T, len(tableau.STATE), len(tableau.T)
     X = np.empty(size)
+    # way: direction of theta, +-1.  nearest: way of theta to the next change of state, change `number` of `changed`.
     theta, way, changed, number = 1.0, -1.0, -1, 0
     for _ in range((HOMOTOPY_CHANGES_ANEW if anew else HOMOTOPY_CHANGES) * count):
         nearest = np.inf

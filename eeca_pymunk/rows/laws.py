@@ -28,8 +28,8 @@ def solve_columns(
 
     Args:
         tolerance: velocity by which laws may be broken, or contacts change in a sweep.  sweeps: before a homotopy.
-        most: sweeps where there are too many contacts for a homotopy, or it has no end.  work: `Columns.WORK` from
-            which on none begins.
+        most: sweeps where there are too many contacts for a homotopy, or it fails.  work: `Columns.WORK` from which on
+            no homotopy begins.
 
     Returns:
         the largest velocity by which a law is broken, or of a change in the last sweep if that came last.
@@ -58,7 +58,7 @@ def solve_columns(
         if worst < best:
             best = worst
             restore_impulses(L0, V0, L, V)
-        # Where laws have no solution, homotopies lead to the same state, or from one of two to the other.
+        # Where laws have no solution, homotopies end in the same state again, or alternate between two.
         if min(abs(worst - before), abs(worst - earlier)) <= 0.1 * worst:
             break
         before, earlier = worst, before
@@ -105,8 +105,8 @@ def give_slips(ROWS: Rows[Row], m: int, SLIP: FloatArray) -> None:
 
 @kernel
 def solve_few(problem: Problem, L: FloatArray, V: FloatArray, tolerance: float, out: Solved) -> float:
-    """`solve_columns` of contacts of free bodies, whose sweeps and direct solutions have come to no end, with Coulomb's
-    law alone: friction that energy limits has no solution more often, and the energy lock takes what this may give."""
+    """`solve_columns` of contacts of free bodies, whose sweeps and direct solutions have not converged, with Coulomb's
+    law alone; the energy lock removes the energy that this may give."""
     SLIP, columns = take_slips(problem.ROWS, problem.m), as_columns(problem)
     worst = solve_columns(columns, L, V, tolerance, 0, COLUMN_SWEEPS_AFTER, np.inf)
     out.operations += columns.C.WORK[0]

@@ -29,8 +29,8 @@ push_normal = Choice(push_normal_free, push_normal_jointed)
 
 @inlined
 def meet_gap(problem: AnyProblem, GAP: float, MU: FloatArray, D: FloatArray, i: int) -> float:
-    """Let the gap of contact i, which is GAP without displacements, meet its condition, with the other mu as they are;
-    how much it changes."""
+    """Solve 0 <= mu _|_ g + G D >= 0 of contact i, with g = GAP, for its mu, with the others fixed; updates D. Returns
+    the change of its gap."""
     g = GAP + normal_rate(problem.ROWS[i], D)
     if g >= 0.0 and MU[i] == 0.0:
         return 0.0
@@ -44,9 +44,9 @@ def meet_gap(problem: AnyProblem, GAP: float, MU: FloatArray, D: FloatArray, i: 
 
 @kernel
 def keep_walls(problem: AnyProblem, n: int, GAPS: FloatArray, LEAST: FloatArray, MU: FloatArray, D: FloatArray) -> None:
-    """After a solve that has come to no end: let no contact of the n bodies that impulses move with what nothing moves
-    have a gap below LEAST (m,), which is GAPS without displacements; with an infinite gap it is left out. In sweeps, as
-    a body may have several such contacts: what lifts one end of a face lowers the other one."""
+    """After a solve that has not converged: raise gaps of contacts with bodies without mobility, those from n on, to at
+    least LEAST (m,). GAPS (m,) are those without displacements; infinite ones are left out. In sweeps, as what lifts
+    one end of a face may lower the other."""
     for _ in range(WALL_SWEEPS):
         met = True
         for i in range(problem.m):
@@ -61,8 +61,8 @@ def keep_walls(problem: AnyProblem, n: int, GAPS: FloatArray, LEAST: FloatArray,
 def lift_above_walls(
     problem: AnyProblem, n: int, GAPS: FloatArray, D: FloatArray, tolerance: float, most: int
 ) -> FloatArray:
-    """`lift` from no mu (m,), which is returned; if it comes to no end, nothing is displaced deeper into what nothing
-    moves than it is (`keep_walls`)."""
+    """`lift` from mu = 0 (m,), which is returned; if that does not converge, no overlap with bodies without mobility
+    becomes deeper (`keep_walls`)."""
     MU = np.zeros(problem.m)
     if lift(problem, GAPS, MU, D, tolerance, most) > tolerance:
         keep_walls(problem, n, GAPS, np.minimum(GAPS, 0.0), MU, D)

@@ -22,9 +22,10 @@ class Tableau(NamedTuple):
 
     STATE, SIGN (m + n,): states; sign of the friction that slips, or of the bound; else 0.  MU (m,): friction, as long
     as the homotopy lasts.  LOW, HIGH (n,): bounds.  REST (m,): tangential velocity of contacts that stick, not 0 where
-    energy limits friction (`polish.classify`). T (size, size + 2): of each unknown the impulse, or the velocity less
-    its target, that its state leaves free, by those of all that it fixes, which are 0; then its value at theta = 0, and
-    per theta. Where a contact slips, beta stands for beta - s mu lam.  R (size + 2,): room for a row.
+    energy limits friction (`polish.classify`). T (size, size + 2): an unknown is an impulse or a velocity less its
+    target; its state leaves one of both free, and fixes the other at 0. Row k has the free one of unknown k by changes
+    of all fixed ones, then at theta = 0, and per theta. Where a contact slips, beta stands for beta - s mu lam.
+    R (size + 2,): room for a row.
     """
 
     STATE: IntArray
@@ -45,7 +46,7 @@ def unknown_of(m: int, c: int) -> int:
 
 @nonallocating
 def pivot(tableau: Tableau, k: int) -> None:
-    """Exchange what unknown k leaves free for what it fixes."""
+    """Exchange the free and the fixed quantity of unknown k."""
     T, R = tableau.T, tableau.R
     size, width = T.shape
     by = -1.0 / T[k, k]
@@ -70,7 +71,7 @@ def slope_of(tableau: Tableau, c: int) -> float:
 
 @nonallocating
 def slip(tableau: Tableau, c: int, sign: float) -> None:
-    """Let contact c, which is open, slip with friction of that sign."""
+    """Let contact c, which is open, slip with friction of that sign: lam becomes free, and beta follows it."""
     T, n = tableau.T, 2 * c
     tableau.STATE[c], tableau.SIGN[c] = SLIP, sign
     for i in range(len(T)):
@@ -80,7 +81,7 @@ def slip(tableau: Tableau, c: int, sign: float) -> None:
 
 @nonallocating
 def stick(tableau: Tableau, c: int) -> None:
-    """Let contact c, which slips, stick."""
+    """Let contact c, which slips, stick: beta becomes free."""
     T, n = tableau.T, 2 * c
     pivot(tableau, n + 1)
     for j in range(T.shape[1]):

@@ -18,6 +18,7 @@ from ..model.contacts import AnyProblem, Problem, Row
 from ..model.parameters.impulses import FACE_LINE
 from .build import normal_rate, push_contact, tangent_rate
 from .cholesky import assemble_blocks, factor_blocks, make_factor, roots_of, solve_blocks
+from .coulomb import lossless_slip
 from .sweeps import velocities
 
 
@@ -52,9 +53,8 @@ def classify(
     ROWS: Rows[Row], L: FloatArray, V: FloatArray, m: int
 ) -> tuple[IntArray, IntArray, FloatArray, FloatArray]:
     """held, stuck, slip and rest (m,) of contacts, by their impulses: held[i] = 1 where lam > 0; of these stuck[i] = 1
-    where u_t is to be 0, 2 where it is to be rest[i], length/time; else 0, and beta = slip[i] lam.
-
-    Where energy limits friction, beta (u_t- + u_t+) = -lam (u_n- + b): rest is that u_t+.
+    where u_t is to be 0, 2 where it is to be rest[i], length/time, as energy limits friction (`lossless_slip`); else 0,
+    and beta = slip[i] lam.
     """
     held, stuck, slip, rest = np.zeros(m, np.int64), np.zeros(m, np.int64), np.zeros(m), np.zeros(m)
     for i in range(m):
@@ -70,7 +70,7 @@ def classify(
                 stuck[i] = 1
             else:
                 stuck[i] = 2
-                rest[i] = -ROWS[i].ut - loss / beta
+                rest[i] = lossless_slip(ROWS[i], lam, beta)
         elif beta != 0.0:
             slip[i] = mu if beta > 0.0 else -mu
     return held, stuck, slip, rest
@@ -149,7 +149,7 @@ def polish_free(
             if stuck[i] != 0:
                 L[i, 1] += R * ROWS[i].k_t * (r[i, 1] - tangent_rate(ROWS[i], dv) + ROWS[i].surface)
                 if stuck[i] == 2 and L[i, 1] != 0.0:
-                    rest[i] = -ROWS[i].ut - L[i, 0] * min(ROWS[i].un + ROWS[i].target, 0.0) / L[i, 1]
+                    rest[i] = lossless_slip(ROWS[i], L[i, 0], L[i, 1])
             else:
                 L[i, 1] = slip[i] * L[i, 0]
         velocities(problem, L, FREE, V)

@@ -74,7 +74,7 @@ CORRECTION_SWEEPS = work(20, "sweeps",
     "overlaps of a tenth of a radius; with 40, falling piles cost .15 more.")
 CORRECTION_WORK = work(1000, "contacts swept", "Work for further sweeps of the penetration correction of few contacts.")
 WALL_SWEEPS = work(8, "sweeps",
-    "Sweeps over contacts with what nothing moves, after a solve or a correction that has come to no end, at most.")
+    "Sweeps over contacts with what nothing moves, after a solve or a correction that has not converged, at most.")
 CORRECTION_ROUND_OFF = round_off(1e-14, "of its work", "Round-off of the work of a correction.")
 CORRECTION_SHARE = accuracy(0.99, "of a budget that does not suffice",
     "Part of the energy lost that a correction uses; the rest covers changes of moments of inertia.")
