@@ -1,10 +1,10 @@
 """Penetration correction: displacements of bodies at the end of an interval, whose cost in energy is deducted from the
-losses of the same island and interval.
+losses of the same island in the step.
 
 delta = M^-1 G^T mu with 0 <= mu _|_ g + A mu >= 0 for the gaps g at the end, scaled so that the potential energy it
 costs is at most the losses, and no point of a body moves farther than CORRECTION_STEP of the size of the smallest one:
 so the correction gives no energy, no body passes through a wall by it, and gaps stay about linear in the displacements.
-Gaps above -OVERLAP_LEFT of the size are not corrected.
+Gaps above -OVERLAP_LEFT of the size are not corrected; within a step, none that one correction at its end will reach.
 
 Displacements change the orbital angular momentum by sum m delta x v. If an island is free (without bodies that impulses
 do not move), a common rotation of its velocities about the centre of mass removes that change.
@@ -37,7 +37,7 @@ from .works import against
 @kernel
 def lifting(
     problem: Problem, POSE: FloatArray, VN: FloatArray, ACC: FloatArray, h: float, EXTENT: FloatArray, budget: float,
-    JUMP: FloatArray,
+    left: float, JUMP: FloatArray,
 ) -> None:  # fmt: skip
     """Compute the corrections JUMP (k, 6) of pose and velocity at the end of an interval of length h.
 
@@ -46,6 +46,7 @@ def lifting(
         VN: (k, 3) velocities at the end.  ACC: (k, 3) accelerations without contacts.
         EXTENT: (k,) lengths from the bodies' centres of mass to their farthest points.
         budget: energy that the correction may cost; below 0 nothing is corrected, with 0 what costs nothing.
+        left: depth, in parts of the smallest body, up to which nothing is corrected.
     """
     ROWS, IM, II, _, n, m = problem
     size = least_of(EXTENT, n)
@@ -55,7 +56,7 @@ def lifting(
     for i in range(m):
         GAPS[i] = ROWS[i].gap + 0.5 * h * (ROWS[i].un + normal_rate(ROWS[i], VN))
         deepest = min(deepest, GAPS[i])
-    if deepest >= -OVERLAP_LEFT * size or not budget >= 0.0:
+    if deepest >= -left * size or not budget >= 0.0:
         return
     D = np.zeros((len(IM), 3))
     lift_above_walls(problem, n, GAPS, D, 0.1 * OVERLAP_LEFT * size, CORRECTION_SWEEPS + CORRECTION_WORK // m)
@@ -109,10 +110,10 @@ def admissible(D: FloatArray, EXTENT: FloatArray, n: int, size: float) -> float:
 
 
 @nonallocating
-def budget_of(ROWS: Rows[Row], m: int, lost: float, owed: float) -> float:
-    """Energy that `lifting` may spend: the losses `lost` of m contacts, less the energy `owed`. Elastic contacts have
-    none; what they seem to lose is round-off."""
-    return -1.0 if conserves(ROWS, m) else lost - owed
+def budget_of(ROWS: Rows[Row], m: int, lost: float) -> float:
+    """Energy that `lifting` of m contacts may spend, of the energy `lost`. Elastic contacts have none; what they seem
+    to lose is round-off."""
+    return -1.0 if conserves(ROWS, m) else lost
 
 
 @nonallocating

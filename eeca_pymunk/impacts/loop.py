@@ -10,7 +10,7 @@ from ..compiled import inlined, kernel, nonallocating
 from ..contacts.counts import note_unmet
 from ..contacts.single import alone, strike_disk
 from ..geometry.sides import remembers
-from ..islands.accounting import end_interval
+from ..islands.accounting import end_interval, lift_within_step
 from ..islands.building import hits_of, most_hits, passed_over, persists_from
 from ..islands.membership import jointed, members
 from ..jointed.ends import end_here
@@ -135,6 +135,7 @@ def end_of_interval(A: Scene, J: Joints, i: int, t: float) -> int:
         end_here(A, J, i, t)
     else:
         end_interval(A, i, t)
+        lift_within_step(A, i, t)
     return int(members(A, i, A.BLOCK))
 
 

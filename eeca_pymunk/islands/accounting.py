@@ -224,3 +224,19 @@ def apply_correction(A: Scene, root: int, end: float) -> None:
     paid = min(spent, JUMP[root].payable)
     PAR.external += spent - paid
     PAR.restitution -= paid
+    JUMP[root].lost -= paid
+
+
+@nonallocating
+def lift_within_step(A: Scene, i: int, t: float) -> None:
+    """Apply the penetration correction of the island of body i, whose interval has ended at instant t within the step
+    as was planned, if it has one."""
+    root, k, lifted = A.STATE[i].island, A.STATE[i].island, False
+    while k >= 0:
+        if lift_way(A, k) > 0.0:
+            lifted = True
+            if len(A.SIDE) > 0:
+                hold_sides(A, k, t)
+        k = A.MEMBER[k].following
+    if lifted:
+        apply_correction(A, root, t)

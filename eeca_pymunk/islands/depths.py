@@ -15,10 +15,16 @@ from ..geometry.gap import gap_at
 from ..geometry.sides import depth_limit, half_width, held_side, remembers, smaller
 from ..model.contacts import Row
 from ..model.islands import Island, IslandContacts
-from ..model.parameters.intervals import INTERVAL_DEPTH, INTERVAL_DEPTH_LEAST, INTERVAL_RETRY
+from ..model.parameters.intervals import (
+    CORRECTION_STEP,
+    INTERVAL_DEPTH,
+    INTERVAL_DEPTH_LEAST,
+    INTERVAL_RETRY,
+    OVERLAP_LEFT,
+)
 from ..model.scene import Scene
 from ..rows.build import normal_rate
-from .candidates import excess_way
+from .candidates import before_end, excess_way
 
 
 @nonallocating
@@ -35,6 +41,14 @@ def driven(A: Scene, isle: Island, ROWS: Rows[Row], n: int, m: int) -> bool:
         if ROWS[z].gap < -depth_limit(A, a, b):
             return True
     return False
+
+
+@nonallocating
+def left_to_lift(A: Scene, end: float) -> float:
+    """Depth, in parts of the smallest body, up to which contacts are not lifted at the end of an interval: OVERLAP_LEFT
+    at the end of the step. Within it contacts are lifted only if that correction, which moves no point by more than
+    CORRECTION_STEP, may not reach: what a wall that turns fast carries along sinks in each interval."""
+    return 0.5 * CORRECTION_STEP if before_end(A, end) else OVERLAP_LEFT
 
 
 @nonallocating

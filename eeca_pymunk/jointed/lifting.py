@@ -10,12 +10,12 @@ from ..arrays import FloatArray
 from ..compiled import kernel
 from ..contacts.correction import admissible, least_of, turn_by, unturn
 from ..contacts.works import against
-from ..islands.depths import driven
+from ..islands.depths import driven, left_to_lift
 from ..islands.intervals import contacts_at
 from ..islands.local import clear_places
 from ..model.contacts import JointedProblem
 from ..model.joints import Joints
-from ..model.parameters.intervals import OVERLAP_LEFT
+from ..model.parameters.intervals import CORRECTION_ROUND_OFF
 from ..model.parameters.joints import JOINTED_CORRECTION_SWEEPS
 from ..model.scene import Scene
 from ..rows.bounded import room_for_rows
@@ -79,8 +79,8 @@ def lift_at_cut(A: Scene, J: Joints, root: int, t: float) -> None:
 
 @kernel
 def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget: float, build: bool) -> float:
-    """Move the poses at the end of an island's motion out of each other, at a cost of at most `budget`; returns the
-    cost.
+    """Move the poses at the end of an island's motion out of each other, at a cost of at most `budget`, not at all if
+    that is below 0; returns the cost.
 
     It is -m a.D for displacements D, rotations included, and the energy that springs gain. D is along the joints; their
     errors of second order are then closed. A free island keeps its angular momentum: velocities at the end rotate by
@@ -93,7 +93,7 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget
         GAPS[i] = ROWS[i].gap + normal_rate(ROWS[i], WAY)
         deepest = min(deepest, GAPS[i])
     size = least_of(isle.EXTENT, n)
-    if deepest >= -OVERLAP_LEFT * size or not budget > 0.0:
+    if deepest >= -left_to_lift(A, end) * size or not budget >= 0.0:
         return 0.0
     NOTHING, INDEX = np.zeros_like(V), np.full(len(isle.IM), -1, np.int64)
     for g in range(len(groups.COMPONENT)):
@@ -110,7 +110,8 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget
     D = np.zeros_like(V)
     raise_gaps(JointedProblem(KEEP, C, room_for_rows(0, 0), m), n, GAPS, D, 1e-3 * -deepest)
     cost, part = -against(isle.ACC, isle.IM, isle.II, n, D), admissible(D, isle.EXTENT, n, size)
-    if cost * part > 0.5 * budget:  # the other half is for what closing joints costs; else `part` becomes smaller
+    round_off = CORRECTION_ROUND_OFF * against(np.abs(isle.ACC), isle.IM, isle.II, n, np.abs(D))
+    if cost * part > max(0.5 * budget, round_off):  # the other half is for what closing joints costs
         part = 0.5 * budget / cost
     STORED = np.zeros(len(groups.COMPONENT))
     # In an island that is not free no body is rotated.
@@ -130,7 +131,7 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget
         spent -= against(isle.ACC, isle.IM, isle.II, n, NEW - END)
         turn, x, y, spin, inertia = unturn(NEW, NEW - END, V, isle.IM, isle.II, ALL)
         spent += turn * spin + 0.5 * inertia * turn * turn
-        if spent <= budget and math.isfinite(spent):
+        if spent <= budget + round_off and math.isfinite(spent):
             turn_by(NEW, ALL, turn, x, y, V, 0)
             for g in range(len(groups.COMPONENT)):
                 s = groups.COMPONENT[g]

@@ -11,7 +11,7 @@ from ..contacts.counts import note_unmet, spend
 from ..contacts.geometry import gather_contacts
 from ..contacts.interval import make_contacts, recall, speeds
 from ..contacts.memory import remember_loads, shapes_of
-from ..islands.candidates import before_end, pairs_within
+from ..islands.candidates import pairs_within
 from ..islands.local import (
     clear_places,
     local_island,
@@ -173,8 +173,7 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     # Corrected at the end of the interval: within a short one, paths would be steep.
     WHERE, HELD = motion.END.copy(), np.zeros(m)
     if not conserves(ROWS, m):
-        if not before_end(A, t + h):
-            lift_island(A, J, interval, root, t + h, lost(interval, L), False)
+        lift_island(A, J, interval, root, t + h, lost(interval, L), False)
         HELD = project_velocities(A, J, interval, L, t + h, slow + pull * h)
     clear_places(A, MINE)
     first = COUNT.pushes

@@ -19,6 +19,7 @@ from eeca_pymunk.impacts.scene_memory import Laid
 from eeca_pymunk.model.bodies import POSE, VELOCITY
 from eeca_pymunk.model.contacts import Force, Problem
 from eeca_pymunk.model.islands import Island
+from eeca_pymunk.model.parameters.intervals import OVERLAP_LEFT
 
 from ..packed import Thing, World
 
@@ -130,8 +131,8 @@ class Pile:
         c, V, n, m = self.contacts, self.v, self.n, self.m
         if m > 0:
             problem, middle = Problem(c.ROWS, self.im, self.ii, self.pose, n, m), self.pose + 0.5 * h * V
-            budget = budget_of(c.ROWS, m, float(self.losses.sum()), 0.0)
-            lifting(problem, middle, c.VN, self.acc, h, self.extent, budget, c.JUMP)
+            budget = budget_of(c.ROWS, m, float(self.losses.sum()))
+            lifting(problem, middle, c.VN, self.acc, h, self.extent, budget, OVERLAP_LEFT, c.JUMP)
 
     def carried(self, vn: np.ndarray) -> float:
         """External work of the contacts, with velocities `vn` after the step."""
