@@ -23,6 +23,8 @@ from ..model.parameters.joints import (
     HASTE,
     JOINT_GAIN,
     LEAST_SOLUTIONS,
+    REDUNDANT_EPSILON,
+    REDUNDANT_MOST,
     REPAID,
 )
 from ..newton.effort import work_of_iteration
@@ -162,6 +164,7 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
     rung = ELASTIC_RUNG if yields else ORDER_4 if order == 4 and smooth(W) else WHOLE_STEP
     if rung != ORDER_4 or touched:
         forget_parts(W)
+    progress.most_epsilon = REDUNDANT_MOST
     while rung < RUNGS and not progress.effort > progress.limit:
         parts = 5 if rung == ORDER_4 else 1 if rung == ELASTIC_RUNG else 1 << rung if rung < 3 else ELASTIC_PARTS
         compliance = compliance_on(rung, h, yields, first.compliance)
@@ -174,5 +177,8 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
         again = cold != loops or (rung == ORDER_4 and recalls(W, h))
         restore_start(W)
         forget_parts(W)
-        rung, cold = rung if again else rung + 1, loops
+        tight = loops and rung == WHOLE_STEP and not again and progress.most_epsilon == REDUNDANT_MOST
+        rung, cold = rung if again or tight else rung + 1, loops
+        # Compliance makes rows independent by itself.
+        progress.most_epsilon = REDUNDANT_EPSILON if tight or rung >= ELASTIC_RUNG else REDUNDANT_MOST
     return LINEAR

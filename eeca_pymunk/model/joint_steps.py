@@ -93,6 +93,7 @@ class Progress(Record):
     share: float  # of `effort`, at which an interval gives up
     limit: float  # of `effort`, at which the step of a component gives up what its ladder has before linear rows
     hurry: float  # likewise, from which on limits land instead of being met at their instants
+    most_epsilon: float  # largest term on the diagonal of redundant rows (`..newton.solve`)
 
 
 class Parts(Record):

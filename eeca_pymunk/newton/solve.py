@@ -134,7 +134,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
         if fresh:
             if not built:
                 linearise(W, STEP, h, length, give, False, system, True)
-            epsilon = max(REDUNDANT_EPSILON, min(1e-2, worst)) if loops else 0.0
+            epsilon = max(REDUNDANT_EPSILON, min(progress.most_epsilon, worst)) if loops else 0.0
             system = factorise(W, STEP, h, length, give, system, epsilon)
             if system < 0:
                 return False

@@ -46,6 +46,9 @@ NEWTON_PROGRESS = work(0.03, "ratio of errors",
 NEWTON_FLOOR = round_off(1e-11, "of the component", "Error below which one that has not fallen twice is round-off.")
 NEWTON_ITERATIONS = work(25, "iterations", "Newton iterations of a step, at most.")
 REDUNDANT_EPSILON = round_off(1e-10, "of the diagonal", "Term added to the diagonal for rows that may be redundant.")
+REDUNDANT_MOST = work(0.01, "of the diagonal",
+    "The same while errors are large, at most: rows that contradict each other have small impulses. Where that is "
+    "slow, as with a load on bodies thousands of times lighter, a step is tried again with REDUNDANT_EPSILON.")
 CLOSING_EPSILON = round_off(1e-05, "of the diagonal", "Term added to the diagonal while joints that are apart close.")
 CLOSINGS = work(8, "iterations", "Iterations to close joints that are apart, at most.")
 REDUNDANT_PASSES = work(12, "number", "Refinements that remove the effect of REDUNDANT_EPSILON.")
