@@ -32,9 +32,10 @@ def on_disc(
     co, si = math.cos(turn), math.sin(turn)
     w1 = a * co * co + 2.0 * b * co * si + c * si * si
     w2 = a * si * si - 2.0 * b * co * si + c * co * co
-    gx, gy = a * x + b * y - ux, b * x + c * y - uy
-    g1, g2 = gx * co + gy * si, gy * co - gx * si
     w1, w2 = max(w1, 1e-300), max(w2, 1e-14 * w1, 1e-300)
+    # With the same w as below, so that what these iterations end at obeys the law, whatever the error of w: W is not
+    # symmetric over long intervals, and its symmetric part may have a negative eigenvalue.
+    g1, g2 = w1 * (x * co + y * si) - ux * co - uy * si, w2 * (y * co - x * si) - uy * co + ux * si
     p1, p2 = g1 / w1, g2 / w2
     if p1 * p1 + p2 * p2 > bound * bound:
         s = 0.0
