@@ -4,7 +4,8 @@ What acts from outside has a power that the scene and the step's own report boun
 
 * a contact of a kinematic body, or of shapes with a surface velocity: its impulse times the speed of the surface at its
   point, |J| |v|, for the impulse does the work J v on the other body. Where such a body has gone into others, it lifts
-  them out: at most the weight of all bodies times the deepest overlap, of the contacts or with that body before;
+  them out: at most the weight of all bodies times the deepest overlap, of the contacts or with that body before, and
+  what springs then store by that way of their ends;
 * a motor: `max_force` times the angle that it turns. Mostly that is the larger of the change of the angle and of dt
   times the largest relative spin, before or after the step. Impacts may turn it to and fro within the step: it never
   turns by more than dt times the largest spins that the energy of the scene allows (`Outside.fastest`);
@@ -74,6 +75,28 @@ def _per_root_energy(joint: pymunk.Constraint) -> list[float]:
     return found
 
 
+def _squeezed(space: pymunk.Space, depth: float) -> float:
+    """The most that springs can store more as each body is lifted by `depth`: k d (x + d/2) for a change d of x. A body
+    turns by less than depth over its radius of gyration, as the least displacement in the measure of masses does."""
+    total = 0.0
+    for spring in space.constraints:
+        if isinstance(spring, pymunk.DampedSpring):
+            ends = spring.a.local_to_world(spring.anchor_a), spring.b.local_to_world(spring.anchor_b)
+            stretched, way = abs(ends[0].get_distance(ends[1]) - spring.rest_length), 0.0
+            for body, anchor in ((spring.a, spring.anchor_a), (spring.b, spring.anchor_b)):
+                if body.body_type == pymunk.Body.DYNAMIC:
+                    arm = (anchor - body.center_of_gravity).length
+                    way += depth * (1.0 + arm * math.sqrt(body.mass / body.moment))
+        elif isinstance(spring, pymunk.DampedRotarySpring):
+            stretched = abs(spring.a.angle - spring.b.angle - spring.rest_angle)
+            turned = [b for b in (spring.a, spring.b) if b.body_type == pymunk.Body.DYNAMIC]
+            way = sum(depth * math.sqrt(body.mass / body.moment) for body in turned)
+        else:
+            continue
+        total += spring.stiffness * way * (stretched + 0.5 * way)
+    return total
+
+
 def _deepest(space: pymunk.Space, box: pymunk.Body) -> float:
     """Deepest overlap of the shapes of a body with others. The sign of the distance depends on the order of the two
     shapes; only what overlaps has points."""
@@ -141,4 +164,5 @@ class Outside:
         fast = self.belt + carried * (self.speed + self.spin * far)
         total = float(np.hypot(report.impulse, report.friction) @ fast)
         weight = sum(b.mass for b in self.space.bodies if b is not self.box) * self.space.gravity.length
-        return total + weight * max(self.depth, -min(contacts.gap, default=0.0))
+        depth = max(self.depth, -min(contacts.gap, default=0.0))
+        return total + weight * depth + _squeezed(self.space, depth)

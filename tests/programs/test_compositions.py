@@ -14,7 +14,7 @@ import pytest
 
 import eeca_pymunk as ep
 
-from .compositions import Composition, Found
+from .compositions import Composition, Found, stored
 from .outside import Outside
 from .seeds import play
 
@@ -162,6 +162,23 @@ def test_work_from_nowhere_is_found(joints: bool) -> None:
 def test_joints_bring_no_more_energy_than_their_bounds_do(first: int) -> None:
     """What joints book as external is at most `max_force` times the way, and 0 without such a joint."""
     assert play(partial(Composition, joints=True), range(first, first + 20), 10) > 0
+
+
+def test_a_container_that_lifts_a_body_against_a_spring_does_the_work_that_the_spring_stores() -> None:
+    """Without gravity, and though a step that ends early has no impulse to report for it (random scene 23000263)."""
+    space, box = pymunk.Space(), pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    box.velocity = 0.0, 1e-6
+    body = pymunk.Body(1.0, math.inf)
+    body.position = 0.0, 0.5
+    disk = pymunk.Circle(body, 0.6)
+    spring = pymunk.DampedSpring(space.static_body, body, (0.0, 2.0), (0.0, 0.0), 2.0, 100.0, 0.0)
+    space.add(box, body, pymunk.Segment(box, (-9.0, 0.0), (9.0, 0.0), 0.0), disk, spring)
+    outside, stepper, before = Outside(space, box, False), ep.EECA(space), stored(space)
+    report = stepper.step(1e-3)
+    assert report.ledger is not None
+    assert body.position.y > 0.5
+    assert 0.0 < report.ledger.external <= outside.most(report, 1e-3, True)
+    assert report.ledger.external == pytest.approx(ep.measure(space).kinetic + stored(space) - before, rel=1e-9)
 
 
 @pytest.mark.parametrize("kind", ["disk", "box"])
