@@ -89,6 +89,7 @@ class Component(Record):
     impulses: int  # number of unknowns beside the matrix
     dual_size: int  # of its matrix in the rows alone: size and half-width
     dual_band: int
+    dual_rows: int  # of its rows those that act, in the last factors
     rigid: int  # what a dual system is taken for: 2 everything, 1 what happens at an instant, 0 nothing
     taut: int  # 1 if its loops held by their pull in the last step (`..joints.taut`)
     boxes: int  # most rows of bounded impulses that may act, if few enough for `..newton.boxes`; else 0

@@ -18,6 +18,29 @@ STRIDE = 6  # numbers of scratch in MORE for each row: its J, and its G over the
 
 
 @inlined
+def number_rows(W: Workspace) -> int:
+    """Number the rows that act (`JointStep.dual`), in the order of the plan: limits on which no joint stands have no
+    place in the matrix. Returns how many they are. PIVOTS is scratch."""
+    hinge, link, numbers, size = W.J.HINGE, W.link, W.J.PIVOTS, W.J.COMPONENT[W.s].dual_size
+    for i in range(size):
+        numbers[i] = 0
+    for k in range(W.joints):
+        for r in range(link[k].rows):
+            if hinge[k].weight[r] != 0.0:
+                numbers[link[k].first_dual + r] = 1
+    count = 0
+    for i in range(size):
+        acting = numbers[i]
+        numbers[i] = count
+        count += acting
+    for k in range(W.joints):
+        # Rows that do not act come after those of their joint that do.
+        if link[k].rows > 0:
+            hinge[k].dual = numbers[link[k].first_dual]
+    return int(count)
+
+
+@inlined
 def factor_dual(W: Workspace, slopes: bool, add: float) -> bool:
     """LU factors of S + `add` in `matrix`; False if there are none that can be trusted.
 
@@ -29,13 +52,13 @@ def factor_dual(W: Workspace, slopes: bool, add: float) -> bool:
     PIVOTS are scratch, STRIDE and 1 times the rows.
     """
     hinge, link, local, matrix, more, numbers = W.J.HINGE, W.link, W.J.LOCAL, W.J.MATRIX, W.J.MORE, W.J.PIVOTS
-    size, band = W.J.COMPONENT[W.s].dual_size, W.J.COMPONENT[W.s].dual_band
+    size, band = number_rows(W), W.J.COMPONENT[W.s].dual_band
+    W.J.COMPONENT[W.s].dual_rows = size
     width = 2 * band + 1
     for i in range(size * width):
         matrix[i] = 0.0
-    for k in range(W.joints):
-        for r in range(link[k].rows):
-            matrix[(link[k].first_dual + r) * width + band] = add if hinge[k].weight[r] != 0.0 else 1.0
+    for i in range(size):
+        matrix[i * width + band] = add
     for i in range(W.bodies):
         freedoms = local[i].freedoms
         if freedoms == 0:
@@ -58,7 +81,7 @@ def factor_dual(W: Workspace, slopes: bool, add: float) -> bool:
                 more[p], more[p + 1], more[p + 2] = J[r, 3 * end], J[r, 3 * end + 1], J[r, 3 * end + 2]
                 more[p + 3], more[p + 4] = G[r, 3 * end] * a, G[r, 3 * end + 1] * b
                 more[p + 5] = G[r, 3 * end + 2] * c
-                numbers[count] = link[k].first_dual + r
+                numbers[count] = hinge[k].dual + r
                 count += 1
             one = link[k].following[end]
         for m in range(count):
@@ -97,7 +120,8 @@ def back_dual(W: Workspace, right: FloatArray) -> None:
     for k in range(W.joints):
         rows, row = link[k].rows, link[k].first_row
         for r in range(rows):
-            more[link[k].first_dual + r] = right[row + r]
+            if hinge[k].weight[r] != 0.0:
+                more[hinge[k].dual + r] = right[row + r]
         for end in range(2):
             i = link[k].body[end]
             first, freedoms = local[i].column, local[i].freedoms
@@ -108,12 +132,13 @@ def back_dual(W: Workspace, right: FloatArray) -> None:
                 if hinge[k].weight[r] == 0.0:
                     continue
                 at, G = 3 * end, hinge[k].frozen_slopes
-                more[link[k].first_dual + r] -= G[r, at] * x + G[r, at + 1] * y + G[r, at + 2] * w
-    substitute(W.J.MATRIX, W.J.COMPONENT[W.s].dual_size, W.J.COMPONENT[W.s].dual_band, more, 0)
+                more[hinge[k].dual + r] -= G[r, at] * x + G[r, at + 1] * y + G[r, at + 2] * w
+    substitute(W.J.MATRIX, W.J.COMPONENT[W.s].dual_rows, W.J.COMPONENT[W.s].dual_band, more, 0)
     for k in range(W.joints):
         rows, row = link[k].rows, link[k].first_row
         for r in range(rows):
-            right[row + r] = more[link[k].first_dual + r]
+            if hinge[k].weight[r] != 0.0:
+                right[row + r] = more[hinge[k].dual + r]
         for end in range(2):
             i = link[k].body[end]
             first, freedoms = local[i].column, local[i].freedoms
@@ -123,7 +148,7 @@ def back_dual(W: Workspace, right: FloatArray) -> None:
             for r in range(rows):
                 if hinge[k].weight[r] == 0.0:
                     continue
-                at, push, J = 3 * end, more[link[k].first_dual + r], hinge[k].frozen_rows
+                at, push, J = 3 * end, more[hinge[k].dual + r], hinge[k].frozen_rows
                 x += push * J[r, at]
                 y += push * J[r, at + 1]
                 w += push * J[r, at + 2]

@@ -15,7 +15,7 @@ BOX_SECULAR = work(40, "iterations", "Iterations for the multiplier of a frictio
 CONDENSED_PASSES = work(3, "number", "Refinements of a condensed solution.")
 REFINEMENT_WORK = work(300.0, "operations", "Work of each of them for the rows of a joint.")
 STIFFEST = round_off(10000000.0, "of the bodies' inertia", "Stiffness of rows in a condensed system, at most.")
-CONDENSED_BAND = work(8, "rows", "Half-width of the band from which on rows are taken as views.")
+CONDENSED_BAND = work(16, "rows", "Half-width of the band from which on rows are taken as views.")
 JOINT_SPEED_ROUND_OFF = round_off(1e-14, "of the speeds", "Velocity along a joint row that is round-off.")
 JOINT_SPEED_LEFT = heuristic(0.01, "of the speeds along a row",
     "Velocity along a joint row up to which it is an error of steps and not an edit to be corrected: a stepper that "
