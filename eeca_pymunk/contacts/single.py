@@ -48,11 +48,10 @@ def kinetic(BODY: Rows[Body], i: int) -> float:
 def touches(A: Scene, a: int, b: int, t: float) -> bool:
     """Whether shapes a and b touch at instant t, up to round-off."""
     tolerance = gap_round_off(A, a, b)
-    if b < A.LIST.shape[0]:
-        if far_apart(A, a, b, t, tolerance):
-            return False
-        if max(a, b) < A.COUNT.disks:
-            return True
+    if far_apart(A, a, b, t, tolerance):
+        return False
+    if max(a, b) < A.COUNT.disks:
+        return True
     return gap(A, a, b, t)[0] <= tolerance
 
 

@@ -51,7 +51,7 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
     n, p = len(MINE), 0
     found = np.empty((4 * n + 8, 2), np.int64)
     BODY, LINK, STATE = A.BODY, A.LINK, A.STATE
-    together = A.COUNT.together > 0
+    together, since = A.COUNT.together > 0, A.PAR.stamp - 1.0
     for q in range(n):
         i = MINE[q]
         own = norm(BODY[i].vx, BODY[i].vy) + abs(BODY[i].spin) * BODY[i].extent
@@ -70,14 +70,12 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                 reach = 1.1 * (speed * h + A.PAR.pulled * h * h) + TOUCH * small
                 if together:
                     reach = travel_bound(A, i, h) + travel_bound(A, j, h) + TOUCH * small
-                if o < A.LIST.shape[0] and far_apart(A, s, o, t, reach):
+                if far_apart(A, s, o, t, reach):
                     continue
-                force, load = 0.0, 0.0
-                if lossy and not together:
-                    force, load = remembered_force(A, s, o, A.PAR.stamp - 1.0)
                 # In a large island all loaded contacts remain candidates: a hit acts on a few bodies at once, and
                 # reaches the others through the interval.
-                if n < LARGE_ISLAND or force <= 0.0:
+                may_be_loaded = lossy and not together
+                if not (n >= LARGE_ISLAND and may_be_loaded and remembered_force(A, s, o, since)[0] > 0.0):
                     g, u, closing, _, mass = approach(A, s, o, t)
                     if not together:
                         if not busy:
@@ -91,6 +89,7 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                         if not persists(A, s, o, t, False):
                             continue
                     elif g > TOUCH * small and not (together or busy):
+                        load = remembered_force(A, s, o, since)[1] if lossy else 0.0
                         if not hardly_bounces(e, u, max(closing, load / mass) * h):
                             continue
                 if p == found.shape[0]:

@@ -33,7 +33,7 @@ def hold_penetrating(A: Scene) -> None:
                     continue
                 if barred(A, s, o) or law(A, s, o)[0] >= 1.0:
                     continue
-                if o < A.LIST.shape[0] and far_apart(A, s, o, 0.0, 0.0):
+                if far_apart(A, s, o, 0.0, 0.0):
                     continue
                 g, u, _, _, _ = approach(A, s, o, 0.0)
                 if g >= -INITIAL_PENETRATION * smaller(A, s, o) or u * dt > -g:
