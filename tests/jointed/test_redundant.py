@@ -49,3 +49,21 @@ def held(order: tuple[int, ...]) -> float:
 def test_pins_in_any_order_hold_the_same_rigid_body() -> None:
     angles = [held(order) for order in permutations(range(4))]
     assert max(angles) == pytest.approx(min(angles), abs=1e-11)
+
+
+def test_what_is_thousands_of_times_heavier_bounces_off_redundant_welds() -> None:
+    """Its own mobility is a small part of that of the light body, which cannot move: as if it were the error of the
+    response, the contact was left out, and the same impact repeated for ever (random scene 26003688)."""
+    space = pymunk.Space()
+    light, heavy = pymunk.Body(3.5, 0.34), pymunk.Body(5900.0, 115.0)
+    heavy.position, heavy.velocity = (-2.0, 0.0), (5.0, 0.0)
+    shapes = pymunk.Circle(light, 0.5), pymunk.Circle(heavy, 0.5)
+    for shape in shapes:
+        shape.elasticity = 1.0
+    space.add(light, heavy, *shapes, pymunk.PivotJoint(space.static_body, light, (0, 0)))
+    space.add(*(pymunk.GearJoint(space.static_body, light, 0, 1) for _ in range(2)))
+    space.add(pymunk.DampedSpring(light, heavy, (0, 0), (0, 0), 2.0, 1e-6, 0.0))
+    stepper = ep.EECA(space)
+    for _ in range(30):
+        assert stepper.step(DT).converged
+    assert heavy.velocity.x == pytest.approx(-5.0, rel=1e-6)

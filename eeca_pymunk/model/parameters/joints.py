@@ -77,7 +77,7 @@ MOTOR_OFF = round_off(1e-9, "of the speed, and of its bound",
 BOUNDED_SWEEPS = work(30, "sweeps", "Sweeps over bounded joint rows and contacts.")
 STRAIGHT_CHAIN = round_off(1e-12, "of length and coordinates",
     "Slack of a chain of joints between fixed points up to which it cannot move.")
-STRUT = round_off(0.001, "of the free mobility",
+STRUT = round_off(1e-6, "of the free mobility",
     "Mobility of a contact between two bodies of one component that is the error of its response where joints are "
     "redundant: the contact is left out.")
 STRUT_BETWEEN = round_off(1e-07, "of the free mobility",
