@@ -1,5 +1,5 @@
 """Penetration correction: displacements of bodies at the end of an interval, whose cost in energy is deducted from the
-losses of the same island in the step.
+losses of the same island and interval.
 
 delta = M^-1 G^T mu with 0 <= mu _|_ g + A mu >= 0 for the gaps g at the end, scaled so that the potential energy it
 costs is at most the losses, and no point of a body moves farther than CORRECTION_STEP of the size of the smallest one:
@@ -110,10 +110,10 @@ def admissible(D: FloatArray, EXTENT: FloatArray, n: int, size: float) -> float:
 
 
 @nonallocating
-def budget_of(ROWS: Rows[Row], m: int, lost: float) -> float:
-    """Energy that `lifting` of m contacts may spend, of the energy `lost`. Elastic contacts have none; what they seem
-    to lose is round-off."""
-    return -1.0 if conserves(ROWS, m) else lost
+def budget_of(ROWS: Rows[Row], m: int, lost: float, owed: float) -> float:
+    """Energy that `lifting` may spend: the losses `lost` of m contacts, less the energy `owed`. Elastic contacts have
+    none; what they seem to lose is round-off."""
+    return -1.0 if conserves(ROWS, m) else lost - owed
 
 
 @nonallocating

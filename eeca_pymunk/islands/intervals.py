@@ -153,8 +153,8 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
             count_solve(A, n, p, m, OUT[0])
             return AGAIN, h / far
         if m > 0 and OUT[0].at_rest == 0:
-            middle, lost = isle.POSE + 0.5 * h * V, A.RESTING[root].lost + OUT[0].restitution + OUT[0].friction
-            payable = find_lifts(A, isle, contacts, n, m, middle, VN, h, lost, payable, t)
+            middle, lost = isle.POSE + 0.5 * h * V, OUT[0].restitution + OUT[0].friction
+            payable = find_lifts(A, isle, contacts, n, m, middle, VN, h, lost, A.RESTING[root].lost, payable, t)
         note_lock(A, OUT[0])
     at_rest = OUT[0].at_rest > 0
     if OUT[0].residual > OUT[0].tolerance:
@@ -201,7 +201,7 @@ def find_lifts_at_cut(A: Scene, root: int, t: float) -> None:
     if m > 0:
         rates(contacts.ROWS, isle.V, m)
         lost = A.RESTING[root].lost
-        payable = find_lifts(A, isle, contacts, n, m, isle.POSE, isle.V, 0.0, lost, math.inf, A.PAR.dt)
+        payable = find_lifts(A, isle, contacts, n, m, isle.POSE, isle.V, 0.0, lost, 0.0, math.inf, A.PAR.dt)
         A.RESTING[root].payable = payable
     set_lifts(A, MINE, contacts.JUMP)
 
@@ -209,19 +209,21 @@ def find_lifts_at_cut(A: Scene, root: int, t: float) -> None:
 @kernel
 def find_lifts(
     A: Scene, isle: Island, contacts: IslandContacts, n: int, m: int, POSE: FloatArray, VN: FloatArray, h: float,
-    lost: float, payable: float, t: float,
+    lost: float, before: float, payable: float, t: float,
 ) -> float:  # fmt: skip
     """Find the penetration corrections JUMP at the end of an interval h from instant t, with poses POSE in its middle
     and velocities VN at its end. Returns the cost up to which losses pay (`Rest.payable`).
 
-    Corrections may cost the energy that the island has `lost` in the step so far: what goes deeper in one interval has
-    often lost its energy in another one. They may cost any energy where a body without mobility does the work beyond
-    `payable`: it has been placed into others (payable = 0), or drives into them.
+    Corrections may cost the energy `lost` in the interval, less what was owed `before`. What was lost before in the
+    step pays, too, in a free island, where sinking itself has released the kinetic energy that lifting costs, as the
+    angular momentum stays; on supports, impacts would stir pyramids again and again by that. Corrections may cost any
+    energy where a body without mobility does the work beyond `payable`: it has been placed into others (payable = 0),
+    or drives into them; then, too, all losses of the step pay, as bodies have also gone deeper by their own motion.
     """
     ROWS = contacts.ROWS
-    budget = budget_of(ROWS, m, lost)
+    budget = budget_of(ROWS, m, lost, -before if len(isle.WHO) == n else max(-before, 0.0))
     if driven(A, isle, ROWS, n, m):
-        payable = min(payable, max(budget, 0.0))
+        payable = min(payable, max(budget_of(ROWS, m, lost, -before), 0.0))
     if payable < math.inf:
         budget = math.inf
     problem = Problem(ROWS, isle.IM, isle.II, isle.POSE, n, m)

@@ -131,7 +131,7 @@ class Pile:
         c, V, n, m = self.contacts, self.v, self.n, self.m
         if m > 0:
             problem, middle = Problem(c.ROWS, self.im, self.ii, self.pose, n, m), self.pose + 0.5 * h * V
-            budget = budget_of(c.ROWS, m, float(self.losses.sum()))
+            budget = budget_of(c.ROWS, m, float(self.losses.sum()), 0.0)
             lifting(problem, middle, c.VN, self.acc, h, self.extent, budget, OVERLAP_LEFT, c.JUMP)
 
     def carried(self, vn: np.ndarray) -> float:

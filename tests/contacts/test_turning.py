@@ -192,7 +192,7 @@ def test_what_lies_on_a_roller_turns_with_its_surface(dt: float, unit: float) ->
 def test_a_drum_keeps_what_it_carries(held: bool, angle: float, x: float, unit: float) -> None:
     """Walls that impulses move, `held` by a pivot: boxes sink by the tangents of the middle, from .8 rad a step on by
     more than the correction at the end of the step moves them, and corrections lift them before. Without a pivot that
-    costs energy, as the angular momentum stays: what has been lost pays, so that depths of .03 remain."""
+    costs energy, as the angular momentum stays: what was lost in the step pays."""
     space, drum = pymunk.Space(), pymunk.Body(1e4, 1e6 * unit * unit)
     drum.angular_velocity = SPIN
     corners = [(-HALF, -HALF), (HALF, -HALF), (HALF, HALF), (-HALF, HALF), (-HALF, -HALF)]
