@@ -186,7 +186,8 @@ def sides_of(world: World, loop: EventLoop) -> Sides | None:
     known = loop.sides if loop.thin else None
     if known is not None and not (known["key"] > 0).any():
         known = None
-    return Sides(world, known) if known is not None or _that_matter(world, False) else None
+    kinematic = len(world.BODY) - 1 > world.dynamic  # the test of shapes costs more
+    return Sides(world, known) if known is not None or (kinematic and _that_matter(world, False)) else None
 
 
 def _outline(record: ShapeRecord | None) -> object:
