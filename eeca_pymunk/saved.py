@@ -120,13 +120,12 @@ class Sides:
     that overlaps with them are not corrected as if they were just placed there.
     """
 
-    def __init__(self, world: World, known: Rows[Side] | None) -> None:
-        """`known`: the sides; None if only kinematic bodies matter."""
-        sided = known is not None
-        self._sided, self._known = sided, _NO_SIDES if known is None else known.copy()
-        shapes, owner = world.shapes, world.owner
-        # Row, shape, place of the body and record of each shape that matters.
-        self._shapes = [(k, shapes[k], int(owner[k]), world.records[shapes[k]]) for k in _that_matter(world, sided)]
+    def __init__(self, world: World, known: Rows[Side] | None, matter: Sequence[int]) -> None:
+        """`known`: the sides; None if only kinematic bodies matter.  `matter`: the rows of shapes that do."""
+        self._sided, self._known = known is not None, _NO_SIDES if known is None else known.copy()
+        shapes, owner = world.shapes, world.owner.tolist()
+        # Row, shape, place of the body and record of each.
+        self._shapes = [(k, shapes[k], owner[k], world.records[shapes[k]]) for k in matter]
         self._count, self._bodies = len(world.shapes), world.bodies.items
         self._left: list[list[float]] = world.STATES[WRITTEN, :, :3].tolist()
 
@@ -147,9 +146,9 @@ class Sides:
 
     def recall(self, world: World, loop: EventLoop) -> None:
         """Write the sides into the loop of the present world, which has taken no step."""
-        records, moves, matter = world.records, self._moves(world), _that_matter(world, self._sided)
+        records, owner, moves = world.records, world.owner.tolist(), self._moves(world)
+        matter = _that_matter(world, self._sided)
         places = {world.shapes[k]: k for k in matter}
-        owner = {k: int(world.owner[k]) for k in matter}
         new_rows = [-1] * self._count  # of each old row of SHAPE; -1 if its sides are not kept
         for k, shape, i, before in self._shapes:
             place = places.get(shape, -1)
@@ -160,7 +159,7 @@ class Sides:
                 new_rows[k] = place
         same, rows = set(new_rows), world.IDS[BODY_ROW].tolist()
         kept = {owner[place] for place in same if place >= 0}
-        changed = {i for place, i in owner.items() if place not in same} if kept else kept
+        changed = {owner[place] for place in matter if place not in same} if kept else kept
         at = [i for i in kept if rows[i] >= 0 and (i not in changed if rows[i] >= world.dynamic else self._sided)]
         if at:
             nudged = {i for i, move in moves.values() if move > 0.0}
@@ -186,8 +185,10 @@ def sides_of(world: World, loop: EventLoop) -> Sides | None:
     known = loop.sides if loop.thin else None
     if known is not None and not (known["key"] > 0).any():
         known = None
-    kinematic = len(world.BODY) - 1 > world.dynamic  # the test of shapes costs more
-    return Sides(world, known) if known is not None or (kinematic and _that_matter(world, False)) else None
+    if known is None and len(world.BODY) - 1 <= world.dynamic:  # no kinematic body: most spaces
+        return None
+    matter = _that_matter(world, known is not None)
+    return Sides(world, known, matter) if matter else None
 
 
 def _outline(record: ShapeRecord | None) -> object:

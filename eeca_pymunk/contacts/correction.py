@@ -4,7 +4,8 @@ losses of the same island and interval.
 delta = M^-1 G^T mu with 0 <= mu _|_ g + A mu >= 0 for the gaps g at the end, scaled so that the potential energy it
 costs is at most the losses, and no point of a body moves farther than CORRECTION_STEP of the size of the smallest one:
 so the correction gives no energy, no body passes through a wall by it, and gaps stay about linear in the displacements.
-Gaps above -OVERLAP_LEFT of the size are not corrected; within a step, none that one correction at its end will reach.
+Gaps above -OVERLAP_LEFT of the size are not corrected; within a step only those are that the correction at its end may
+not reach (`..islands.depths.left_to_lift`).
 
 Displacements change the orbital angular momentum by sum m delta x v. If an island is free (without bodies that impulses
 do not move), a common rotation of its velocities about the centre of mass removes that change.

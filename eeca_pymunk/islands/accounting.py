@@ -184,7 +184,7 @@ def hold_sides(A: Scene, i: int, end: float) -> None:
         for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number if A.CORNER[4 * s].thin > 0 else 0):
             o = int(A.POOL[w])
             reach = own + lift_way(A, A.LINK[o].owner)
-            if not remembers(A, s, o) or (o < A.LIST.shape[0] and far_apart(A, s, o, end, reach)):
+            if not remembers(A, s, o) or far_apart(A, s, o, end, reach):
                 continue
             g, nx, ny, _, _ = gap(A, s, o, end)
             if g <= reach:

@@ -214,16 +214,18 @@ def find_lifts(
     """Find the penetration corrections JUMP at the end of an interval h from instant t, with poses POSE in its middle
     and velocities VN at its end. Returns the cost up to which losses pay (`Rest.payable`).
 
-    Corrections may cost the energy `lost` in the interval, less what was owed `before`. What was lost before in the
-    step pays, too, in a free island, where sinking itself has released the kinetic energy that lifting costs, as the
-    angular momentum stays; on supports, impacts would stir pyramids again and again by that. Corrections may cost any
-    energy where a body without mobility does the work beyond `payable`: it has been placed into others (payable = 0),
-    or drives into them; then, too, all losses of the step pay, as bodies have also gone deeper by their own motion.
+    The energy `lost` in the interval, less what was owed `before`, pays. What was lost before in the step pays too
+
+    * in a free island: lifting costs kinetic energy there, as the angular momentum stays, and sinking has released it;
+    * where a body without mobility is driven into others, which have also gone deeper by their own motion.
+
+    Elsewhere impacts would pay, and stir pyramids again and again. A body without mobility that is driven into others,
+    or was placed into them (payable = 0), does the work beyond `payable`.
     """
-    ROWS = contacts.ROWS
-    budget = budget_of(ROWS, m, lost, -before if len(isle.WHO) == n else max(-before, 0.0))
-    if driven(A, isle, ROWS, n, m):
-        payable = min(payable, max(budget_of(ROWS, m, lost, -before), 0.0))
+    ROWS, drives = contacts.ROWS, driven(A, isle, contacts.ROWS, n, m)
+    budget = budget_of(ROWS, m, lost, -before if drives or len(isle.WHO) == n else max(-before, 0.0))
+    if drives:
+        payable = min(payable, max(budget, 0.0))
     if payable < math.inf:
         budget = math.inf
     problem = Problem(ROWS, isle.IM, isle.II, isle.POSE, n, m)
