@@ -6,7 +6,9 @@ shapes, which are kept when the space is read again.
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Iterator, Sequence
+from io import BytesIO
 
 import numpy as np
 
@@ -39,7 +41,9 @@ class Saved:
     """The event loop of a world and everything else that determines its next step; pickled with the space.
 
     It is used only if all shapes, bodies and joints of the unpickled space are equal to those it has recorded, and only
-    by the version of the package that made it, since arrays of other versions may differ in size.
+    by the version of the package that made it, since classes and arrays of other versions may differ. A pickle
+    therefore has the version, the objects that are shared with the space, and all else as bytes, which are read only
+    after versions were compared.
     """
 
     def __init__(self, world: World, method: EventLoop, decisions: Decisions) -> None:
@@ -51,13 +55,32 @@ class Saved:
         self._rates = {} if joints is None else joints.rates
         # After edits of joints that no step has used yet, the copy reads all joints again.
         self._fresh = joints is None or not (joints.replan or joints.edited)
-        self._made_by = sources_hash()
+        self._pickled: tuple[str, Sequence[object], bytes] | None = None  # in a copy, until `resume`
+
+    def __getstate__(self) -> tuple[str, Sequence[object], bytes]:
+        if self._pickled is not None:
+            return self._pickled
+        shared = [*self.items, *self.shapes, *self._joints]
+        places = {id(item): k for k, item in enumerate(shared)}
+        packed = BytesIO()
+        pickler = pickle.Pickler(packed, pickle.HIGHEST_PROTOCOL)
+        pickler.persistent_id = lambda item: places.get(id(item))  # type: ignore[method-assign]
+        pickler.dump(self.__dict__)
+        return sources_hash(), shared, packed.getvalue()
+
+    def __setstate__(self, state: tuple[str, Sequence[object], bytes]) -> None:
+        self._pickled = state
 
     def resume(self, world: World, decisions: Decisions) -> bool:
         """Write the saved results into a world that was just read, and into the stepper's `decisions`. If the world is
         not equal to the saved one, change nothing and return False."""
-        if getattr(self, "_made_by", "") != sources_hash():
-            return False
+        if self._pickled is not None:
+            made_by, shared, packed = self._pickled
+            if made_by != sources_hash():
+                return False
+            unpickler = pickle.Unpickler(BytesIO(packed))
+            unpickler.persistent_load = shared.__getitem__  # type: ignore[method-assign]
+            self.__dict__.update(unpickler.load())
         scene = self.method.scene
         row = world.bodies.row
         if not self._fresh or row.keys() != set(self.items) or world.shapes != self.shapes:
