@@ -90,6 +90,7 @@ ENTRIES = {
     "joints.workspace:plan_components": "{Joints} Body[1] i8[1]",
     "joints.pinned:find_pinned": "Body[1] Body[1] Joint[1] i8[1] Shape[1] Link[1] Pinned[1]",
     "joints.pinned:hold": "Pinned[1] Body[1] bool",
+    "joints.partners:read_partners": "f8[1] i8[1] f8[2] f8[2] Body[1] Joint[1] i8",
     # Only tests call this, which solves single islands: some hundred times slower as plain Python.
     "contacts.interval:step_island": "{Scene} {Island} {IslandContacts} i8 f8 i8 f8 f8 f8",
     "contacts.memory:copy_recent": "i8[1] Force[1] Count i8[1] Force[1] f8",

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cached_property
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ import pymunk
 from ..arrays import FloatArray, IntArray
 from ..compiled.records import over, selected
 from ..impacts.scene_memory import Linkage
-from ..model.joints import EDITED, Joint
+from ..model.joints import Joint
 from ..reentry import FunctionsCalled
 from .constraint_impulses import ConstraintImpulses
 from .constraints import read
@@ -56,13 +55,11 @@ class JointRows(Listing):
         self.joint = over(Joint, self._memory)
         self._impulses = ConstraintImpulses(space, self.joint)
         others = [body for body in self.bodies if body not in row]
-        self.partners: Partners = Partners(tuple(others), space, None if past is None else past.partners)
         self._row_of = {**row, **{body: n + i for i, body in enumerate(others)}}
         self.joint["body"] = np.array([self._row_of[body] for body in self.bodies], np.int64)[self.ends]
         for j in self.fresh:
             self.values[j].put(self._memory, j, *self.joint["body"][j].tolist())
-        if self.partners.changed:
-            self.touch(n + i for i in self.partners.changed)
+        self.partners: Partners = Partners(others, space, self.joint, n, None if past is None else past.partners)
         self._edits = Edits(self.row)
         self._timestamp = private.timestamp(space)
         self.rates: dict[pymunk.Constraint, Rate] = {} if past is None else past.rates
@@ -85,15 +82,6 @@ class JointRows(Listing):
     def linkage(self) -> Linkage:
         """The arrays that the event loop takes."""
         return Linkage(self.joint, self.partners.PARTNER, self.partners.still)
-
-    @cached_property
-    def _at(self) -> dict[int, list[int]]:
-        """The joints (rows) of each body (row)."""
-        of: dict[int, list[int]] = {}
-        for j, pair in enumerate(self.joint["body"].tolist()):
-            for row in pair:
-                of.setdefault(row, []).append(j)
-        return of
 
     def refresh(self) -> bool:
         """Read edited constraints again; returns whether a new plan of components is needed."""
@@ -192,10 +180,8 @@ class JointRows(Listing):
                 spring has not returned a finite number.
         """
         self.refresh()
-        if self.partners.outside and (moved := self.partners.read()):
-            self.touch([self._n + i for i in moved])
-            for i in moved:
-                self.ends_moved |= bool(self.partners.still[i])
+        if self.partners.outside and self.partners.read() > 0:
+            self.ends_moved = True
         if self.functions:
             with FunctionsCalled(self.space):
                 for j in self.functions:
@@ -219,13 +205,6 @@ class JointRows(Listing):
         for k, i in enumerate(owner.tolist() if self.parted else ()):
             of.setdefault(bodies[i], []).append(k)
         return {(min(i, j), max(i, j)) for a, b in self.parted for i in of.get(a, ()) for j in of.get(b, ())}
-
-    def touch(self, rows: Iterable[int]) -> None:
-        """Mark as EDITED the joints of bodies (rows) that the program has moved or whose velocity it has set."""
-        touched = self.joint["touched"]
-        for row in rows:
-            for j in self._at.get(row, ()):
-                touched[j] = EDITED
 
     def write(self) -> None:
         """Write notches of ratchets, and let `constraint.impulse` return the impulses of the step."""

@@ -207,15 +207,13 @@ def test_a_function_that_is_pymunks_again_is_forgotten(name: str) -> None:
     assert read(body) is own
 
 
-def test_poses_of_bodies_that_joints_hold() -> None:
+def test_centres_and_kinds_of_bodies_that_joints_hold() -> None:
     body = pymunk.Body(2.0, 1.0)
-    body.position, body.angle, body.center_of_gravity = (1.0, 2.0), 0.5, (0.25, 0.0)
-    body.velocity, body.angular_velocity = (3.0, 4.0), 5.0
-    place = (body.position.x, body.position.y)
-    assert private_joints.pose_and_motion(body) == (*place, 0.5, 0.0, 0.0, 0.0, 0.25, 0.0)
-    body.body_type = pymunk.Body.KINEMATIC
-    body.velocity, body.angular_velocity = (3.0, 4.0), 5.0
-    assert private_joints.pose_and_motion(body)[3:6] == (3.0, 4.0, 5.0)
+    body.center_of_gravity = (0.25, 1.5)
+    kinds = {pymunk.Body.DYNAMIC: 0.0, pymunk.Body.KINEMATIC: 1.0, pymunk.Body.STATIC: -1.0}
+    for kind, number in kinds.items():
+        body.body_type = kind
+        assert private_joints.centre_and_kind(body) == (0.25, 1.5, number)
 
 
 def test_bodies_that_move_on() -> None:

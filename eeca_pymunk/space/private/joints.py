@@ -59,16 +59,12 @@ def law_of(spring: Any) -> Callable[[Any, float], float] | None:
     return law
 
 
-def pose_and_motion(body: pymunk.Body) -> tuple[float, ...]:
-    """Position, angle, velocity, spin and centre of gravity of a body; velocities are 0 unless it is kinematic. The
-    public properties take three times as long."""
+def centre_and_kind(body: pymunk.Body) -> tuple[float, float, float]:
+    """Centre of gravity of a body, and 1 for a kinematic, -1 for a static one, else 0. The public properties take three
+    times as long."""
     c = body._body
-    place, centre = lib.cpBodyGetPosition(c), lib.cpBodyGetCenterOfGravity(c)
-    if lib.cpBodyGetType(c) != lib.CP_BODY_TYPE_KINEMATIC:
-        return place.x, place.y, lib.cpBodyGetAngle(c), 0.0, 0.0, 0.0, centre.x, centre.y
-    v = lib.cpBodyGetVelocity(c)
-    spin = lib.cpBodyGetAngularVelocity(c)
-    return place.x, place.y, lib.cpBodyGetAngle(c), v.x, v.y, spin, centre.x, centre.y
+    centre, kind = lib.cpBodyGetCenterOfGravity(c), lib.cpBodyGetType(c)
+    return centre.x, centre.y, 1.0 if kind == lib.CP_BODY_TYPE_KINEMATIC else -float(kind == lib.CP_BODY_TYPE_STATIC)
 
 
 def motions(bodies: Iterable[pymunk.Body]) -> list[tuple[Any, Any, float]]:
