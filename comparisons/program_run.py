@@ -23,6 +23,7 @@ import eeca_pymunk as ep
 from eeca_pymunk.impacts.scene import EventLoop
 from eeca_pymunk.packed_space import PackedSpace
 from eeca_pymunk.space.hooks import Hooks
+from eeca_pymunk.space.late_shapes import Late
 from eeca_pymunk.space.rehearsal import Rehearsal
 from eeca_pymunk.space.sync import Sync
 
@@ -33,7 +34,7 @@ from .program_scenes import PROGRAMS
 PARTS: dict[str, tuple[tuple[type, str], ...]] = {
     "kernel": ((EventLoop, "step"),),
     "re-reads": ((PackedSpace, "_update_world"),),
-    "sync": ((Sync, "write_end"), (Sync, "reindex"), (Sync, "update"), (Sync, "call_back")),
+    "sync": ((Sync, "write_end"), (Sync, "reindex"), (Sync, "update"), (Sync, "call_back"), (Late, "move")),
     "handlers": (
         (Rehearsal, "run"), (Rehearsal, "rules"), (Sync, "finish_rehearsal"), (Hooks, "velocity_changes"),
         (Hooks, "before"), (Hooks, "after"), (Hooks, "positions"),
@@ -63,6 +64,7 @@ class Run:
             for part, methods in PARTS.items():
                 for owner, name in methods:
                     self._clock(owner, name, part)
+        self._count_late()
 
     def step(self, space: pymunk.Space, dt: float) -> None:
         """In the place of `Space.step`."""
@@ -81,6 +83,18 @@ class Run:
             self.parts = dict.fromkeys(PARTS, 0.0)
         for body in space.bodies:
             self._path.update(repr((body.position, body.angle)).encode())
+
+    def _count_late(self) -> None:
+        """Count what shapes take that are moved when the program reads them to the step before."""
+        move = Late.move
+
+        def counted(late: Late, space: pymunk.Space) -> None:
+            begun = time.thread_time()
+            move(late, space)
+            if self.steps:
+                self.steps[-1] += time.thread_time() - begun
+
+        Late.move = counted  # type: ignore[method-assign, assignment]
 
     def hear(self) -> None:
         """Count the calls of collision handlers that programs set from now on."""

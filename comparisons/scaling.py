@@ -63,11 +63,18 @@ def native(scene: Scene, hashed: bool) -> Runner:
     return Runner(scene.space.step)
 
 
-def eeca(scene: Scene, closure: ep.Closure, sync: bool, hashed: bool) -> Runner:
-    """EECA on a space like native's: with `sync` its broad phase is kept up too."""
+def eeca(scene: Scene, closure: ep.Closure, sync: bool, hashed: bool, queried: bool = False) -> Runner:
+    """EECA on a space like native's: with `sync` its broad phase is kept up too, when it is read; if `queried`, after
+    each step."""
     if hashed:
         native(scene, True)
-    return Runner(ep.EECA(scene.space, closure, sync=sync).step)
+    space, step, everything = scene.space, ep.EECA(scene.space, closure, sync=sync).step, pymunk.ShapeFilter()
+
+    def step_and_query(dt: float) -> None:
+        step(dt)
+        space.point_query_nearest(FAR, 0.0, everything)
+
+    return Runner(step_and_query if queried else step)
 
 
 def runners(build: Callable[[], Scene], hashed: bool, midstep: bool) -> dict[str, Runner]:
@@ -76,6 +83,7 @@ def runners(build: Callable[[], Scene], hashed: bool, midstep: bool) -> dict[str
         "native": native(build(), hashed),
         "EECA": eeca(build(), ep.TimeOfImpact(), False, hashed),
         "EECA, sync": eeca(build(), ep.TimeOfImpact(), True, hashed),
+        "EECA, queried": eeca(build(), ep.TimeOfImpact(), True, hashed, queried=True),
     }
     if midstep:
         found["EECA Midstep"] = eeca(build(), ep.Midstep(), False, hashed)

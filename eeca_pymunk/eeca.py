@@ -32,8 +32,8 @@ class EECA(RunningStepper):
     Args:
         space: a pymunk space.
         closure: the rule for psi2; `TimeOfImpact()` if None.
-        sync: update pymunk's own shapes after each step, for its queries and drawing, and call its post-step callbacks
-            (in spaces with collision handlers they are called in any case). False is faster.
+        sync: update pymunk's own shapes, when queries or drawing read them, and call its post-step callbacks (in spaces
+            with collision handlers they are called in any case). False is faster.
         ignore: features to leave out instead of raising UnsupportedFeature; only "friction". Warns once.
     """
 

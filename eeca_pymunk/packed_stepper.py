@@ -40,8 +40,8 @@ class PackedStepper(HookedStepper):
 
     Args:
         space: any pymunk space.
-        sync: update pymunk's own shapes and broad phase after each step, for its queries and drawing, and call its
-            post-step callbacks. False skips both; `space.reindex_shapes_for_body(body)` updates the shapes of one body.
+        sync: update pymunk's own shapes and broad phase, when queries or drawing read them, and call its post-step
+            callbacks. False skips both; `space.reindex_shapes_for_body(body)` updates the shapes of one body.
             In spaces with collision handlers the callbacks are called in any case.
         ignore: features to leave out instead of raising UnsupportedFeature; only "friction". Warns once.
     """

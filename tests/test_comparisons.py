@@ -198,7 +198,7 @@ def test_first_use_tells_seconds_of_imports_and_steps() -> None:
 
 def test_scaling_tells_ratios_of_one_interleaved_run() -> None:
     rows = scaling.case(lambda: scenes.build("gas", count=60), 60, 1e-3, warm=2, rounds=3)
-    assert [row["stepper"] for row in rows] == ["native", "EECA", "EECA, sync"]
+    assert [row["stepper"] for row in rows] == ["native", "EECA", "EECA, sync", "EECA, queried"]
     assert rows[0]["x native"] == 1.0
     assert all(float(row["us/step"] or 0.0) > 0.0 for row in rows)
     assert float(rows[1]["us/collision"] or 0.0) > 0.0

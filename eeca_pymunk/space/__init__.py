@@ -15,13 +15,14 @@ the same class for an earlier reading of the space, of which everything that has
 | states in and out | `body_states.py` |
 | edits by the program | `edits.py` (shapes, bodies), `joint_edits.py`, `patching.py` (rows after edits in place) |
 | functions of the program | `hooks.py`; of handlers `rehearsal.py`, `handled_pairs.py`, `watched.py`, `decisions.py` |
-| pymunk's own state after a step | `sync.py` (shapes), `arbiters.py` (contacts), `constraint_impulses.py` |
+| pymunk's shapes after a step | `sync.py`, `rest_step.py`, `late_shapes.py` |
+| what else pymunk shows of a step | `arbiters.py` (contacts), `constraint_impulses.py` |
 | sleeping bodies | `sleeping.py`, `sleep_groups.py` |
 | a line of text | `describe.py` |
 | private names of pymunk | the room `private` |
 
-Four files replace methods or properties of pymunk's classes, which then act as before for all other spaces:
+Five files replace methods or properties of pymunk's classes, which then act as before for all other spaces:
 `edits.py` (setters of shapes and bodies; `Body.sleep` at import), `joint_edits.py` (`Constraint.__setattr__`),
 `constraint_impulses.py` (`Constraint.impulse`), `arbiters.py` (`each_arbiter`, `batch.get_space_arbiters`,
-`debug_draw`). They are not restored.
+`debug_draw`), `late_shapes.py` (queries, `Shape.bb`, `Space.remove`). They are not restored.
 """

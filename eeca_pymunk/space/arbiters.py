@@ -23,6 +23,7 @@ from pymunk import batch
 
 from ..compiled.records import Rows
 from ..model.contacts import Impulse
+from .late_shapes import move_late
 from .private import arbiters as private_arbiters
 from .private import spaces as private
 
@@ -151,6 +152,7 @@ def _get_space_arbiters(space: pymunk.Space, fields: batch.ArbiterFields, buffer
 def _debug_draw(self: pymunk.Space, options: pymunk.SpaceDebugDrawOptions) -> None:
     if options.flags & pymunk.SpaceDebugDrawOptions.DRAW_COLLISION_POINTS:
         _touches_of(self, drawn=True)  # for its effect: `Sync.renew` makes the arbiters that pymunk draws
+    move_late(self)
     _native_draw(self, options)
 
 

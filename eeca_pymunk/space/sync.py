@@ -1,11 +1,12 @@
-"""Sync: update pymunk's own shapes and broad phase after a step, for queries and drawing.
+"""Sync: update pymunk's own shapes and broad phase for queries and drawing.
 
 There are two ways. A *rest step*, pymunk's own step with all velocities 0, moves nothing; it renews broad phase and
 arbiters, forgets old contacts, and stores dt. *Reindexing* moves the shapes of one body after the other and changes
-nothing else; it costs less for a few bodies, above all if they touch or are jointed. In a spatial hash it leaves unused
-handles, which a rest step clears: there is one after `REINDEXINGS` steps. In spaces with collision handlers a rehearsal
-(`rehearsal.py`) is taken or left out instead. Post-step callbacks are called afterwards, when bodies have their
-velocities. After an EECA step pymunk is in one of these states:
+nothing else; it costs less for a few bodies, above all if they touch or are jointed, and can wait until shapes are read
+(`late_shapes.py`). In a spatial hash it leaves unused handles, which a rest step clears: there is one after
+`REINDEXINGS` of them. In spaces with collision handlers a rehearsal (`rehearsal.py`) is taken or left out instead.
+Post-step callbacks are called afterwards, when bodies have their velocities. After an EECA step pymunk is in one of
+these states:
 
 | state | entered by | arbiters are | before they are read |
 |---|---|---|---|
@@ -18,24 +19,20 @@ A step of pymunk's own is found by its counter of steps (`Sync.is_ours`); the ne
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from contextlib import ExitStack
 from functools import partial
-from typing import TYPE_CHECKING, TypeAlias
-
-import pymunk
+from typing import TYPE_CHECKING
 
 from ..reentry import BUSY
 from ..transfer import EVENTS, TURNS
 from .bodies import ANGULAR_VELOCITY, VELOCITY
-from .joints import JointRows
+from .late_shapes import late_shapes
 from .private import arbiters as private_arbiters
 from .private import joints as private_joints
 from .private import rest as private_rest
 from .private import shapes as private_shapes
 from .private import sleep as private_sleep
 from .private import spaces as private
-from .private.joints import clear_max_forces, restore_max_forces, restore_motions, silent, with_laws
+from .rest_step import Awake, rest_step
 
 if TYPE_CHECKING:
     from .world import World
@@ -46,54 +43,6 @@ if TYPE_CHECKING:
 MOST_FREE, MOST_TOUCHING = 12, 32
 
 MADE, NO_REST_STEP, NO_REHEARSAL = 0, 1, 2
-
-# Returns those of given constraints whose bodies are all awake.
-Awake: TypeAlias = Callable[[Sequence[pymunk.Constraint]], list[pymunk.Constraint]]
-
-
-def rest_step(
-    space: pymunk.Space, dt: float, joints: JointRows | None = None, stored: bool = True, awake: Awake | None = None
-) -> None:
-    """Update pymunk's shapes by its own step, with all velocities 0, which moves nothing.
-
-    It uses the real dt, so that `space.current_time_step` is right and a native step may be the next one: pymunk scales
-    stored impulses by the ratio of its last two dt, but here velocities and all stored impulses are 0. All bodies must
-    have velocity 0; jointed ones may end with velocities of round-off.
-
-    Args:
-        joints: the constraints of the space; their functions are not called, and they exert no forces.
-        stored: whether pymunk may have impulses of joints from earlier steps, which it would apply too.
-        awake: given where bodies sleep. Writing gravity or a joint would wake bodies: joints of sleeping bodies are not
-            changed, and gravity acts; the caller overwrites the velocities.
-    """
-    asleep = awake is not None
-    if joints is None:
-        private_rest.rest(space, dt, asleep)
-        return
-    pushing, calling = joints.items if stored else joints.pushing(), joints.calling
-    if awake is not None:
-        pushing, calling = awake(pushing), awake(calling) if calling else calling
-    outside = joints.partners.motions()
-    if not (calling or joints.own):  # most spaces; an `ExitStack` would cost more
-        max_forces = clear_max_forces(pushing)
-        try:
-            private_rest.rest(space, dt, asleep)
-        finally:
-            restore_max_forces(max_forces)
-            restore_motions(outside)
-        return
-    own, laws = joints.own, joints.laws()
-    if awake is not None:
-        laws = [law for item, law in zip(own, laws, strict=True) if awake([item])]
-        own = awake(own)
-    with ExitStack() as within:
-        within.callback(restore_motions, outside)
-        if calling:
-            within.enter_context(silent(calling))
-        if own:
-            within.enter_context(with_laws(own, laws))
-        within.callback(restore_max_forces, clear_max_forces(pushing))
-        private_rest.rest(space, dt, asleep)
 
 
 class Sync:
@@ -116,36 +65,50 @@ class Sync:
         self._world, self._timestamp = world, private.timestamp(self.space)
         self.waits = partial(private.waits, self.space)
         self.renews, self.were_read, self.state, self.stamp = False, False, MADE, -1
-        # The last rest step: number of pymunk's steps after it, dt, how many reindexings may still follow, and whether
-        # shapes touched. `_first`: none in this reading; new bodies and joints may have corrections and impulses.
-        self._rested, self._dt, self._reindexings, self._touched, self._first = -1, 0.0, 0, False, True
+        self._shapes = late_shapes(self.space)
+        # The last rest step: number of pymunk's steps after it, dt, and whether shapes touched. `_first`: none in this
+        # reading; new bodies and joints may have corrections and impulses.
+        self._rested, self._dt, self._touched, self._first = -1, 0.0, False, True
         if past is not None and not (self._asleep or past._asleep):
-            self._rested, self._dt, self._reindexings = past._rested, past._dt, past._reindexings
-            self._touched, self.were_read = past._touched, past.were_read
+            self._rested, self._dt, self._touched, self.were_read = (
+                past._rested,
+                past._dt,
+                past._touched,
+                past.were_read,
+            )
         self._past_stamp = past.stamp if past is not None and world.undecided else -1
 
     def reindexes(self, dt: float, status: int) -> bool:
         """Whether reindexing is enough for this step. Conditions:
 
-        * pymunk has taken no step since the last rest step, which had this dt and was at most `REINDEXINGS` steps ago;
+        * pymunk has taken no step since the last rest step, which had this dt and was at most `REINDEXINGS` ago;
         * arbiters were not read after the last step, other than for a picture;
         * nothing touched in this step and the last one, or `renews`;
-        * the number of moving shapes is at most MOST_TOUCHING; with neither contacts nor joints at most MOST_FREE; with
-          joints and `renews` there is no limit.
+        * the number of moving shapes is at most MOST_TOUCHING; with neither contacts nor joints at most MOST_FREE. With
+          `renews` there is no limit if there are joints, or shapes were not read after the last step.
         """
-        if self.were_read or self._reindexings == 0 or dt != self._dt:
+        shapes = self._shapes
+        if self.were_read or shapes.reindexings <= 0 or dt != self._dt:
             return False
         touches, jointed = status & EVENTS or self._touched, self._world.joints is not None
         if touches and not self.renews:
             return False
         few = self._world.moving_shapes <= (MOST_TOUCHING if touches or jointed else MOST_FREE)
-        return (few or (jointed and self.renews)) and self._timestamp() == self._rested
+        return (few or (self.renews and (jointed or not shapes.read))) and self._timestamp() == self._rested
 
     def reindex(self) -> None:
         """Move the shapes to the poses of their bodies, for a step that `reindexes`."""
-        self._reindexings -= 1
         self.state, self.stamp = NO_REST_STEP, self._rested
-        private_shapes.reindex(self.space, self._world.movers)
+        self._move_shapes()
+
+    def _move_shapes(self) -> None:
+        """Move the shapes to the poses of their bodies, or, with `renews`, let them be late: where bodies may sleep,
+        their shapes are read in most steps."""
+        shapes = self._shapes
+        shapes.read, shapes.late, shapes.stamp = False, self.renews, self.stamp
+        if not self.renews:
+            shapes.reindexings -= 1
+            private_shapes.reindex(self.space, self._world.movers)
 
     def renew(self, drawn: bool = False) -> None:
         """Make the arbiters of the last EECA step, before they are read. `drawn`: only for a picture. That costs more
@@ -174,10 +137,11 @@ class Sync:
         self.stamp = self._timestamp()
         if left_out:
             self.state = NO_REHEARSAL
-            private_shapes.reindex(self.space, self._world.movers)
         else:
             self.state, self.were_read = MADE, False
-            private_shapes.reindex_uncorrected(self.space, self._world.movers)
+            self._shapes.reindexings = private_shapes.REINDEXINGS
+            private_shapes.forget_corrections(self._world.movers)
+        self._move_shapes()
         self.call_back()
 
     def is_ours(self) -> bool:
@@ -205,7 +169,8 @@ class Sync:
             rest_step(*arguments)
         if slept and not world.bodies.in_order():
             self._stop_woken()  # gravity has accelerated the bodies that pymunk has woken
-        self._rested, self._dt, self._reindexings = self._timestamp(), dt, private_shapes.REINDEXINGS
+        self._rested, self._dt = self._timestamp(), dt
+        self._shapes.late, self._shapes.read, self._shapes.reindexings = False, False, private_shapes.REINDEXINGS
         self.state, self.stamp, self.were_read, self._first = MADE, self._rested, False, False
         if not self.renews and self._world.moving_shapes <= MOST_FREE:
             self._touched = bool(private.raw_arbiters(self.space))

@@ -1,0 +1,100 @@
+"""Shapes that are moved to their bodies only when something reads them.
+
+pymunk's shapes have a pose of their own, which queries, bounding boxes and pictures read, and which costs as much to
+update as a step of a few bodies takes. A step of EECA therefore only says that the shapes are late (`Late`), and the
+methods of pymunk that read them, replaced here, first move them to the present poses of their bodies. pymunk's own step
+does that anyway. Shapes that leave a space keep the pose of their body at that time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import wraps
+from typing import Any
+from weakref import WeakKeyDictionary
+
+import pymunk
+
+from .private import shapes as private_shapes
+from .private import spaces as private
+
+
+class Late:
+    """What is known of the shapes of a space.
+
+    Attributes:
+        late: whether they are behind their bodies, unless pymunk has taken a step since its step number `stamp`.
+        read: whether something has read them since this was last set to False.
+        reindexings: how many may still follow, until the next rest step (`sync.py`), see `REINDEXINGS`.
+    """
+
+    __slots__ = ("late", "read", "reindexings", "stamp")
+
+    def __init__(self) -> None:
+        self.late, self.read, self.stamp, self.reindexings = False, False, -1, 0
+
+    def move(self, space: pymunk.Space) -> None:
+        """Move the shapes to their bodies, unless pymunk has done so, in a step that it has begun since."""
+        self.late = False
+        if private.timestamp(space)() == self.stamp:
+            self.reindexings -= 1
+            private_shapes.reindex(space, private.moving(space))
+
+
+_known: WeakKeyDictionary[pymunk.Space, Late] = WeakKeyDictionary()
+_OF_SPACE = "point_query", "point_query_nearest", "segment_query", "segment_query_first", "bb_query", "shape_query"
+_OF_SHAPE = "point_query", "segment_query", "shapes_collide"
+
+
+def late_shapes(space: pymunk.Space) -> Late:
+    """What is known of the shapes of a space, to be changed by who moves its bodies."""
+    if not hasattr(pymunk.Space.bb_query, "native"):
+        _replace_readers()
+    return _known.setdefault(space, Late())
+
+
+def move_late(space: pymunk.Space | None) -> None:
+    """Move the shapes of a space to their bodies if they are late; before something reads them."""
+    if space is None or (known := _known.get(space)) is None:
+        return
+    known.read = True
+    if known.late:
+        known.move(space)
+
+
+def _replace_readers() -> None:
+    for name in _OF_SPACE:
+        setattr(pymunk.Space, name, _reader(getattr(pymunk.Space, name), lambda space: space))
+    for name in _OF_SHAPE:
+        setattr(pymunk.Shape, name, _reader(getattr(pymunk.Shape, name), lambda shape: shape.space))
+    native: Any = pymunk.Shape.bb
+    pymunk.Shape.bb = property(_reader(native.fget, lambda shape: shape.space), doc=native.__doc__)  # type: ignore
+    pymunk.Space.remove = _remove(pymunk.Space.remove)  # type: ignore[method-assign]
+
+
+def _reader(native: Callable[..., Any], space_of: Callable[[Any], pymunk.Space | None]) -> Callable[..., Any]:
+    """A method that reads shapes, after they were moved."""
+
+    @wraps(native)
+    def read(self: Any, *args: Any, **more: Any) -> Any:
+        move_late(space_of(self))
+        for other in args[:1]:  # `shapes_collide` and `shape_query` read another shape too
+            if isinstance(other, pymunk.Shape):
+                move_late(other.space)
+        return native(self, *args, **more)
+
+    read.native = native  # type: ignore[attr-defined]
+    return read
+
+
+def _remove(native: Callable[..., Any]) -> Callable[..., Any]:
+    @wraps(native)
+    def remove(self: pymunk.Space, *objects: Any) -> None:
+        known = _known.get(self)
+        if known is not None and known.late:
+            for item in objects:
+                if isinstance(item, pymunk.Shape) and item.space is self:
+                    item.cache_bb()
+        native(self, *objects)
+
+    return remove
