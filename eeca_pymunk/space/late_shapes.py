@@ -15,6 +15,7 @@ from weakref import WeakKeyDictionary
 
 import pymunk
 
+from .edits import clock
 from .private import shapes as private_shapes
 from .private import spaces as private
 
@@ -28,17 +29,25 @@ class Late:
         reindexings: how many may still follow, until the next rest step (`sync.py`), see `REINDEXINGS`.
     """
 
-    __slots__ = ("late", "read", "reindexings", "stamp")
+    __slots__ = ("_bodies", "_contents", "_movers", "late", "read", "reindexings", "stamp")
 
     def __init__(self) -> None:
         self.late, self.read, self.stamp, self.reindexings = False, False, -1, 0
+        # Bodies with shapes that are not static, their pointers, and the contents of the space when they were found.
+        self._bodies: list[pymunk.Body] = []
+        self._movers: list[Any] = []
+        self._contents: tuple[int, ...] = ()
 
     def move(self, space: pymunk.Space) -> None:
         """Move the shapes to their bodies, unless pymunk has done so, in a step that it has begun since."""
         self.late = False
         if private.timestamp(space)() == self.stamp:
             self.reindexings -= 1
-            private_shapes.reindex(space, private.moving(space))
+            contents = *private.contents(space), clock()
+            if contents != self._contents:
+                self._bodies = [body for body in space.bodies if body.shapes and body.body_type != pymunk.Body.STATIC]
+                self._movers, self._contents = private.pointers(self._bodies), contents
+            private_shapes.reindex(space, self._movers)
 
 
 _known: WeakKeyDictionary[pymunk.Space, Late] = WeakKeyDictionary()

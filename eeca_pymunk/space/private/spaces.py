@@ -110,12 +110,6 @@ def pointers(bodies: Iterable[pymunk.Body]) -> list[Any]:
     return [body._body for body in bodies]
 
 
-def moving(space: pymunk.Space) -> list[Any]:
-    """Pointers to the Chipmunk bodies that are not static."""
-    kind = lib.cpBodyGetType
-    return [c for body in space._bodies if kind(c := body._body) != lib.CP_BODY_TYPE_STATIC]
-
-
 def raw_arbiters(space: pymunk.Space) -> list[Any]:
     """Pointers to the arbiters of Chipmunk."""
     return list(space._get_arbiters())
