@@ -187,10 +187,10 @@ class Bodies:
 
     def _read(self) -> tuple[IntArray, FloatArray]:
         """(N,) ids and (N, 9) state now."""
-        buffer = batch.Buffer()
-        batch.get_space_bodies(self.space, STATE_FIELDS, buffer)
-        ids: IntArray = np.frombuffer(buffer.int_buf(), dtype=np.int64).copy()
-        return ids, np.frombuffer(buffer.float_buf()).reshape(-1, STATE_COLUMNS).copy()
+        N = len((*self.space.bodies, self.space.static_body))
+        ids, state = np.zeros(N + 1, np.int64), np.zeros((N + 1, STATE_COLUMNS))
+        private_batch.reader(self.space, STATE_FIELDS, state, ids)()
+        return ids[:N], state[:N]
 
     def gather(self) -> FloatArray | None:
         """The (N, 9) state now: position, angle, velocity, angular velocity, force, torque (see COLUMN_NAMES).
@@ -232,12 +232,11 @@ class Bodies:
                     body.velocity, body.angular_velocity = (row[3], row[4]), row[5]
                     body.force, body.torque = (row[6], row[7]), row[8]
             return
-        out = batch.Buffer()
-        out.set_float_buf(np.ascontiguousarray(state).reshape(-1))
+        write = private_batch.writer(self.space, _STATE, np.ascontiguousarray(state))
         # pymunk places a body whose centre of mass is not its origin by its present angle: the second call uses the new
         # angle.
         for _ in range(2 if self.center_of_gravity.any() else 1):
-            batch.set_space_bodies(self.space, _STATE, out)
+            write()
 
 
 def measure(space: pymunk.Space) -> Invariants:

@@ -10,9 +10,11 @@ import numpy as np
 import pymunk
 import pytest
 
+import eeca_pymunk as ep
 from eeca_pymunk import layout as at
 from eeca_pymunk.compiled.records import columns
 from eeca_pymunk.model.bodies import POSE, VELOCITY
+from eeca_pymunk.space.bodies import Bodies
 from eeca_pymunk.space.world import World
 from scenes.scene import add_disk
 
@@ -328,3 +330,18 @@ def test_reading_warns_of_nothing() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         World(zoo()[0])
+
+
+def test_measuring_keeps_no_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    """`pymunk.batch.Buffer` never frees its memory, some 20 kB a time for 100 bodies."""
+
+    def refuse() -> None:
+        raise AssertionError("a buffer is made")
+
+    space = zoo()[0]
+    energy = ep.measure(space).energy
+    monkeypatch.setattr(pymunk.batch, "Buffer", refuse)
+    assert ep.measure(space).energy == energy
+    bodies = Bodies(space)
+    bodies.scatter(bodies.start)
+    ep.Native(space).step(0.1)

@@ -117,7 +117,7 @@ def _one_by_one(
 
 
 def _array(kind: str, items: str, memory: FloatArray | IntArray) -> Any:
-    """pymunk's array over given memory; `batch.Buffer` has the same, but leaks its earlier memory."""
+    """pymunk's array over given memory. `batch.Buffer` has arrays of its own, but never frees their memory."""
     array = ffi.new(kind)
     _point(array, items, memory)
     return array
