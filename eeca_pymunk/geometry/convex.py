@@ -17,11 +17,33 @@ edge's normal holds.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from ..arrays import FloatArray
 from ..compiled import inlined, nonallocating
 from ..model.parameters.detection import AXIS_TIE, DIRECTION_ROUND_OFF, EDGE_TIE
 from ..model.scene import Scene
+
+
+class Faces(NamedTuple):
+    """The edges of two cores along whose normals they are farthest apart, and how far: -inf along those of a point."""
+
+    edge_p: int
+    apart_p: float
+    edge_q: int
+    apart_q: float
+
+
+class Closest(NamedTuple):
+    """The closest points of two cores P and Q, or in overlap the shortest way out."""
+
+    distance: float  # negative in overlap
+    nx: float  # unit normal from P to Q
+    ny: float
+    x: float  # point of P
+    y: float
+    flat: bool  # whether the normal is that of an edge
+    faces: Faces
 
 
 @nonallocating
@@ -107,17 +129,15 @@ def vertex_edge(P: FloatArray, p: int, Q: FloatArray, q: int) -> tuple[float, in
 
 
 @nonallocating
-def prefers_second(
-    P: FloatArray, p: int, edge_p: int, apart_p: float, Q: FloatArray, q: int, edge_q: int, apart_q: float, tie: float
-) -> bool:
+def prefers_second(P: FloatArray, p: int, Q: FloatArray, q: int, faces: Faces, tie: float) -> bool:
     """Whether the normal of Q's edge is the axis of two cores: the one with the larger distance, or if both are equal
     within `tie`, that of the longer edge, so that parallel faces keep their axis under round-off."""
-    if apart_q > apart_p + tie:
+    if faces.apart_q > faces.apart_p + tie:
         return True
-    if apart_p > apart_q + tie:
+    if faces.apart_p > faces.apart_q + tie:
         return False
-    length_p = along_edge(P, p, edge_p, 0.0, 0.0)[1]
-    length_q = along_edge(Q, q, edge_q, 0.0, 0.0)[1]
+    length_p = along_edge(P, p, faces.edge_p, 0.0, 0.0)[1]
+    length_q = along_edge(Q, q, faces.edge_q, 0.0, 0.0)[1]
     return length_q > length_p * EDGE_TIE
 
 
@@ -150,27 +170,21 @@ def point_core(x: float, y: float, Q: FloatArray, q: int) -> tuple[float, float,
 
 
 @nonallocating
-def closest(
-    P: FloatArray, p: int, Q: FloatArray, q: int
-) -> tuple[float, float, float, float, float, bool, int, float, int, float]:
-    """Closest points of cores P and Q, or in overlap the shortest way out.
-
-    Returns distance (length, negative in overlap), unit normal (2) from P to Q, point (2) of P, whether the normal is
-    that of an edge, then the edge of P along which the cores are farthest apart and how far (-inf for a point), and
-    the same of Q. Coincident points get the normal (1, 0).
-    """
+def closest(P: FloatArray, p: int, Q: FloatArray, q: int) -> Closest:
+    """Closest points of cores P and Q. Coincident points get the normal (1, 0)."""
     if p == 1:
         d, nx, ny, flat, edge, apart = point_core(P[0, 0], P[0, 1], Q, q)
-        return d, nx, ny, P[0, 0], P[0, 1], flat, 0, -math.inf, edge, apart
+        return Closest(d, nx, ny, P[0, 0], P[0, 1], flat, Faces(0, -math.inf, edge, apart))
     if q == 1:
         d, nx, ny, flat, edge, apart = point_core(Q[0, 0], Q[0, 1], P, p)
-        return d, -nx, -ny, Q[0, 0] + d * nx, Q[0, 1] + d * ny, flat, edge, apart, 0, -math.inf
+        return Closest(d, -nx, -ny, Q[0, 0] + d * nx, Q[0, 1] + d * ny, flat, Faces(edge, apart, 0, -math.inf))
     apart_p, edge_p, vertex_q = separation(P, p, Q, q, 0.0, 0.0)
     apart_q, edge_q, vertex_p = separation(Q, q, P, p, 0.0, 0.0)
+    faces = Faces(edge_p, apart_p, edge_q, apart_q)
     size = abs(P[0, 0]) + abs(P[0, 1]) + abs(Q[0, 0]) + abs(Q[0, 1])
     size += abs(P[1, 0] - P[0, 0]) + abs(P[1, 1] - P[0, 1]) + abs(Q[1, 0] - Q[0, 0]) + abs(Q[1, 1] - Q[0, 1])
     near = DIRECTION_ROUND_OFF * size
-    second = prefers_second(P, p, edge_p, apart_p, Q, q, edge_q, apart_q, AXIS_TIE * size)
+    second = prefers_second(P, p, Q, q, faces, AXIS_TIE * size)
     apart = apart_q if second else apart_p
     if apart > -near:
         # If the foot of the nearest vertex is not on the edge, some other vertex and edge are closest.
@@ -190,13 +204,13 @@ def closest(
                     x, y, dx, dy = gx, gy, Q[k, 0] - gx, Q[k, 1] - gy
                     nx, ny, inside = P[m, 2], P[m, 3], within
                 if not inside:
-                    return d, dx / d, dy / d, x, y, False, edge_p, apart_p, edge_q, apart_q
+                    return Closest(d, dx / d, dy / d, x, y, False, faces)
                 if nx * dx + ny * dy < 0.0:  # the other side of a segment
                     nx, ny = -nx, -ny
-                return d, nx, ny, x, y, True, edge_p, apart_p, edge_q, apart_q
+                return Closest(d, nx, ny, x, y, True, faces)
     if second:
         nx, ny, x, y = -Q[edge_q, 2], -Q[edge_q, 3], P[vertex_p, 0], P[vertex_p, 1]
     else:
         nx, ny = P[edge_p, 2], P[edge_p, 3]
         x, y = Q[vertex_q, 0] - apart * nx, Q[vertex_q, 1] - apart * ny
-    return apart, nx, ny, x, y, True, edge_p, apart_p, edge_q, apart_q
+    return Closest(apart, nx, ny, x, y, True, faces)

@@ -55,7 +55,8 @@ def ordered_gap(
     else:
         p = place_vertices(A, a, x_a, y_a, angle_a, P)
         q = place_vertices(A, b, x_b, y_b, angle_b, Q)
-        d, nx, ny, x, y, _, _, _, _, _ = closest_on_side(A, P, p, Q, q, a, b)
+        near = closest_on_side(A, P, p, Q, q, a, b)
+        d, nx, ny, x, y = near.distance, near.nx, near.ny, near.x, near.y
     g = d - r_a - r_b
     away = r_a + 0.5 * g
     return g, nx, ny, x + away * nx, y + away * ny

@@ -94,17 +94,18 @@ def ordered_manifold(
         return 1 if g <= reach else 0
     p = place_vertices(A, s, x_a, y_a, angle_a, P)
     q = place_vertices(A, r, x_b, y_b, angle_b, Q)
-    d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q = closest_on_side(A, P, p, Q, q, s, r)
-    g = d - r_s - r_r
+    near = closest_on_side(A, P, p, Q, q, s, r)
+    g, faces = near.distance - r_s - r_r, near.faces
     if g > reach:
         return 0
-    if not flat and d > max(apart_p, apart_q) + tolerance:  # two corners
+    if not near.flat and near.distance > max(faces.apart_p, faces.apart_q) + tolerance:  # two corners
         away = r_s + 0.5 * g
-        OUT[0, 0], OUT[0, 1], OUT[0, 2], OUT[0, 3], OUT[0, 4] = nx, ny, x + away * nx, y + away * ny, g
+        OUT[0, 0], OUT[0, 1], OUT[0, 4] = near.nx, near.ny, g
+        OUT[0, 2], OUT[0, 3] = near.x + away * near.nx, near.y + away * near.ny
         return 1
-    if prefers_second(P, p, edge_p, apart_p, Q, q, edge_q, apart_q, tolerance):
-        return clip(Q, q, edge_q, P, p, r_r, r_s, -1.0, reach, OUT)
-    return clip(P, p, edge_p, Q, q, r_s, r_r, 1.0, reach, OUT)
+    if prefers_second(P, p, Q, q, faces, tolerance):
+        return clip(Q, q, faces.edge_q, P, p, r_r, r_s, -1.0, reach, OUT)
+    return clip(P, p, faces.edge_p, Q, q, r_s, r_r, 1.0, reach, OUT)
 
 
 @nonallocating

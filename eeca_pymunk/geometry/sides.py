@@ -29,7 +29,7 @@ from ..model.parameters.detection import STRAIGHT
 from ..model.parameters.intervals import INTERVAL_DEPTH, INTERVAL_DEPTH_LEAST, INTERVAL_DEPTH_WIDTH, INTERVAL_WAY
 from ..model.scene import Scene, scene_of
 from ..model.shapes import Side
-from .convex import closest, separation
+from .convex import Closest, Faces, closest, separation
 
 _PROBES = 16  # rows in which a pair may be
 _SCATTER = 40503
@@ -196,14 +196,13 @@ def corner_of(
 
 
 @nonallocating
-def closest_on_side(
-    A: Scene, P: FloatArray, p: int, Q: FloatArray, q: int, a: int, b: int
-) -> tuple[float, float, float, float, float, bool, int, float, int, float]:  # fmt: skip
+def closest_on_side(A: Scene, P: FloatArray, p: int, Q: FloatArray, q: int, a: int, b: int) -> Closest:
     """`closest` of the cores P and Q of shapes a < b; for thin ones that touch or cross, on the side that the pair
     remembers, and in corners on the inner side."""
-    d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q = closest(P, p, Q, q)
+    near = closest(P, p, Q, q)
     if not remembers(A, a, b):
-        return d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q
+        return near
+    d, nx, ny, x, y = near.distance, near.nx, near.ny, near.x, near.y
     deep = held_side(A, a, b)
     end = -1
     if q == 2:
@@ -212,22 +211,22 @@ def closest_on_side(
     if end < 0 and p == 2:
         end, mx, my = corner_of(A, P, a, b, x, y, nx, ny, deep)
     if end >= 0:
-        d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q = closest(P, p, Q, q)
+        near = closest(P, p, Q, q)
         reach = deep
     else:
         key = pair_number(A, a, b)
         side = A.SIDE[side_row(A, key)]
         mx, my, reach = side.nx, side.ny, max(near_side(A, a, b), side.deep)
         if side.key != key:
-            return d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q
-    along = nx * mx + ny * my
-    if d > reach or along >= 0.0:
-        return d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q
+            return near
+    if near.distance > reach or near.nx * mx + near.ny * my >= 0.0:
+        return near
     apart_p, edge_p, vertex_q = separation(P, p, Q, q, mx, my)
     apart_q, edge_q, vertex_p = separation(Q, q, P, p, -mx, -my)
+    faces = Faces(edge_p, apart_p, edge_q, apart_q)
     if apart_q > apart_p:
         nx, ny, x, y = -Q[edge_q, 2], -Q[edge_q, 3], P[vertex_p, 0], P[vertex_p, 1]
-        return apart_q, nx, ny, x, y, True, edge_p, apart_p, edge_q, apart_q
+        return Closest(apart_q, nx, ny, x, y, True, faces)
     nx, ny = P[edge_p, 2], P[edge_p, 3]
     x, y = Q[vertex_q, 0] - apart_p * nx, Q[vertex_q, 1] - apart_p * ny
-    return apart_p, nx, ny, x, y, True, edge_p, apart_p, edge_q, apart_q
+    return Closest(apart_p, nx, ny, x, y, True, faces)

@@ -90,7 +90,8 @@ def begin_side(A: Scene, a: int, b: int, start: float, duration: float, toleranc
     x_b, y_b, angle_b = pose(A.BODY, j, start)
     p = place_vertices(A, a, x_a, y_a, angle_a, P)
     q = place_vertices(A, b, x_b, y_b, angle_b, Q)
-    d, nx, ny, px, py, _, _, _, _, _ = closest_on_side(A, P, p, Q, q, a, b)
+    near = closest_on_side(A, P, p, Q, q, a, b)
+    d, nx, ny, px, py = near.distance, near.nx, near.ny, near.x, near.y
     key = pair_number(A, a, b)
     side = A.SIDE[side_row(A, key)]
     if d > near_side(A, a, b):
@@ -201,18 +202,19 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
         one, two = motion(BODY, i, start + s), motion(BODY, j, start + s)
         p = place_vertices(A, a, one.x, one.y, one.angle, P)
         q = place_vertices(A, b, two.x, two.y, two.angle, Q)
-        d, nx, ny, px, py, _, edge_a, apart_a, edge_b, apart_b = closest_on_side(A, P, p, Q, q, a, b)
+        closest = closest_on_side(A, P, p, Q, q, a, b)
+        d, nx, ny, px, py, faces = closest.distance, closest.nx, closest.ny, closest.x, closest.y, closest.faces
         if d > near_side(A, a, b):
             note_side(A, a, b, nx, ny, False)
         fixed = Closing(extent, around + pulled_along(A, a, b, nx, ny), tolerance, depth, still)
         safe, near, met = fixed_axis(P, p, Q, q, nx, ny, one, two, fixed)
         # Edges along whose normals the shapes overlap more than along n do not bound when they meet.
         least = min(d - extent, 0.0) - tolerance
-        if apart_a - extent >= least:
-            may, gap, closes = turning_axis(P, edge_a, Q, q, one, two, of_a)
+        if faces.apart_p - extent >= least:
+            may, gap, closes = turning_axis(P, faces.edge_p, Q, q, one, two, of_a)
             safe, near, met = max(safe, may), max(near, gap), met and closes
-        if apart_b - extent >= least:
-            may, gap, closes = turning_axis(Q, edge_b, P, p, two, one, of_b)
+        if faces.apart_q - extent >= least:
+            may, gap, closes = turning_axis(Q, faces.edge_q, P, p, two, one, of_b)
             safe, near, met = max(safe, may), max(near, gap), met and closes
         if met and near < -tolerance and not face_closes(A, a, b, nx, ny, px, py, d, one, two, still):
             met, safe = False, max(safe, duration / ADVANCES)
