@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from ..arrays import FloatArray
 from ..compiled import Table, kernel, nonallocating
 from ..compiled.records import Rows, empty, zeros
 from ..model.contacts import ROW, SOLVED, Problem, Row
-from ..model.islands import IslandContacts, contacts_of, island_of
+from ..model.islands import Island, IslandContacts, contacts_of, island_of
 from ..model.parameters.impulses import WEDGED
 from ..model.parameters.intervals import (
     DIRECT,
@@ -100,6 +101,61 @@ def make_contacts(p: int, k: int) -> IslandContacts:
     return IslandContacts(empty(room, ROW), np.zeros((room, 2)), np.zeros((k, 3)), np.zeros((k, 6)), zeros(1, SOLVED))
 
 
+class Begun(NamedTuple):
+    """The m contacts of an interval, -1 if they or the memory of forces need more memory; (m,) the impulses of loads
+    that forces of the last step let expect; the three `speeds` of the island."""
+
+    m: int
+    EXPECTED: FloatArray
+    slow: float
+    fast: float
+    pull: float
+
+
+@kernel
+def begin_contacts(A: Scene, isle: Island, contacts: IslandContacts, n: int, h: float, least: float) -> Begun:
+    """Find the contacts of an island over an interval h, with their initial impulses."""
+    k = len(isle.IM)
+    clear_report(contacts.OUT[0])
+    REACH = np.empty(k)
+    slow, fast, pull = speeds(isle.V, isle.ACC, isle.EXTENT, isle.IM, n, h, REACH)
+    REACH = np.maximum(REACH, least)
+    m = gather_contacts(A, isle, contacts, isle.POSE + 0.5 * h * isle.V, REACH, h, k == n)
+    if m < 0 or 2 * (A.COUNT.remembered + m) > len(A.KEYS):
+        return Begun(-1, np.empty(0), slow, fast, pull)
+    copy(contacts.VN, isle.V + h * isle.ACC)
+    contacts.JUMP[:] = 0.0
+    EXPECTED = np.empty(m)
+    recall(A, contacts.ROWS, m, h, True, contacts.L, EXPECTED)
+    return Begun(m, EXPECTED, slow, fast, pull)
+
+
+@kernel
+def find_rest(
+    A: Scene, isle: Island, contacts: IslandContacts, n: int, h: float, begun: Begun, rest_speed: float
+) -> bool:  # fmt: skip
+    """Test an island with contacts for static forces (`.statics`). If they exist, they are its impulses, and V is set
+    to 0; the caller has to account its energy."""
+    m, V, OUT = begun.m, isle.V, contacts.OUT
+    problem = Problem(contacts.ROWS, isle.IM, isle.II, isle.POSE, n, m)
+    rates(contacts.ROWS, V, m)
+    target(contacts.ROWS, m, isle.ACC, begun.EXPECTED, begun.pull, h)
+    found, OUT[0].direct = find_static_forces(
+        problem, contacts.L[:m], V, V + h * isle.ACC, isle.FELT, contacts.VN, begun.pull * h, rest_speed
+    )
+    if found:
+        OUT[0].at_rest = 1
+        remember_loads(A, contacts.ROWS, contacts.L, m, h)
+    return found
+
+
+@kernel
+def test_statics(A: Scene, isle: Island, contacts: IslandContacts, n: int, h: float, rest_speed: float) -> int:
+    """`find_rest` at the start of an interval h. Returns the number of contacts; 0 without static forces."""
+    begun = begin_contacts(A, isle, contacts, n, h, 0.0)
+    return begun.m if begun.m > 0 and find_rest(A, isle, contacts, n, h, begun, rest_speed) else 0
+
+
 @kernel
 def step_island(
     SCENE: Table, ISLE: Table, CONTACTS: Table, n: int, h: float, most: int, least: float, owed: float,
@@ -114,45 +170,22 @@ def step_island(
         most: largest number of sweeps of a moving island.
         least: length that each body's points may move at least; 0 to use their velocities alone.
         owed: energy >= 0 that the island has to lose at least.
-        rest_speed: speed relative to |a| h below which the island is tested for static forces (`.statics`), 0 for no
-            test. If they exist, V is set to 0, and the caller has to account its energy. Negative: only the test is
-            done.
+        rest_speed: speed relative to |a| h below which the island is tested for static forces (`find_rest`); 0 for no
+            test.
 
     Returns:
-        The number m of contacts; 0 if only the test is done and finds no static forces; -1, with no result, if the
-            contacts or the memory of forces need more memory.
+        The number m of contacts; -1, with no result, if the contacts or the memory of forces need more memory.
     """
     A, isle, contacts = scene_of(SCENE), island_of(ISLE), contacts_of(CONTACTS)
     ROWS, VN, OUT = contacts.ROWS, contacts.VN, contacts.OUT
-    V, ACC, IM, II, EXTENT = isle.V, isle.ACC, isle.IM, isle.II, isle.EXTENT
-    clear_report(OUT[0])
-    k = len(IM)
-    REACH = np.empty(k)
-    slow, fast, pull = speeds(V, ACC, EXTENT, IM, n, h, REACH)
-    REACH = np.maximum(REACH, least)
-    m = gather_contacts(A, isle, contacts, isle.POSE + 0.5 * h * V, REACH, h, k == n)
-    if m < 0 or 2 * (A.COUNT.remembered + m) > len(A.KEYS):
-        return -1
-    FREE = V + h * ACC
-    copy(VN, FREE)
-    contacts.JUMP[:] = 0.0
+    begun = begin_contacts(A, isle, contacts, n, h, least)
+    m, slow, fast, pull = begun.m, begun.slow, begun.fast, begun.pull
     if m > 0:
-        problem = Problem(ROWS, IM, II, isle.POSE, n, m)
-        L, EXPECTED = contacts.L[:m], np.empty(m)
-        recall(A, ROWS, m, h, True, L, EXPECTED)
-        rates(ROWS, V, m)
-        target(ROWS, m, ACC, EXPECTED, pull, h)
-        if rest_speed != 0.0:
-            found, factors = find_static_forces(problem, L, V, FREE, isle.FELT, VN, pull * h, abs(rest_speed))
-            OUT[0].direct = factors
-            if found:
-                OUT[0].at_rest = 1
-                remember_loads(A, ROWS, L, m, h)
-                return m
-            if rest_speed < 0.0:
-                return 0
-            rates(ROWS, V, m)
-            target(ROWS, m, ACC, EXPECTED, pull, h)
+        if rest_speed > 0.0 and find_rest(A, isle, contacts, n, h, begun, rest_speed):
+            return m
+        rates(ROWS, isle.V, m)
+        target(ROWS, m, isle.ACC, begun.EXPECTED, pull, h)
+        problem, L, FREE = Problem(ROWS, isle.IM, isle.II, isle.POSE, n, m), contacts.L[:m], isle.V + h * isle.ACC
         velocities(problem, L, FREE, VN)
         scale = pull * h if pull > 0.0 else 1e-3 * fast
         elastic = conserves(ROWS, m)
@@ -168,7 +201,7 @@ def step_island(
         if not exactly:
             stop_at_walls(A, problem, n, np.zeros(m, np.int64), L, VN)
         velocities(problem, L, FREE, VN)  # without the round-off of many sweeps
-        wedged = exactly and (worst > WEDGED * scale or excessive(L, m, IM, n, quick))
+        wedged = exactly and (worst > WEDGED * scale or excessive(L, m, isle.IM, n, quick))
         OUT[0].lock, OUT[0].owed = lock(problem, L, VN, FREE, owed, elastic)
         if wedged or (exactly and OUT[0].lock < 1.0 - WEDGED):
             worst = unwedge(problem, L, VN, FREE, INTERVAL_RESIDUAL * scale, quick, OUT[0])
@@ -176,6 +209,6 @@ def step_island(
         OUT[0].residual, OUT[0].tolerance = worst, INTERVAL_UNMET * scale if exactly else np.inf
         OUT[0].restitution, OUT[0].friction = works(problem, L, VN)
         remember_loads(A, ROWS, L, m, h)
-    else:
+    elif m == 0:
         OUT[0].owed = owed
     return m

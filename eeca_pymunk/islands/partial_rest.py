@@ -17,7 +17,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
-from ..contacts.interval import make_contacts, step_island
+from ..contacts.interval import make_contacts, test_statics
 from ..model.bodies import AT_REST, AWAKE
 from ..model.parameters.intervals import IMPACT_SPEED, LARGE_ISLAND
 from ..model.parameters.rest import MOVING_SHARE, PARTIAL_REST_FACTORS_STEP, REST_RETRY
@@ -75,7 +75,7 @@ def test_rest(A: Scene, MINE: IntArray, V0: FloatArray, with_supports: int, free
         return False
     quick = (IMPACT_SPEED if freezing else candidate_speed(with_supports)) * A.PAR.pulled / most
     contacts = make_contacts(p, len(isle.WHO))
-    m = step_island(A, isle, contacts, n, dt, 0, 0.0, 0.0, -quick)
+    m = test_statics(A, isle, contacts, n, dt, quick)
     COUNT.direct += contacts.OUT[0].direct
     if contacts.OUT[0].at_rest == 0:
         postpone_test(A, MINE)
