@@ -108,23 +108,6 @@ def is_far(W: Workspace, k: int) -> bool:
 
 
 @nonallocating
-def release(W: Workspace) -> bool:
-    """Release the limit that pulls most, lam side > 0; False if none pulls."""
-    link = W.link
-    worst, which = 0.0, -1
-    for k in range(W.joints):
-        if link[k].side != 0 and link[k].bounded == 0:
-            pull = W.J.HINGE[k].lam[link[k].rows - 1] * link[k].side
-            if pull > worst:
-                worst, which = pull, k
-    if which < 0:
-        return False
-    link[which].let_go, link[which].side = link[which].side, 0
-    W.J.HINGE[which].lam[link[which].rows - 1] = 0.0
-    return True
-
-
-@nonallocating
 def begin_part(link: Rows[Coupling], joints: int) -> None:
     """Start a part of a step: no limit has been released in it."""
     for k in range(joints):

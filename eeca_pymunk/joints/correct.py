@@ -60,7 +60,7 @@ def project(W: Workspace, what: int) -> None:
         if what == SPEEDS:
             passes += 1
             if passes == enough or not error > 0.0:
-                if tries > W.joints or not (let_go(W) or hold_closing(W, False)):
+                if tries > W.joints or not (release(W, SPEEDS) or hold_closing(W, False)):
                     return
                 passes, tries = 0, tries + 1
                 restore_speeds(W)
@@ -121,20 +121,24 @@ def restore_speeds(W: Workspace) -> None:
 
 
 @nonallocating
-def let_go(W: Workspace) -> bool:
-    """Release the limit whose impulse in the projection pulls most, unless it was released in this part of the step
-    already; False if none pulls. (`bounds.release` is for the impulses of a step.)"""
+def release(W: Workspace, what: int) -> bool:
+    """Release the limit that pulls most, lam side > 0; False if none pulls. POSES: by its impulse in a step. SPEEDS: by
+    that of a projection, by more than round-off, and unless it was released in this part of the step already."""
     hinge, link = W.J.HINGE, W.link
-    pulling, pull = -1, 0.0
+    which, most = -1, 0.0
     for k in range(W.joints):
-        last = link[k].rows - 1
-        if last < 0 or link[k].side == 0 or link[k].bounded != 0 or link[k].let_go == link[k].side:
+        side, last = link[k].side, link[k].rows - 1
+        if side == 0 or link[k].bounded != 0 or (what == SPEEDS and link[k].let_go == side):
             continue
-        if hinge[k].pushed[last] * link[k].side > max(pull, noise(W, k, last)):
-            pulling, pull = k, hinge[k].pushed[last] * link[k].side
-    if pulling >= 0:
-        link[pulling].side = 0
-    return pulling >= 0
+        pull = side * (hinge[k].pushed[last] if what == SPEEDS else hinge[k].lam[last])
+        if pull > max(most, noise(W, k, last) if what == SPEEDS else 0.0):
+            which, most = k, pull
+    if which >= 0 and what == POSES:
+        link[which].let_go = link[which].side
+        hinge[which].lam[link[which].rows - 1] = 0.0
+    if which >= 0:
+        link[which].side = 0
+    return which >= 0
 
 
 @nonallocating

@@ -15,7 +15,7 @@ met (`parts`).
 from __future__ import annotations
 
 from ..compiled import inlined, nonallocating
-from ..model.joint_steps import SPEEDS, JointLedger, Parts
+from ..model.joint_steps import POSES, SPEEDS, JointLedger, Parts
 from ..model.joints import Workspace
 from ..model.parameters.joints import (
     JOINT_TOUCH,
@@ -37,11 +37,10 @@ from .bounds import (
     hops,
     limit_gap,
     passed_within,
-    release,
     standing,
     update_idle,
 )
-from .correct import fitting_loss, project
+from .correct import fitting_loss, project, release
 from .ledger import account_part
 from .parts import begin_as_before, begin_next, meets_limit, note_part, weaken_lead
 
@@ -111,7 +110,7 @@ def end_part(W: Workspace, S: Parts, linear: bool, h: float, whole: bool, ledger
 def at_end(W: Workspace, S: Parts, linear: bool, h: float, whole: bool, ledger: JointLedger) -> int:
     """Decide what follows a solve to the end of the step. Arguments as of `step_with_limits`."""
     most = LIMIT_SOLVES if linear else 2 * W.joints + 100  # after these, none is released or searched
-    if S.solves < most and release(W):
+    if S.solves < most and release(W, POSES):
         return GOES_ON
     k, side, instant = first_bound(W, S.when)
     if k < 0 or linear:
