@@ -66,7 +66,7 @@ MUTATIONS = (
              "or not activate_limits(A, J, block, groups, t)", "or True", "impacts/test_joint_impact.py", "a_wall"),
     Mutation("impacts: joints of bounded force hold", "impacts/joint_answers.py", "        mark_bounded(W)\n", "",
              "jointed/test_still.py", "flies_into"),
-    Mutation("rest: what ends with a velocity", "jointed/rest.py", "rest.lift_vx, rest.lift_vy, rest.lift_spin, reach)",
+    Mutation("rest: what ends with a velocity", "jointed/rest.py", "rest.end_vx, rest.end_vy, rest.end_spin, reach)",
              "0.0, 0.0, 0.0, reach)", "jointed/test_still.py", "damping"),
     Mutation("rest: other laws of springs wake nothing", "jointed/rest.py", "if joint.push != kept.push or",
              "if False and",

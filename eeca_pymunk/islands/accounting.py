@@ -164,7 +164,7 @@ def move_to_end(A: Scene, i: int, end: float) -> None:
     body.x += rest.lift_x
     body.y += rest.lift_y
     body.angle += rest.lift_angle
-    body.vx, body.vy, body.spin = rest.lift_vx, rest.lift_vy, rest.lift_spin
+    body.vx, body.vy, body.spin = rest.end_vx, rest.end_vy, rest.end_spin
     rest.lift_x, rest.lift_y, rest.lift_angle = 0.0, 0.0, 0.0
 
 

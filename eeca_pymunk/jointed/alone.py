@@ -85,4 +85,4 @@ def set_path(A: Scene, body: int, h: float, POSE: FloatArray, END: FloatArray, V
     b.ay = 2.0 * (POSE[1] - b.y - h * b.vy) / (h * h)
     b.angular = 2.0 * (POSE[2] - b.angle - h * b.spin) / (h * h)
     rest.lift_x, rest.lift_y, rest.lift_angle = END[0] - POSE[0], END[1] - POSE[1], END[2] - POSE[2]
-    rest.lift_vx, rest.lift_vy, rest.lift_spin = V[0], V[1], V[2]
+    rest.end_vx, rest.end_vy, rest.end_spin = V[0], V[1], V[2]

@@ -54,7 +54,7 @@ def is_still(A: Scene, J: Joints, root: int) -> bool:
         body, rest, reach, most = A.BODY[i], A.RESTING[i], reach_of(A, i), REST_SPEED * balanced(A, J, i)
         if A.MEMBER[i].busy > 0 or point_speed(body.vx, body.vy, body.spin, reach) > most:
             return False
-        if point_speed(rest.lift_vx, rest.lift_vy, rest.lift_spin, reach) > most:
+        if point_speed(rest.end_vx, rest.end_vy, rest.end_spin, reach) > most:
             return False
         i = A.MEMBER[i].following
     return True
@@ -113,7 +113,7 @@ def rest_if_still(A: Scene, J: Joints, root: int) -> None:
     i = root
     while i >= 0:
         rest = A.RESTING[i]
-        rest.lift_x = rest.lift_y = rest.lift_angle = rest.lift_vx = rest.lift_vy = rest.lift_spin = 0.0
+        rest.lift_x = rest.lift_y = rest.lift_angle = rest.end_vx = rest.end_vy = rest.end_spin = 0.0
         if A.MEMBER[i].tied == i:
             clear_interval(J.STEPPED[J.OF[i]])
             save_joints(J, J.OF[i])

@@ -59,7 +59,7 @@ RENEW = -4  # the interval of the body's island ends
 
 
 # `Member.rest`; `..islands` has the transitions. AWAKE: solved in every step. AT_REST: held by static forces. CHANGED,
-# of the root of an island at rest: to be solved again; of a kinematic body: it moves.
+# of the root of an island at rest: to be solved again; of a kinematic body: it moves, or the program has moved it.
 AWAKE, AT_REST, CHANGED = 0, 1, 2
 
 # `Member.placed`: overlaps are searched where the body is, or where the program has moved it.
@@ -90,14 +90,15 @@ class Member(Record):
 class Rest(Record):
     """A body in an island: corrections at the end of the interval, state of the island's solver, timers of rest."""
 
-    # To add to pose and velocity at the end of the interval. With joints `lift_vx` to `lift_spin` are the velocity at
-    # the end itself.
-    lift_x: float
+    lift_x: float  # to add to the pose at the end of the interval
     lift_y: float
     lift_angle: float
-    lift_vx: float
+    lift_vx: float  # without joints: to add to the velocity there
     lift_vy: float
     lift_spin: float
+    end_vx: float  # with joints: the velocity there, which is not that of the parabola
+    end_vy: float
+    end_spin: float
     augmentation: float  # of the root: log10 of R in direct solves, see `contacts/relaxation.py`
     wait: float  # of the root: steps until the next direct solve
     backoff: float  # of the root: steps to wait after its next failure
