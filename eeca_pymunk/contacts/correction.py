@@ -19,8 +19,7 @@ import numpy as np
 
 from ..arrays import FlagArray, FloatArray
 from ..compiled import kernel, nonallocating
-from ..compiled.records import Rows
-from ..model.contacts import Problem, Row
+from ..model.contacts import Problem
 from ..model.parameters.intervals import (
     CORRECTION_ROUND_OFF,
     CORRECTION_SHARE,
@@ -30,7 +29,7 @@ from ..model.parameters.intervals import (
     CORRECTION_WORK,
     OVERLAP_LEFT,
 )
-from ..rows.build import conserves, normal_rate
+from ..rows.build import normal_rate
 from ..rows.lifting import lift_above_walls
 from .works import against
 
@@ -108,13 +107,6 @@ def admissible(D: FloatArray, EXTENT: FloatArray, n: int, size: float) -> float:
         far = max(far, math.sqrt(D[i, 0] * D[i, 0] + D[i, 1] * D[i, 1]) + abs(D[i, 2]) * EXTENT[i])
     most = CORRECTION_STEP * size
     return most / far if far > most else 1.0
-
-
-@nonallocating
-def budget_of(ROWS: Rows[Row], m: int, lost: float, owed: float) -> float:
-    """Energy that `lifting` may spend: the losses `lost` of m contacts, less the energy `owed`. Elastic contacts have
-    none; what they seem to lose is round-off."""
-    return -1.0 if conserves(ROWS, m) else lost - owed
 
 
 @nonallocating

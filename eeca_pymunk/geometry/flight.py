@@ -16,6 +16,12 @@ def norm(x: float, y: float) -> float:
 
 
 @nonallocating
+def has_velocity(body: Body) -> bool:
+    """Whether a body has a velocity at SINCE."""
+    return bool(body.vx != 0.0 or body.vy != 0.0 or body.spin != 0.0)
+
+
+@nonallocating
 def pose(BODY: Rows[Body], i: int, t: float) -> tuple[float, float, float]:
     """Position (length) and angle (rad) of body i at instant t; at t = SINCE the stored ones exactly."""
     s = t - BODY[i].since

@@ -7,6 +7,7 @@ import math
 from ..arrays import IntArray
 from ..compiled import nonallocating
 from ..contacts.single import kinetic
+from ..geometry.flight import has_velocity
 from ..geometry.sides import forget_sides
 from ..islands.accounting import flag_pairs
 from ..islands.at_rest import stays_at_rest, unchanged
@@ -82,7 +83,7 @@ def begin(A: Scene, IDS: IntArray) -> None:
         if BODY[i].inv_mass == 0.0:
             A.MEMBER[i].rest = AWAKE if unchanged(A, i) else CHANGED
             fixed += 1
-            if BODY[i].vx != 0.0 or BODY[i].vy != 0.0 or BODY[i].spin != 0.0:
+            if has_velocity(BODY[i]):
                 COUNT.closing = 1
         ax, ay = BODY[i].ax, BODY[i].ay
         A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2] = ax, ay, BODY[i].angular

@@ -33,6 +33,12 @@ def unchanged(A: Scene, i: int) -> bool:
 
 
 @nonallocating
+def moves_itself(A: Scene, i: int) -> bool:
+    """Whether body i, without mobility, has a velocity in this step, or the program has moved it."""
+    return bool(A.BODY[i].inv_mass == 0.0 and A.MEMBER[i].rest == CHANGED)
+
+
+@nonallocating
 def stays_at_rest(A: Scene, i: int, last: float) -> bool:
     """Whether nothing has changed for body i of an island at rest, at the start of a step; `last`: length of the last
     step. Then its path remains and its predicted event comes `last` earlier; else its island is CHANGED."""
@@ -103,7 +109,7 @@ def wake_changed(A: Scene) -> None:
             continue
         for side in range(2):
             j = A.LINK[A.PUSHED_BY[c].b if side > 0 else A.PUSHED_BY[c].a].owner
-            if j != ground and BODY[j].inv_mass == 0.0 and MEMBER[j].rest == CHANGED:
+            if moves_itself(A, j):
                 MEMBER[root].rest = CHANGED
         if ruled:
             MEMBER[root].rest = CHANGED

@@ -28,22 +28,6 @@ from .candidates import before_end, excess_way
 
 
 @nonallocating
-def driven(A: Scene, isle: Island, ROWS: Rows[Row], n: int, m: int) -> bool:
-    """Whether a moving body without mobility is deeper in an island of n bodies, at any of m contacts, than an interval
-    allows: the work of lifting beyond what losses pay is then external."""
-    for z in range(m):
-        q = max(ROWS[z].a, ROWS[z].b)  # bodies without mobility are the last ones
-        if q < n or A.BODY[isle.WHO[q]].inv_mass > 0.0:
-            continue
-        if isle.V[q, 0] == 0.0 and isle.V[q, 1] == 0.0 and isle.V[q, 2] == 0.0:
-            continue
-        a, b = shapes_of(A, ROWS[z])
-        if ROWS[z].gap < -depth_limit(A, a, b):
-            return True
-    return False
-
-
-@nonallocating
 def left_to_lift(A: Scene, end: float) -> float:
     """Depth, in parts of the smallest body, up to which contacts are not lifted at the end of an interval: OVERLAP_LEFT
     at the end of the step. Within it contacts are lifted only if that correction, which moves no point by more than

@@ -8,11 +8,10 @@ import numpy as np
 
 from ..arrays import FlagArray, FloatArray, IntArray
 from ..compiled import kernel, nonallocating
-from ..contacts.correction import budget_of, lifting
+from ..contacts.correction import lifting
 from ..contacts.counts import count_solve, note_lock, note_unmet
 from ..contacts.geometry import gather_contacts
 from ..contacts.interval import make_contacts, step_island
-from ..model.bodies import MOVED
 from ..model.contacts import Problem
 from ..model.islands import Island, IslandContacts
 from ..model.parameters.events import RESOLUTION
@@ -30,9 +29,10 @@ from .candidates import (
     sweeps_of,
     travel_bound,
 )
-from .depths import driven, left_to_lift, times_too_long
+from .depths import left_to_lift, times_too_long
 from .local import clear_places, local_island, needs_memory, number_bodies, open_interval
 from .membership import lossy
+from .payment import payment, was_placed
 from .rest import rest_threshold
 
 
@@ -62,17 +62,6 @@ def begin_interval(A: Scene, root: int, t: float) -> int:
         if status != AGAIN:
             return status
     return DONE
-
-
-@nonallocating
-def payable_by_placed(A: Scene, isle: Island, n: int) -> float:
-    """What losses may pay of the penetration correction: nothing where a body without mobility that the program has
-    moved into others does the work of lifting them, else as much as there is (infinity)."""
-    payable = math.inf
-    for q in range(n, len(isle.WHO)):
-        if A.MEMBER[isle.WHO[q]].placed == MOVED and A.BODY[isle.WHO[q]].inv_mass == 0.0:
-            payable = 0.0
-    return payable
 
 
 @nonallocating
@@ -135,8 +124,9 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
     sweeps = sweeps_of(n, t)
     m = 0
     with_supports = bodies_with_supports(A, isle, n)
-    payable = payable_by_placed(A, isle, n)
-    quiet = rest_threshold(A, root, MINE, with_supports, may_lose, t) if payable > 0.0 else 0.0
+    placed = was_placed(A, isle, n)
+    quiet = 0.0 if placed else rest_threshold(A, root, MINE, with_supports, may_lose, t)
+    payable = 0.0 if placed else math.inf
     owed = max(-A.RESTING[root].lost, 0.0)
     shortest = A.PAR.dt / RESOLUTION
     if p > 0 and h > 0.0:
@@ -154,7 +144,7 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
             return AGAIN, h / far
         if m > 0 and OUT[0].at_rest == 0:
             middle, lost = isle.POSE + 0.5 * h * V, OUT[0].restitution + OUT[0].friction
-            payable = find_lifts(A, isle, contacts, n, m, middle, VN, h, lost, A.RESTING[root].lost, payable, t)
+            payable = find_lifts(A, isle, contacts, n, m, middle, VN, h, lost, A.RESTING[root].lost, placed, t)
         note_lock(A, OUT[0])
     at_rest = OUT[0].at_rest > 0
     if OUT[0].residual > OUT[0].tolerance:
@@ -193,15 +183,14 @@ def contacts_at(A: Scene, root: int, t: float) -> tuple[Island, IslandContacts, 
 @kernel
 def find_lifts_at_cut(A: Scene, root: int, t: float) -> None:
     """Set the penetration correction of an island whose interval has been cut at instant t, at which its bodies are;
-    `accounting.apply_correction` applies it. It may cost as much energy as the island has lost in the step; where a
-    moving body without mobility is deep in the island (`depths.driven`) that does the work beyond."""
+    `accounting.apply_correction` applies it. What the island has lost in the step pays (`payment`)."""
     isle, contacts, MINE, m = contacts_at(A, root, t)
     n = len(MINE)
     clear_places(A, MINE)
     if m > 0:
         rates(contacts.ROWS, isle.V, m)
         lost = A.RESTING[root].lost
-        payable = find_lifts(A, isle, contacts, n, m, isle.POSE, isle.V, 0.0, lost, 0.0, math.inf, A.PAR.dt)
+        payable = find_lifts(A, isle, contacts, n, m, isle.POSE, isle.V, 0.0, lost, 0.0, False, A.PAR.dt)
         A.RESTING[root].payable = payable
     set_lifts(A, MINE, contacts.JUMP)
 
@@ -209,26 +198,13 @@ def find_lifts_at_cut(A: Scene, root: int, t: float) -> None:
 @kernel
 def find_lifts(
     A: Scene, isle: Island, contacts: IslandContacts, n: int, m: int, POSE: FloatArray, VN: FloatArray, h: float,
-    lost: float, before: float, payable: float, t: float,
+    lost: float, before: float, placed: bool, t: float,
 ) -> float:  # fmt: skip
     """Find the penetration corrections JUMP at the end of an interval h from instant t, with poses POSE in its middle
-    and velocities VN at its end. Returns the cost up to which losses pay (`Rest.payable`).
-
-    The energy `lost` in the interval, less what was owed `before`, pays. What was lost before in the step pays too
-
-    * in a free island: lifting costs kinetic energy there, as the angular momentum stays, and sinking has released it;
-    * where a body without mobility is driven into others, which have also gone deeper by their own motion.
-
-    Elsewhere impacts would pay, and stir pyramids again and again. A body without mobility that is driven into others,
-    or was placed into them (payable = 0), does the work beyond `payable`.
-    """
-    ROWS, drives = contacts.ROWS, driven(A, isle, contacts.ROWS, n, m)
-    budget = budget_of(ROWS, m, lost, -before if drives or len(isle.WHO) == n else max(-before, 0.0))
-    if drives:
-        payable = min(payable, max(budget, 0.0))
-    if payable < math.inf:
-        budget = math.inf
-    problem = Problem(ROWS, isle.IM, isle.II, isle.POSE, n, m)
+    and velocities VN at its end. Returns the cost up to which losses pay (`Rest.payable`). `lost`, `before`, `placed`:
+    see `payment`."""
+    budget, payable = payment(A, isle, contacts.ROWS, n, m, lost, before, placed, False)
+    problem = Problem(contacts.ROWS, isle.IM, isle.II, isle.POSE, n, m)
     lifting(problem, POSE, VN, isle.ACC, h, isle.EXTENT, budget, left_to_lift(A, t + h), contacts.JUMP)
     return payable
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from ..arrays import IntArray
 from ..compiled import nonallocating
+from ..geometry.flight import has_velocity
 from ..model.parameters.intervals import LARGE_ISLAND
 from ..model.parameters.rest import REST_CANDIDATE, REST_CANDIDATE_LARGE, REST_RETRY, REST_SPEED
 from ..model.scene import Scene
@@ -38,8 +39,7 @@ def motionless(A: Scene, MINE: IntArray) -> bool:
     """Whether none of the bodies MINE has any velocity, as in the first step of a stack, or has failed a test lately:
     static forces are then searched at once."""
     for q in range(len(MINE)):
-        body = A.BODY[MINE[q]]
-        if body.vx != 0.0 or body.vy != 0.0 or body.spin != 0.0 or A.RESTING[MINE[q]].rest_timer < 0.0:
+        if has_velocity(A.BODY[MINE[q]]) or A.RESTING[MINE[q]].rest_timer < 0.0:
             return False
     return True
 

@@ -10,9 +10,10 @@ from ..arrays import FloatArray
 from ..compiled import kernel
 from ..contacts.correction import admissible, least_of, turn_by, unturn
 from ..contacts.works import against
-from ..islands.depths import driven, left_to_lift
+from ..islands.depths import left_to_lift
 from ..islands.intervals import contacts_at
 from ..islands.local import clear_places
+from ..islands.payment import payment
 from ..model.contacts import JointedProblem
 from ..model.joints import Joints
 from ..model.parameters.intervals import CORRECTION_ROUND_OFF
@@ -44,15 +45,13 @@ def raise_gaps(
 
 @kernel
 def lift_island(A: Scene, J: Joints, interval: Interval, root: int, end: float, lost: float, build: bool) -> None:
-    """Correct penetration at the end of an island's motion. The cost is at most what contacts have `lost`, now and
-    before; if a moving body without mobility is deep in the island (`depths.driven`), that body does the remaining
-    work. `build`: whether the columns of all components have to be computed."""
+    """Correct penetration at the end of an island's motion, in which contacts have `lost` energy. `build`: whether the
+    columns of all components have to be computed."""
     isle, groups, ROWS, _, _, m, n, _, _ = interval
-    raised = driven(A, isle, ROWS, n, m)
-    budget = lost + A.RESTING[root].lost
-    spent = correct_overlaps(A, J, interval, end, math.inf if raised else budget, build)
+    budget, payable = payment(A, isle, ROWS, n, m, lost, A.RESTING[root].lost, False, True)
+    spent = correct_overlaps(A, J, interval, end, budget, build)
     if len(groups.JOINTED) > 0:
-        paid, one = min(spent, max(budget, 0.0)) if raised else spent, J.STEPPED[groups.JOINTED[0]]
+        paid, one = min(spent, payable), J.STEPPED[groups.JOINTED[0]]
         one.lifted += paid
         one.supports += spent - paid
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..compiled import kernel, nonallocating
+from ..compiled import kernel
 from ..joints.closing import farthest
 from ..joints.correct import project
 from ..joints.start import springs_of
@@ -14,18 +14,7 @@ from ..model.scene import Scene
 from .component import keep_apart, size_joints
 from .ends import components_of
 from .gathered import gather_alone
-
-
-@nonallocating
-def has_moving_partner(A: Scene, J: Joints, s: int) -> bool:
-    """Whether component s has a joint to a moving body that impulses do not move."""
-    for w in range(J.COMPONENT[s].first_body, J.COMPONENT[s].end_body):
-        body = int(J.JOINED[w].body)
-        if J.JOINED[w].freedoms == 0 and body < A.BODY.shape[0] and A.BODY[body].inv_mass == 0.0:
-            b = A.BODY[body]
-            if b.vx != 0.0 or b.vy != 0.0 or b.spin != 0.0:
-                return True
-    return False
+from .rest import has_moving_partner
 
 
 @kernel

@@ -12,7 +12,8 @@ from __future__ import annotations
 import math
 
 from ..compiled import nonallocating
-from ..islands.at_rest import put_to_rest, set_awake
+from ..geometry.flight import has_velocity
+from ..islands.at_rest import moves_itself, put_to_rest, set_awake
 from ..joints.ledger import clear_interval
 from ..model.bodies import AT_REST, CHANGED
 from ..model.joint_steps import EXACT
@@ -61,30 +62,30 @@ def is_still(A: Scene, J: Joints, root: int) -> bool:
 
 
 @nonallocating
-def moves(A: Scene, J: Joints, body: int) -> bool:
-    """Whether a body without mobility moves in this step. `body`: row of BODY, or n + row of PARTNER."""
+def has_moving_partner(A: Scene, J: Joints, s: int) -> bool:
+    """Whether component s has a joint to a body that moves by itself."""
     n = A.BODY.shape[0]
-    if body < n:
-        return bool(A.BODY[body].inv_mass == 0.0 and A.MEMBER[body].rest == CHANGED)
-    partner = J.PARTNER[body - n]
-    return bool(partner.vx != 0.0 or partner.vy != 0.0 or partner.spin != 0.0)
+    for w in range(J.COMPONENT[s].first_body, J.COMPONENT[s].end_body):
+        body = int(J.JOINED[w].body)
+        if moves_itself(A, body) if body < n else has_velocity(J.PARTNER[body - n]):
+            return True
+    return False
 
 
 @nonallocating
 def holds_still(A: Scene, J: Joints, s: int) -> bool:
     """Whether all joints of component s hold exactly, and none is to a moving partner."""
-    if J.STEPPED[s].status != EXACT:
+    if J.STEPPED[s].status != EXACT or has_moving_partner(A, J, s):
         return False
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
-        joint = J.JOINT[J.COUPLING[k].joint]
-        if joint.touched != 0 or moves(A, J, joint.body[0]) or moves(A, J, joint.body[1]):
+        if J.JOINT[J.COUPLING[k].joint].touched != 0:
             return False
     return True
 
 
 @nonallocating
 def presses_still(A: Scene, root: int) -> bool:
-    """Whether no contact of an island is on a moving body without mobility, or on a moving surface."""
+    """Whether no contact of an island is on a body that moves by itself, or on a moving surface."""
     for c in range(A.COUNT.pushes):
         if A.PUSHED_BY[c].root != root:
             continue
@@ -92,8 +93,7 @@ def presses_still(A: Scene, root: int) -> bool:
         if surface_x != 0.0 or surface_y != 0.0:
             return False
         for shape in (A.PUSHED_BY[c].a, A.PUSHED_BY[c].b):
-            body = A.BODY[A.LINK[shape].owner]
-            if body.inv_mass == 0.0 and (body.vx != 0.0 or body.vy != 0.0 or body.spin != 0.0):
+            if moves_itself(A, A.LINK[shape].owner):
                 return False
     return True
 
@@ -131,9 +131,9 @@ def disturbed(A: Scene, J: Joints, s: int) -> bool:
         # The program's functions change the laws of springs without an edit.
         if joint.push != kept.push or joint.stiffness != kept.stiffness or joint.rest != kept.rest:
             return True
-        if joint.touched != 0 or moves(A, J, joint.body[0]) or moves(A, J, joint.body[1]):
+        if joint.touched != 0:
             return True
-    return False
+    return has_moving_partner(A, J, s)
 
 
 @nonallocating

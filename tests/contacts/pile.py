@@ -9,7 +9,7 @@ import numpy as np
 
 from eeca_pymunk.compiled import table_of
 from eeca_pymunk.compiled.records import columns, rows
-from eeca_pymunk.contacts.correction import budget_of, lifting
+from eeca_pymunk.contacts.correction import lifting
 from eeca_pymunk.contacts.interval import make_contacts, step_island
 from eeca_pymunk.contacts.memory import copy_recent
 from eeca_pymunk.contacts.works import carried
@@ -20,6 +20,7 @@ from eeca_pymunk.model.bodies import POSE, VELOCITY
 from eeca_pymunk.model.contacts import Force, Problem
 from eeca_pymunk.model.islands import Island
 from eeca_pymunk.model.parameters.intervals import OVERLAP_LEFT
+from eeca_pymunk.rows.build import conserves
 
 from ..packed import Thing, World
 
@@ -131,7 +132,7 @@ class Pile:
         c, V, n, m = self.contacts, self.v, self.n, self.m
         if m > 0:
             problem, middle = Problem(c.ROWS, self.im, self.ii, self.pose, n, m), self.pose + 0.5 * h * V
-            budget = budget_of(c.ROWS, m, float(self.losses.sum()), 0.0)
+            budget = -1.0 if conserves(c.ROWS, m) else float(self.losses.sum())
             lifting(problem, middle, c.VN, self.acc, h, self.extent, budget, OVERLAP_LEFT, c.JUMP)
 
     def carried(self, vn: np.ndarray) -> float:

@@ -1,0 +1,77 @@
+"""What pays for a penetration correction: losses of the contacts up to a cost, and beyond it what moves by itself.
+
+A body without mobility that the program moves, or has placed into others, does the work of lifting them: that is
+external. All else is deducted from what contacts have lost: in the interval, less what the island owes. What was lost
+before in the step pays too
+
+* in a free island: lifting costs kinetic energy there, as the angular momentum stays, and sinking has released it;
+* where a body without mobility is driven into others, which have also gone deeper by their own motion;
+* in an island with joints.
+
+Elsewhere impacts would pay, and stir pyramids again and again.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from ..compiled import nonallocating
+from ..compiled.records import Rows
+from ..contacts.memory import shapes_of
+from ..geometry.sides import depth_limit
+from ..model.bodies import MOVED
+from ..model.contacts import Row
+from ..model.islands import Island
+from ..model.scene import Scene
+from ..rows.build import conserves
+from .at_rest import moves_itself
+
+
+class Payment(NamedTuple):
+    """Energy that a correction may cost, none if below 0, and the part of its cost up to which losses pay."""
+
+    budget: float
+    payable: float
+
+
+@nonallocating
+def was_placed(A: Scene, isle: Island, n: int) -> bool:
+    """Whether the program has moved a body without mobility into an island of n bodies."""
+    for q in range(n, len(isle.WHO)):
+        if A.MEMBER[isle.WHO[q]].placed == MOVED and A.BODY[isle.WHO[q]].inv_mass == 0.0:
+            return True
+    return False
+
+
+@nonallocating
+def driven(A: Scene, isle: Island, ROWS: Rows[Row], n: int, m: int) -> bool:
+    """Whether a body that moves by itself is deeper in an island of n bodies, at any of m contacts, than an interval
+    allows."""
+    for z in range(m):
+        q = max(ROWS[z].a, ROWS[z].b)  # bodies without mobility are the last ones
+        if q < n or not moves_itself(A, isle.WHO[q]):
+            continue
+        a, b = shapes_of(A, ROWS[z])
+        if ROWS[z].gap < -depth_limit(A, a, b):
+            return True
+    return False
+
+
+@nonallocating
+def payment(
+    A: Scene, isle: Island, ROWS: Rows[Row], n: int, m: int, lost: float, before: float, placed: bool, jointed: bool
+) -> Payment:  # fmt: skip
+    """What pays for the correction of an island of n bodies and m contacts.
+
+    Args:
+        lost: energy that contacts have lost in the interval.
+        before: in the step before; what is owed if below 0.
+        placed: whether it `was_placed` into.  jointed: whether the island has joints.
+    """
+    drives = driven(A, isle, ROWS, n, m)
+    counts = drives or jointed or len(isle.WHO) == n
+    # Elastic contacts have no losses; what they seem to lose is round-off.
+    losses = -1.0 if conserves(ROWS, m) else lost + (before if counts else min(before, 0.0))
+    payable = 0.0 if placed else max(losses, 0.0) if drives else math.inf
+    return Payment(math.inf if payable < math.inf else losses, payable)
