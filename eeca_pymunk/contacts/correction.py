@@ -73,7 +73,7 @@ def lifting(
         work, square = -against(ACC, IM, II, n, D), 0.0
         if len(IM) == n:
             NEW = END + D
-            turn, x, y, spin, inertia = unturn(NEW, D, VN, IM, II, touched)
+            turn, x, y, spin, inertia = unturn(NEW, D, VN, IM, II, touched, 0.0)
             work, square = work + turn * spin, 0.5 * inertia * turn * turn
         if not work + square > budget + CORRECTION_ROUND_OFF * against(np.abs(ACC), IM, II, n, np.abs(D)):
             break
@@ -111,13 +111,13 @@ def admissible(D: FloatArray, EXTENT: FloatArray, n: int, size: float) -> float:
 
 @nonallocating
 def unturn(
-    NEW: FloatArray, D: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray, touched: FlagArray
-) -> tuple[float, float, float, float, float]:
+    NEW: FloatArray, D: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray, touched: FlagArray, excess: float
+) -> tuple[float, float, float, float, float]:  # fmt: skip
     """The common spin of the touched bodies that removes the angular momentum sum m D x v which displacements D to the
-    poses NEW give at velocities V, all (k, 3). It changes no velocity along contacts and joints.
+    poses NEW give at velocities V, all (k, 3), and `excess`. It changes no velocity along contacts and joints.
 
     Returns the spin, the centre of mass (x, y), the angular momentum about it and the moment of inertia; zeros if a
-    touched body cannot turn, or none is touched. touched (k,): 1 for bodies that turn.
+    touched body cannot turn, or none is touched. touched (k,): 1 for bodies that turn. II: inf for spins that stay.
     """
     mass = x = y = vx = vy = 0.0
     for i in range(len(touched)):
@@ -131,7 +131,7 @@ def unturn(
     if mass == 0.0:
         return 0.0, 0.0, 0.0, 0.0, 0.0
     x, y, vx, vy = x / mass, y / mass, vx / mass, vy / mass
-    gained = spin = inertia = 0.0
+    gained, spin, inertia = excess, 0.0, 0.0
     for i in range(len(touched)):
         if touched[i] == 0:
             continue

@@ -7,7 +7,10 @@ also have changed the angular momentum, since the arms are those of the middle o
 
 from __future__ import annotations
 
-from ..compiled import Table, nonallocating
+import numpy as np
+
+from ..compiled import Table, kernel, nonallocating
+from ..contacts.correction import turn_by, unturn
 from ..contacts.single import move_to
 from ..geometry.flight import norm
 from ..geometry.gap import gap
@@ -18,7 +21,7 @@ from ..model.scene import Scene, scene_of
 from ..pairs.lists import far_apart, mark_pair
 from ..rows.energy import offset_gain
 from .at_rest import log_contact, set_awake, wake_supported
-from .membership import unite
+from .membership import members_of, unite
 from .rest import spins_freely
 from .shortened import losses, repay
 
@@ -70,39 +73,26 @@ def angular_gain(A: Scene, c: int, t: float) -> float:
     return -0.5 * s * max(h - s, 0.0) * (vx * fy - vy * fx)
 
 
-@nonallocating
+@kernel
 def remove_angular_momentum(A: Scene, root: int, excess: float) -> None:
-    """Remove the angular momentum `excess` of a free island, whose bodies are at one instant, by a common rotation,
-    which changes no contact's velocity; free spins stay as they are. The change of energy counts as restitution."""
-    BODY = A.BODY
-    mass, x, y, vx, vy = 0.0, 0.0, 0.0, 0.0, 0.0
-    i = root
-    while i >= 0:
-        if BODY[i].inv_inertia == 0.0:
-            return
-        m = 1.0 / BODY[i].inv_mass
-        mass, x, y = mass + m, x + m * BODY[i].x, y + m * BODY[i].y
-        vx, vy = vx + m * BODY[i].vx, vy + m * BODY[i].vy
-        i = A.MEMBER[i].following
-    x, y, vx, vy = x / mass, y / mass, vx / mass, vy / mass
-    angular, inertia = 0.0, 0.0
-    i = root
-    while i >= 0:
-        rx, ry = BODY[i].x - x, BODY[i].y - y
-        angular += (rx * (BODY[i].vy - vy) - ry * (BODY[i].vx - vx)) / BODY[i].inv_mass
-        inertia += (rx * rx + ry * ry) / BODY[i].inv_mass
-        if not spins_freely(A, i):
-            angular += BODY[i].spin / BODY[i].inv_inertia
-            inertia += 1.0 / BODY[i].inv_inertia
-        i = A.MEMBER[i].following
-    turn = -excess / inertia
-    i = root
-    while i >= 0:
-        BODY[i].vx -= turn * (BODY[i].y - y)
-        BODY[i].vy += turn * (BODY[i].x - x)
-        if not spins_freely(A, i):
-            BODY[i].spin += turn
-        i = A.MEMBER[i].following
+    """Remove the angular momentum `excess` of a free island, whose bodies are at one instant, by a common rotation;
+    free spins stay as they are. The change of energy counts as restitution."""
+    MINE = members_of(A, root)
+    n = len(MINE)
+    POSE, V, IM, II = np.empty((n, 3)), np.empty((n, 3)), np.empty(n), np.empty(n)
+    for q in range(n):
+        body = A.BODY[MINE[q]]
+        POSE[q, 0], POSE[q, 1], V[q, 0], V[q, 1], V[q, 2] = body.x, body.y, body.vx, body.vy, body.spin
+        IM[q], II[q] = body.inv_mass, body.inv_inertia
+        if II[q] > 0.0 and spins_freely(A, MINE[q]):
+            II[q] = np.inf
+    ALL = np.ones(n, np.uint8)
+    turn, x, y, angular, inertia = unturn(POSE, np.zeros((n, 2)), V, IM, II, ALL, excess)
+    turn_by(POSE, ALL, turn, x, y, V, 0)
+    for q in range(n):
+        body = A.BODY[MINE[q]]
+        body.vx, body.vy = V[q, 0], V[q, 1]
+        body.spin = V[q, 2] if II[q] < np.inf else body.spin
     lost = -turn * (angular + 0.5 * inertia * turn)
     A.PAR.restitution += lost
     A.RESTING[root].lost += lost

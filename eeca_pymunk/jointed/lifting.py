@@ -128,7 +128,7 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget
                 STORED[g] = close_at_poses(A, J, s, END, NEW, V, isle.IM, isle.II, end, h)
                 spent += STORED[g]
         spent -= against(isle.ACC, isle.IM, isle.II, n, NEW - END)
-        turn, x, y, spin, inertia = unturn(NEW, NEW - END, V, isle.IM, isle.II, ALL)
+        turn, x, y, spin, inertia = unturn(NEW, NEW - END, V, isle.IM, isle.II, ALL, 0.0)
         spent += turn * spin + 0.5 * inertia * turn * turn
         if spent <= budget + round_off and math.isfinite(spent):
             turn_by(NEW, ALL, turn, x, y, V, 0)
