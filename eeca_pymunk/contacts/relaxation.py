@@ -16,8 +16,10 @@ from ..arrays import FloatArray
 from ..compiled import kernel
 from ..model.bodies import Rest
 from ..model.contacts import Problem, Solved
+from ..model.parameters.impulses import POLISH_AUGMENTATION, POLISHES_INTERVAL
 from ..model.parameters.intervals import (
     BACKOFF_CONTACTS,
+    DIRECT_PROGRESS,
     FAILED_DIRECT,
     FAILED_DIRECT_AGAIN,
     FIRST_SWEEPS,
@@ -67,7 +69,7 @@ def relax(
     fails, done, few = 0, 0, problem.m <= COLUMN_CONTACTS and problem.n < LARGE_ISLAND
     last = worst
     while done < rounds:
-        passes = 6 if STATE.augmentation > 6.0 else 1  # R is small after steps of which little was taken
+        passes = POLISHES_INTERVAL if STATE.augmentation > POLISH_AUGMENTATION else 1
         STATE.augmentation, worst, taken = refine_and_sweep(
             problem, L, V, FREE, STATE.augmentation, passes, fine, worst, SWEEPS_AFTER
         )  # fmt: skip
@@ -75,8 +77,7 @@ def relax(
         out.sweeps += taken
         if worst <= max(fine, coarse):
             break
-        # A direct solve has failed if it and the sweeps after it leave more than a fifth of the residual.
-        if worst > 0.2 * last:
+        if worst > DIRECT_PROGRESS * last:
             fails += 1
         last = worst
         if fails >= (FAILED_DIRECT_AGAIN if few or STATE.backoff > 0.0 else FAILED_DIRECT):

@@ -21,13 +21,17 @@ from ..model.parameters.impulses import (
     BLOCK_DIRECT_FRICTION,
     BLOCK_LAST_SWEEPS,
     BLOCK_LAST_SWEEPS_FRICTION,
+    BLOCK_PROGRESS,
     BLOCK_RESIDUAL,
     BLOCK_RESIDUAL_FRICTION,
+    BLOCK_STALLS,
     BLOCK_SWEEPS,
     BLOCK_SWEEPS_AFTER,
     BLOCK_SWEEPS_FRICTION,
     DENSE_CONTACTS,
+    DIRECT_RESIDUAL,
     DRIFTS,
+    POLISHES,
     RATE_ROUND_OFF,
     SMALL_BLOCK,
 )
@@ -58,7 +62,7 @@ def resolve(
     """Impulses L (m, 2) and velocities V (k, 3) for given targets: up to `first` sweeps, `rounds` rounds of a direct
     solve and sweeps, `last` sweeps, and `drifts` times the end of a drift (`drift.py`), a direct solve and `last`
     sweeps, until a sweep changes no velocity by more than `tolerance`. With `drifts` a round begins with the end of a
-    drift too. Rounds also end after 8 of them that do not halve the least change so far. FREE (k, 3): velocities
+    drift too. Rounds also end after BLOCK_STALLS of them without progress. FREE (k, 3): velocities
     without impulses. Returns the change of velocity in the last sweep; OUT: numbers of sweeps and direct solves."""
     taken, worst = sweep_conjugate(problem, L, V, tolerance, first)
     OUT[0].sweeps = taken
@@ -72,17 +76,19 @@ def resolve(
         if drifts > 0:
             worst = skip_drift(problem, L, V, FREE, worst)
             OUT[0].sweeps += 1
-        log_R, worst, taken = refine_and_sweep(problem, L, V, FREE, log_R, 8, tolerance, worst, BLOCK_SWEEPS_AFTER)
+        log_R, worst, taken = refine_and_sweep(
+            problem, L, V, FREE, log_R, POLISHES, tolerance, worst, BLOCK_SWEEPS_AFTER
+        )
         OUT[0].sweeps += taken
         OUT[0].direct += 1
         if worst <= tolerance:
             return worst
-        if worst < 0.5 * least:
+        if worst < BLOCK_PROGRESS * least:
             least = worst
             stalled = 0
         else:
             stalled += 1
-            if stalled >= 8:
+            if stalled >= BLOCK_STALLS:
                 break
     if last > 0:
         taken, worst = sweep_conjugate(problem, L, V, tolerance, last)
@@ -91,7 +97,7 @@ def resolve(
         if worst <= tolerance:
             break
         worst = skip_drift(problem, L, V, FREE, worst)
-        log_R, worst = refine(problem, L, V, FREE, AUGMENTATION, 8, 0.1 * tolerance, worst)
+        log_R, worst = refine(problem, L, V, FREE, AUGMENTATION, POLISHES, DIRECT_RESIDUAL * tolerance, worst)
         taken, worst = sweep_conjugate(problem, L, V, tolerance, last)
         OUT[0].sweeps += taken + 1
         OUT[0].direct += 1

@@ -28,6 +28,8 @@ BLOCK_SWEEPS_FRICTION = work(100, "sweeps",
 BLOCK_SWEEPS_AFTER = work(3, "sweeps", "Sweeps after each direct solution of a simultaneous impact.")
 BLOCK_DIRECT = work(40, "direct solutions", "Direct solutions of a simultaneous impact, at most.")
 BLOCK_DIRECT_FRICTION = work(8, "direct solutions", "Direct solutions of a simultaneous impact with friction, at most.")
+BLOCK_PROGRESS = work(0.5, "ratio of residuals", "Progress of a direct solution and its sweeps that is enough.")
+BLOCK_STALLS = work(8, "direct solutions", "Direct solutions without such progress after which there are no more.")
 BLOCK_LAST_SWEEPS = work(400, "sweeps", "Sweeps of a simultaneous impact whose direct solutions have not converged.")
 BLOCK_LAST_SWEEPS_FRICTION = work(200, "sweeps",
     "Sweeps of one with friction whose direct solutions have not converged.")
@@ -39,6 +41,25 @@ SMALL_BLOCK = work(16, "contacts", "Number up to which sweeps alone are cheaper 
 DENSE_CONTACTS = work(20, "contacts", "Number up to which the matrix of an island is dense.")
 AUGMENTATION = round_off(8.0, "log10 of a ratio",
     "Largest augmentation of a direct solution, with which each island begins: it leaves half the digits of a double.")
+AUGMENTATION_LEAST = work(2.0, "log10 of a ratio",
+    "Smallest augmentation. Smaller: a direct solution changes more active contacts at once.")
+AUGMENTATION_STEP = work(2.0, "log10 of a ratio", "Change of the augmentation from one direct solution to the next.")
+AUGMENTATION_MORE = work(0.9, "of the step to a direct solution",
+    "Part that is taken from which on the next augmentation is larger.")
+AUGMENTATION_LESS = work(0.3, "of the step to a direct solution",
+    "Part that is taken below which the next augmentation is smaller.")
+POLISHES = work(8, "number", "Refinements of a sparse direct solution of a simultaneous impact, at most.")
+POLISHES_INTERVAL = work(6, "number",
+    "These refinements in an interval whose augmentation is above POLISH_AUGMENTATION; else one.")
+POLISH_AUGMENTATION = work(6.0, "log10 of a ratio",
+    "Augmentation up to which sparse direct solutions are not refined: it is small where little of the steps to them "
+    "was taken.")
+DIRECT_RESIDUAL = accuracy(0.1, "of the residual of sweeps", "Residual at which refinements of a direct solution end.")
+DIRECT_LOST = work(1e3, "of the residual of the last sweep",
+    "Residual from which on a direct solution is dropped: its active contacts are not those of the solution.")
+DIRECT_SINGLE = work(1e-3, "of the residual of the last sweep",
+    "Residual of a dense direct solution above which it is tried again, with friction that energy limits shared by "
+    "the two contacts of a face.")
 REFINEMENTS = work(4, "number", "Passes of a direct solution's refinement.")
 DISSECTION_LEAF = work(6, "bodies", "Number up to which nested dissection does not divide further.")
 LATE_NEIGHBOURS = work(24, "neighbours", "Number from which on a body is eliminated last.")

@@ -60,6 +60,8 @@ FIRST_SWEEPS = work(4, "sweeps", "Sweeps of an island before its first direct so
 SWEEPS_AFTER = work(4, "sweeps", "Sweeps of an island after each direct solution.")
 BACKOFF_CONTACTS = work(40, "contacts",
     "Number beyond which direct solutions that did not converge are suspended for some steps.")
+DIRECT_PROGRESS = work(0.2, "ratio of residuals",
+    "Progress of a direct solution and the sweeps after it above which it has failed.")
 FAILED_DIRECT = work(8, "direct solutions", "Direct solutions without progress after which the solve ends.")
 FAILED_DIRECT_AGAIN = work(2, "direct solutions",
     "Direct solutions without progress after which the solve ends if that of the last step failed.")
