@@ -40,21 +40,21 @@ def flag_pairs(TABLE: Table) -> None:
 @nonallocating
 def account_contact(A: Scene, c: int, t: float) -> None:
     """Enter the losses of contact c of an interval up to instant t in the ledger, log its impulse, and end it."""
-    PAR, R = A.PAR, A.PUSHED[c]
+    PAR, pushed = A.PAR, A.PUSHED[c]
     root, a, b = A.PUSHED_BY[c].root, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
     A.PUSHED_BY[c].root = LASTED if t == PAR.dt else ENDED
     mark_pair(A, a, b, 0)
-    f = (t - R.start) / R.length
-    if f == 0.0 or (R.normal == 0.0 and R.tangential == 0.0):
+    f = (t - pushed.start) / pushed.length
+    if f == 0.0 or (pushed.normal == 0.0 and pushed.tangential == 0.0):
         return
     normal, tangential = losses(A, c, t)
     A.RESTING[root].lost += normal + tangential
     normal, tangential = offset_gain(normal, tangential)
     PAR.restitution += normal
     PAR.frictional += tangential
-    PAR.external += f * R.work
+    PAR.external += f * pushed.work
     if f > 0.0:
-        log_contact(A, c, f, f * R.length)
+        log_contact(A, c, f, f * pushed.length)
 
 
 @nonallocating
@@ -62,12 +62,12 @@ def angular_gain(A: Scene, c: int, t: float) -> float:
     """Angular momentum that contact c adds if its interval h is cut after s, since its arms are those of the middle of
     the whole: -(1/2) s (h - s) (v_b - v_a) x f, with the force f and v at the start of the interval. t: the instant of
     the cut. Bodies without mobility do not count."""
-    R, BODY = A.PUSHED[c], A.BODY
+    pushed, BODY = A.PUSHED[c], A.BODY
     i, j = A.LINK[A.PUSHED_BY[c].a].owner, A.LINK[A.PUSHED_BY[c].b].owner
-    s, h = t - R.start, R.length
-    fx = (R.normal * R.nx - R.tangential * R.ny) / h
-    fy = (R.normal * R.ny + R.tangential * R.nx) / h
-    back_i, back_j = BODY[i].since - R.start, BODY[j].since - R.start
+    s, h = t - pushed.start, pushed.length
+    fx = (pushed.normal * pushed.nx - pushed.tangential * pushed.ny) / h
+    fy = (pushed.normal * pushed.ny + pushed.tangential * pushed.nx) / h
+    back_i, back_j = BODY[i].since - pushed.start, BODY[j].since - pushed.start
     vx = BODY[j].vx - back_j * BODY[j].ax - BODY[i].vx + back_i * BODY[i].ax
     vy = BODY[j].vy - back_j * BODY[j].ay - BODY[i].vy + back_i * BODY[i].ay
     return -0.5 * s * max(h - s, 0.0) * (vx * fy - vy * fx)

@@ -95,39 +95,39 @@ def checksum(RULE: FloatArray) -> float:
 
 
 @nonallocating
-def wake_changed(A: Scene) -> None:
-    """At the start of a step: dissolve all islands except those at rest for which nothing has changed. The contacts of
-    these stay in PUSHED, with the impulses of this step; the others are LASTED. Also advances rest timers."""
-    STATE, MEMBER, BODY = A.STATE, A.MEMBER, A.BODY
-    ground = BODY.shape[0] - 1
-    dt = A.PAR.dt
+def mark_changed_contacts(A: Scene) -> None:
+    """Set islands at rest CHANGED that touch what moves by itself, and all if other laws hold for pairs."""
     rules = checksum(A.RULE)
     ruled, A.PAR.rules = rules != A.PAR.rules, rules
     for c in range(A.COUNT.pushes):
-        root = A.PUSHED_BY[c].root
-        if root < 0:
-            continue
-        for side in range(2):
-            j = A.LINK[A.PUSHED_BY[c].b if side > 0 else A.PUSHED_BY[c].a].owner
-            if moves_itself(A, j):
-                MEMBER[root].rest = CHANGED
-        if ruled:
-            MEMBER[root].rest = CHANGED
-    wake_supported(A)
+        root, a, b = A.PUSHED_BY[c].root, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
+        if root >= 0 and (ruled or moves_itself(A, A.LINK[a].owner) or moves_itself(A, A.LINK[b].owner)):
+            A.MEMBER[root].rest = CHANGED
+
+
+@nonallocating
+def renew_contacts(A: Scene) -> None:
+    """Let contacts of islands at rest act over this step; those of islands that are CHANGED are LASTED."""
     for c in range(A.COUNT.pushes):
         root = A.PUSHED_BY[c].root
-        if root >= 0 and MEMBER[root].rest == CHANGED:
+        if root >= 0 and A.MEMBER[root].rest == CHANGED:
             A.PUSHED_BY[c].root = LASTED
             mark_pair(A, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0)
         elif root >= 0:
-            R = A.PUSHED[c]
-            longer = dt / R.length
-            R.normal *= longer
-            R.tangential *= longer
-            R.change *= longer
-            R.length = dt
-    most = A.PAR.pulled * dt
-    for i in range(ground):
+            pushed = A.PUSHED[c]
+            longer = A.PAR.dt / pushed.length
+            pushed.normal *= longer
+            pushed.tangential *= longer
+            pushed.change *= longer
+            pushed.length = A.PAR.dt
+
+
+@nonallocating
+def restart_paths(A: Scene) -> None:
+    """Advance the rest timers of bodies that are not at rest, and let their paths begin again."""
+    STATE, MEMBER, BODY = A.STATE, A.MEMBER, A.BODY
+    most = A.PAR.pulled * A.PAR.dt
+    for i in range(BODY.shape[0] - 1):
         root = STATE[i].island
         if root < 0 or MEMBER[root].rest == AT_REST:
             continue
@@ -139,19 +139,42 @@ def wake_changed(A: Scene) -> None:
             STATE[i].version += 1
         # Its predicted event does not contain the pairs of its last interval.
         BODY[i].due = min(BODY[i].due, 0.0)
-    for i in range(ground):
+
+
+@nonallocating
+def dissolve_islands(A: Scene) -> None:
+    """Dissolve all islands except those at rest."""
+    STATE, MEMBER = A.STATE, A.MEMBER
+    for i in range(A.BODY.shape[0] - 1):
         root = STATE[i].island
-        if root < 0:
-            continue
-        if MEMBER[root].rest != AT_REST:
+        if root >= 0 and MEMBER[root].rest != AT_REST:
             STATE[i].island = -1
             if i != root:  # the others of its island read that of the root
                 MEMBER[i].rest = AWAKE
-        else:
+        elif root >= 0:
             A.RESTING[i].lost, MEMBER[i].hits = 0.0, 0
-    for i in range(ground):
-        if STATE[i].island < 0 and BODY[i].inv_mass > 0.0:
+    for i in range(A.BODY.shape[0] - 1):
+        if STATE[i].island < 0 and A.BODY[i].inv_mass > 0.0:
             MEMBER[i].rest = AWAKE
+
+
+@nonallocating
+def wake_changed(A: Scene) -> None:
+    """At the start of a step: dissolve all islands except those at rest for which nothing has changed. `begin` has set
+    those CHANGED whose bodies have. In this order, as each part reads what the one before has set:
+
+    part                    reads                              sets
+    mark_changed_contacts   rest of kinematic bodies, rules    rest of roots: CHANGED
+    wake_supported          rest of roots                      rest of the roots below: CHANGED
+    renew_contacts          rest of roots                      which contacts remain, with their impulses of this step
+    restart_paths           rest of roots and bodies           rest timers, accelerations, path versions
+    dissolve_islands        rest of roots                      islands, rest of their bodies: AWAKE
+    """
+    mark_changed_contacts(A)
+    wake_supported(A)
+    renew_contacts(A)
+    restart_paths(A)
+    dissolve_islands(A)
 
 
 @nonallocating
@@ -170,11 +193,12 @@ def set_awake(A: Scene, root: int) -> None:
 @nonallocating
 def log_contact(A: Scene, c: int, part: float, duration: float) -> None:
     """Log this part of the impulse of contact c of an interval, over this time from the start of the interval on."""
-    R, COUNT = A.PUSHED[c], A.COUNT
+    pushed, COUNT = A.PUSHED[c], A.COUNT
     if COUNT.logged < A.LOG.shape[0]:
         note(
-            A.LOG[COUNT.logged], A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, R.start + 0.5 * duration,
-            part * R.normal + R.held, part * R.tangential, R.nx, R.ny, R.px, R.py, part * R.change, R.gap,
+            A.LOG[COUNT.logged], A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, pushed.start + 0.5 * duration,
+            part * pushed.normal + pushed.held, part * pushed.tangential, pushed.nx, pushed.ny, pushed.px, pushed.py,
+            part * pushed.change, pushed.gap,
         )  # fmt: skip
         A.LOG[COUNT.logged].duration = duration
         COUNT.logged += 1

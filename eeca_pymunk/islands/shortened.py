@@ -32,10 +32,10 @@ from .local import clear_places, contact_range, local_island, number_bodies, wri
 def losses(A: Scene, c: int, t: float) -> tuple[float, float]:
     """Losses (energy) of contact c of an interval by normal impulse and by friction up to instant t. As velocities are
     linear, D_n = -f lam (u_n + f (u_n+ - u_n) / 2) with the part f of the interval that is over, and D_t likewise."""
-    R = A.PUSHED[c]
-    f = (t - R.start) / R.length
-    normal = -f * R.normal * (R.un_before + 0.5 * f * (R.un_after - R.un_before))
-    tangential = -f * R.tangential * (R.ut_before + 0.5 * f * (R.ut_after - R.ut_before))
+    pushed = A.PUSHED[c]
+    f = (t - pushed.start) / pushed.length
+    normal = -f * pushed.normal * (pushed.un_before + 0.5 * f * (pushed.un_after - pushed.un_before))
+    tangential = -f * pushed.tangential * (pushed.ut_before + 0.5 * f * (pushed.ut_after - pushed.ut_before))
     return normal, tangential
 
 
@@ -119,11 +119,11 @@ def scale_impulses(A: Scene, root: int, t: float) -> None:
             body.ay = pull[1] + part * (body.ay - pull[1])
             body.angular = pull[2] + part * (body.angular - pull[2])
     for c in range(first, end):
-        R, part = A.PUSHED[c], Q[group_of(A, GROUP, c)]
+        pushed, part = A.PUSHED[c], Q[group_of(A, GROUP, c)]
         if part != 1.0:
-            R.normal, R.tangential = part * R.normal, part * R.tangential
-            R.work, R.change = part * R.work, part * R.change
-            R.un_before, R.un_after, R.ut_before, R.ut_after = 0.0, 0.0, 0.0, 0.0
+            pushed.normal, pushed.tangential = part * pushed.normal, part * pushed.tangential
+            pushed.work, pushed.change = part * pushed.work, part * pushed.change
+            pushed.un_before, pushed.un_after, pushed.ut_before, pushed.ut_after = 0.0, 0.0, 0.0, 0.0
     clear_places(A, MINE)
 
 

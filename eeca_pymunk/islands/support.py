@@ -41,17 +41,17 @@ def support_loads(A: Scene, root: int, LOAD: FloatArray) -> None:
         r = A.PUSHED_BY[c].root
         if r < 0 or r == root:
             continue
-        R = A.PUSHED[c]
+        pushed = A.PUSHED[c]
         for side in range(2):
             j = A.LINK[A.PUSHED_BY[c].b if side > 0 else A.PUSHED_BY[c].a].owner
             if BODY[j].inv_mass == 0.0 or A.STATE[j].island != root:
                 continue
-            q, part = A.PLACE[j], (2.0 * side - 1.0) * A.PAR.dt / R.length
-            fx = part * (R.normal * R.nx - R.tangential * R.ny)
-            fy = part * (R.normal * R.ny + R.tangential * R.nx)
+            q, part = A.PLACE[j], (2.0 * side - 1.0) * A.PAR.dt / pushed.length
+            fx = part * (pushed.normal * pushed.nx - pushed.tangential * pushed.ny)
+            fy = part * (pushed.normal * pushed.ny + pushed.tangential * pushed.nx)
             LOAD[q, 0] += BODY[j].inv_mass * fx
             LOAD[q, 1] += BODY[j].inv_mass * fy
-            LOAD[q, 2] += BODY[j].inv_inertia * ((R.px - BODY[j].x) * fy - (R.py - BODY[j].y) * fx)
+            LOAD[q, 2] += BODY[j].inv_inertia * ((pushed.px - BODY[j].x) * fy - (pushed.py - BODY[j].y) * fx)
 
 
 @kernel
@@ -76,19 +76,19 @@ def supports_load(A: Scene, root: int) -> bool:
     ROWS, L, OF = empty(end - first, ROW), np.empty((end - first, 2)), np.empty(end - first, np.int64)
     open_to, m = 0.5 * candidate_speed(A.MEMBER[root].with_supports) * A.PAR.pulled * dt * dt, 0
     for c in range(first, end):
-        R = A.PUSHED[c]
+        pushed = A.PUSHED[c]
         # Contacts without an impulse take part if their gap is no larger than the way in which a body may stop when it
         # is put to rest.
-        if not (R.normal > 0.0 or R.gap <= open_to):
+        if not (pushed.normal > 0.0 or pushed.gap <= open_to):
             continue
         a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
         p, q = A.PLACE[A.LINK[a].owner], A.PLACE[A.LINK[b].owner]
         e, mu, _, _ = law(A, a, b)
         row = ROWS[m]
         row.a, row.b = p if p >= 0 else n, q if q >= 0 else n
-        row.nx, row.ny, row.gap, row.elasticity, row.friction, row.surface = R.nx, R.ny, 0.0, e, mu, 0.0
-        place_row(row, R.px, R.py, POSE, IMS, IIS)
-        L[m, 0], L[m, 1], OF[m] = R.normal, R.tangential, c
+        row.nx, row.ny, row.gap, row.elasticity, row.friction, row.surface = pushed.nx, pushed.ny, 0.0, e, mu, 0.0
+        place_row(row, pushed.px, pushed.py, POSE, IMS, IIS)
+        L[m, 0], L[m, 1], OF[m] = pushed.normal, pushed.tangential, c
         m += 1
     clear_places(A, MINE)
     problem, slow = Problem(ROWS, IMS, IIS, POSE, n, m), REST_SPEED * A.PAR.pulled * dt
@@ -98,8 +98,8 @@ def supports_load(A: Scene, root: int) -> bool:
         postpone_test(A, MINE)
     else:
         for z in range(m):
-            R = A.PUSHED[OF[z]]
-            R.normal, R.tangential, R.change = L[z, 0], L[z, 1], L[z, 0] / ROWS[z].k_n
+            pushed = A.PUSHED[OF[z]]
+            pushed.normal, pushed.tangential, pushed.change = L[z, 0], L[z, 1], L[z, 0] / ROWS[z].k_n
             remember_forces(A, OF[z])
     return found
 
@@ -112,9 +112,11 @@ def remember_forces(A: Scene, c: int) -> None:
     if c > 0 and A.PUSHED_BY[c - 1].a == a and A.PUSHED_BY[c - 1].b == b:
         key += 1  # the other end of a face
     if find(A.KEYS, key) >= 0 or 2 * (A.COUNT.remembered + 1) <= A.KEYS.shape[0]:
-        R = A.PUSHED[c]
-        force = R.normal / R.length
-        remember_force(A.KEYS, A.FORCES, A.COUNT, key, force, R.tangential / R.length, force, R.length, A.PAR.stamp)
+        pushed = A.PUSHED[c]
+        force = pushed.normal / pushed.length
+        remember_force(
+            A.KEYS, A.FORCES, A.COUNT, key, force, pushed.tangential / pushed.length, force, pushed.length, A.PAR.stamp
+        )
 
 
 @kernel

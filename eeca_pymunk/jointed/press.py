@@ -111,8 +111,17 @@ def solve_contacts(
 
     Each iteration steps the components under L, and ends if their velocities agree with FORESEEN, those that the
     contacts' laws gave before; else it solves these laws with the columns, for L and FORESEEN. Columns are computed
-    again in every CHORD-th iteration, else updated (`secant`). If iterations do not end, the impulses with the best
-    agreement (LEAST) are taken, or gentle ones (`gentle`). The energy lock comes last.
+    again in every CHORD-th iteration, else updated (`secant`). Iterations end in four ways:
+
+    | because | `agreed` | `converged` | impulses |
+    |---|---|---|---|
+    | contacts and components agree, and contacts gain no energy | yes | yes | L |
+    | of many contacts, the laws' residual is larger than their difference | yes | as the laws' last solution | L |
+    | the laws' last solution gives the present motion | yes | as that solution | USED, those of this motion |
+    | iterations or work are used up | no | as that solution, if it agrees | L, or LEAST if these agreed better |
+
+    Impulses that are excessive, or have not converged, are replaced by gentle ones (`gentle`). The energy lock comes
+    last.
 
     Args:
         slow, fast, pull: see `..contacts.interval.speeds`.  owed: energy >= 0 that the island has to lose at least.

@@ -179,10 +179,10 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     first = COUNT.pushes
     open_interval(A, root, isle, contacts, motion.V, m, t, h)
     for z in range(m):
-        R = A.PUSHED[first + z]
-        R.un_before = R.un_after = normal_rate(ROWS[z], motion.WAY) / h
-        R.ut_before = R.ut_after = slip_of(ROWS[z], motion.WAY, h) / h
-        R.held = HELD[z]
+        pushed = A.PUSHED[first + z]
+        pushed.un_before = pushed.un_after = normal_rate(ROWS[z], motion.WAY) / h
+        pushed.ut_before = pushed.ut_after = slip_of(ROWS[z], motion.WAY, h) / h
+        pushed.held = HELD[z]
     for q in range(n):
         set_path(A, MINE[q], h, WHERE[q], motion.END[q], motion.V[q])
     return DONE, h

@@ -8,8 +8,18 @@ its bound until then, its force changes sign later: it acts up to there. The num
 limits *land*: their rows act from the present place on, g reaches the bound at the end of the part, and their work
 enters the ledger.
 
-The solutions of one interval differ little: each first tries the limits, and their instants, that the one before has
-met (`parts`).
+A part is solved to the end of the step (`at_end`), or to the instant at which a limit is searched (`at_limit`):
+
+    at_end    a row pulls: it is released                              GOES_ON, to the same instant
+              a limit is passed: it is searched, or lands              GOES_ON, to its instant, or to the end
+              none is passed: the part ends (`end_part`)               ENDS, or GOES_ON if time is left
+              one is passed, or passed back, in a step as a `whole`    FAILS
+    at_limit  its gap is not closed yet: the next secant               GOES_ON, to another instant
+              another limit is passed before: that is searched first   GOES_ON, to its instant
+              not found after all secants: it lands                    GOES_ON, to the end
+              its gap is closed                                        MEETS: `meet_limit`, and the next part
+
+Each solution of an interval first tries the limits, and their instants, that the one before has met (`parts`).
 """
 
 from __future__ import annotations
@@ -44,8 +54,7 @@ from .correct import fitting_loss, project, release
 from .ledger import account_part
 from .parts import begin_as_before, begin_next, meets_limit, note_part, weaken_lead
 
-# What follows a solve: another one; the searched limit is met; the step ends; the step fails.
-GOES_ON, MEETS, ENDS, FAILS = 0, 1, 2, 3
+GOES_ON, MEETS, ENDS, FAILS = 0, 1, 2, 3  # what follows a solve
 
 
 @nonallocating

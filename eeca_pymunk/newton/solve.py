@@ -83,9 +83,16 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
 
     At convergence g is within 3e-16 of that size (or at round-off) of its targets, or within PROGRESS.near if that is
     more, and the balance of momentum holds to round-off. False if there is none after 25 iterations, after more than 6
-    in which the error did not fall, or beyond PROGRESS.limit. Factors are kept while errors fall by NEWTON_PROGRESS
-    with them (`lasting`), the dual system while they do with new ones; bounded rows in the matrix change it in each
-    iteration, so that factors serve once.
+    in which the error did not fall, or beyond PROGRESS.limit. The factors of an iteration:
+
+    | state | `lasting`, `ready` | factors | next |
+    |---|---|---|---|
+    | kept | yes, yes | of an earlier iteration, or of the step before | kept; new if `slow`: errors fall too little |
+    | new | yes, no | computed now (`fresh`) | kept; full if `slow` |
+    | full | no, no | computed now, of `component.system` | full |
+
+    It begins kept if the component has factors, full if bounded rows are in the matrix, which change it in each
+    iteration, else new. Entering full, redundant rows begin again without impulses.
 
     Args:
         loops: whether rows may be redundant.  give: compliance over h², see `systems`.
