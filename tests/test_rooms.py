@@ -153,8 +153,9 @@ KERNELS = (
 
 
 def numbered(tree: ast.Module) -> set[str]:
-    """Names of integer constants, the module's own or imported, by which its kernels index arrays."""
-    constants = set()
+    """Names of integer constants, the module's own, imported or of imported modules, by which its kernels index
+    arrays."""
+    constants, modules = set(), set()
     for node in tree.body:
         if isinstance(node, ast.Assign) and all(
             isinstance(value, ast.Constant) and isinstance(value.value, int)
@@ -163,6 +164,7 @@ def numbered(tree: ast.Module) -> set[str]:
             constants |= {one.id for target in node.targets for one in ast.walk(target) if isinstance(one, ast.Name)}
         if isinstance(node, ast.ImportFrom):
             constants |= {alias.asname or alias.name for alias in node.names}
+            modules |= {alias.asname or alias.name for alias in node.names if alias.name.islower()}
     constants = {one for one in constants if one.isupper() and len(one) > 1}
     found = set()
     for kernel in ast.walk(tree):
@@ -177,6 +179,8 @@ def numbered(tree: ast.Module) -> set[str]:
                     one for part in parts for one in (part, getattr(part, "left", None), getattr(part, "right", None))
                 ]
                 found |= {one.id for one in bare if isinstance(one, ast.Name) and one.id in constants}
+                of_modules = [one for one in bare if isinstance(one, ast.Attribute) and one.attr.isupper()]
+                found |= {one.attr for one in of_modules if ast.unparse(one.value) in modules}
     return found
 
 

@@ -7,6 +7,7 @@ import importlib
 import inspect
 from collections.abc import Iterator
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -44,6 +45,10 @@ def named_outside_kernels(path: Path) -> Iterator[Kernel[..., object]]:
     for node in ast.walk(tree):
         if isinstance(node, ast.Name) and isinstance(found := there.get(node.id), Kernel):
             yield found
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+            module = there.get(node.value.id)
+            if isinstance(module, ModuleType) and isinstance(found := getattr(module, node.attr, None), Kernel):
+                yield found
 
 
 def test_python_calls_no_kernel_without_an_entry() -> None:

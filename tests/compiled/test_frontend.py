@@ -9,6 +9,7 @@ import pytest
 
 from eeca_pymunk.arrays import FloatArray, IntArray
 from eeca_pymunk.compiled import fetch, inlined, kernel, nonallocating
+from eeca_pymunk.model.parameters import impulses
 
 if importlib.util.find_spec("numba") is None:
     pytest.skip("numba is not installed: there is no compiler", allow_module_level=True)
@@ -149,6 +150,21 @@ def test_parts_are_kept_by_all_that_they_depend_on(monkeypatch: pytest.MonkeyPat
         key()
     store.source_key.cache_clear()
     assert len({first, other, third}) == 3
+
+
+@nonallocating
+def of_module(x: float) -> float:
+    return impulses.JAMMED * x
+
+
+def test_parts_depend_on_what_they_name_of_modules(monkeypatch: pytest.MonkeyPatch) -> None:
+    keys = []
+    for value in (impulses.JAMMED, 2.0):
+        monkeypatch.setattr(impulses, "JAMMED", value)
+        store.source_key.cache_clear()
+        keys.append(store.source_key(of_module))
+    store.source_key.cache_clear()
+    assert keys[0] != keys[1]
 
 
 def test_parts_are_kept_by_the_code_in_memory_and_not_by_the_file(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -32,6 +32,7 @@ def test_every_parameter_is_used() -> None:
     for path in PACKAGE.rglob("*.py"):
         if "parameters" not in path.parts:
             names |= {node.id for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Name)}
+            names |= {node.attr for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Attribute)}
     unused = [n for found in parameters.table().values() for n in found if n not in names]
     assert not unused
 

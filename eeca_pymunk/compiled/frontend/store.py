@@ -8,8 +8,10 @@ is compiled again. Files that no build has read for `DAYS` are removed.
 from __future__ import annotations
 
 import contextlib
+import dis
 import functools
 import hashlib
+import itertools
 import os
 import pickle
 import sys
@@ -55,6 +57,25 @@ def _names(code: CodeType) -> Iterator[str]:
             yield from _names(one)
 
 
+def _globals_of(code: CodeType, known: dict[str, Any]) -> Iterator[tuple[str, Any]]:
+    """The globals that a kernel uses, those of modules of this package as `module.name`."""
+    for name in set(_names(code)) & known.keys():
+        value, module = known[name], getattr(known[name], "__name__", "")
+        yield name, value
+        if isinstance(value, ModuleType) and module.startswith("eeca_pymunk."):
+            yield from ((f"{name}.{one}", getattr(value, one)) for one in _attributes(code, name))
+
+
+def _attributes(code: CodeType, module: str) -> set[str]:
+    """The names of a module that a function uses."""
+    steps = [one for one in dis.get_instructions(code) if one.opname not in ("CACHE", "PUSH_NULL", "PRECALL")]
+    return {
+        after.argval
+        for one, after in itertools.pairwise(steps)
+        if one.opname == "LOAD_GLOBAL" and one.argval == module and after.opname in ("LOAD_ATTR", "LOAD_METHOD")
+    }
+
+
 def _content_of(code: CodeType, doc: str | None = None) -> tuple[object, ...]:
     """The compiled content of a function, from memory, since its file may have been edited after the import."""
     constants = [_content_of(one) if isinstance(one, CodeType) else repr(one) for one in code.co_consts if one != doc]
@@ -66,9 +87,8 @@ def source_key(kernel: Kernel[Any, Any]) -> str:
     """The hash of a kernel's code and of all globals that it uses."""
     python = kernel.python
     named = [
-        (name, _dependence(python.__globals__[name], f"{kernel.name} names {name}"))
-        for name in sorted(set(_names(python.__code__)))
-        if name in python.__globals__
+        (name, _dependence(value, f"{kernel.name} names {name}"))
+        for name, value in sorted(_globals_of(python.__code__, python.__globals__), key=lambda one: one[0])
     ]
     code = _content_of(python.__code__, python.__doc__)
     return digest(kernel.name, kernel.counted, kernel.inlined, code, python.__annotations__, named)
