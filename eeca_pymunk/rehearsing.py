@@ -5,42 +5,10 @@ from __future__ import annotations
 
 import math
 
+from . import layout, transfer
 from .arrays import FloatArray, IntArray
 from .compiled import Table, kernel, nonallocating
-from .layout import (
-    BEFORE_CALL,
-    BODY_ROW,
-    CHANGES_AFTER,
-    CHANGES_BEFORE,
-    COG_X,
-    COG_Y,
-    ECCENTRIC,
-    END,
-    END_COLUMNS,
-    FLAGS,
-    KNOWN_ID,
-    PLACED,
-    READ,
-    READ_ID,
-    REHEARSAL_START,
-    START,
-    STEERED,
-    UNALTERED,
-    WRITTEN,
-)  # fmt: skip
 from .model.values import Reading, reading_of
-from .transfer import (
-    FORCES,
-    MOVED_STATIC,
-    NOT_FINITE,
-    OTHER_BODIES,
-    OVERFLOW,
-    TURNS,
-    acceleration,
-    finite,
-    put_ends,
-    to_centre,
-)  # fmt: skip
 
 HANDLED_COLUMNS = 7
 NEAR_WAYS = 2.0  # pairs are near if they may meet within so many times their ways of this step
@@ -56,20 +24,20 @@ def copy_read(R: Reading, copy: FloatArray) -> int:
         0, or OTHER_BODIES, MOVED_STATIC or NOT_FINITE if the bodies are others, a static one was moved, or a number is
         not finite.
     """
-    IDS, BODY, now, before = R.IDS, R.BODY, R.STATES[READ], R.STATES[WRITTEN]
+    IDS, BODY, now, before = R.IDS, R.BODY, R.STATES[layout.READ], R.STATES[layout.WRITTEN]
     status = 0
     for i in range(BODY.shape[0]):
-        BODY[i].due = min(BODY[i].due, PLACED)
+        BODY[i].due = min(BODY[i].due, layout.PLACED)
     for i in range(IDS.shape[1]):
-        if IDS[READ_ID, i] != IDS[KNOWN_ID, i]:
-            return OTHER_BODIES
-        if not finite(now[i, 0], now[i, 1], now[i, 2], now[i, 3], now[i, 4], now[i, 5]):
-            status = NOT_FINITE
-        if not finite(now[i, 6], now[i, 7], now[i, 8], 0.0, 0.0, 0.0):
-            status = NOT_FINITE
-        if IDS[BODY_ROW, i] < 0:
+        if IDS[layout.READ_ID, i] != IDS[layout.KNOWN_ID, i]:
+            return transfer.OTHER_BODIES
+        if not transfer.finite(now[i, 0], now[i, 1], now[i, 2], now[i, 3], now[i, 4], now[i, 5]):
+            status = transfer.NOT_FINITE
+        if not transfer.finite(now[i, 6], now[i, 7], now[i, 8], 0.0, 0.0, 0.0):
+            status = transfer.NOT_FINITE
+        if IDS[layout.BODY_ROW, i] < 0:
             if now[i, 0] != before[i, 0] or now[i, 1] != before[i, 1] or now[i, 2] != before[i, 2]:
-                return MOVED_STATIC
+                return transfer.MOVED_STATIC
         for c in range(9):
             copy[i, c] = now[i, c]
     return status
@@ -79,7 +47,7 @@ def copy_read(R: Reading, copy: FloatArray) -> int:
 def copy_start(table: Table) -> int:
     """`copy_read` to HOOKED[START]."""
     R = reading_of(table)
-    return copy_read(R, R.HOOKED[START])
+    return copy_read(R, R.HOOKED[layout.START])
 
 
 @kernel
@@ -94,11 +62,11 @@ def alter_end(table: Table, stops: int) -> int:
         the bits of `put_ends`, or OVERFLOW if a number is not finite.
     """
     R = reading_of(table)
-    IDS, BODY, changes, unaltered = R.IDS, R.BODY, R.HOOKED[CHANGES_AFTER], R.HOOKED[UNALTERED]
-    now, end = R.STATES[READ], R.STATES[WRITTEN]
-    status, straight, turning = FORCES | TURNS, 0.0, 0.0
+    IDS, BODY, changes, unaltered = R.IDS, R.BODY, R.HOOKED[layout.CHANGES_AFTER], R.HOOKED[layout.UNALTERED]
+    now, end = R.STATES[layout.READ], R.STATES[layout.WRITTEN]
+    status, straight, turning = transfer.FORCES | transfer.TURNS, 0.0, 0.0
     for i in range(IDS.shape[1]):
-        row = IDS[BODY_ROW, i]
+        row = IDS[layout.BODY_ROW, i]
         for c in range(9):
             unaltered[i, c] = end[i, c]
         if row < 0:
@@ -108,7 +76,7 @@ def alter_end(table: Table, stops: int) -> int:
                 unaltered[i, 3], unaltered[i, 4], unaltered[i, 5] = now[i, 3], now[i, 4], now[i, 5]
         else:
             end[i, 6], end[i, 7], end[i, 8] = 0.0, 0.0, 0.0
-            if stops and BODY[row].inv_mass > 0.0 and not IDS[FLAGS, i] & STEERED:
+            if stops and BODY[row].inv_mass > 0.0 and not IDS[layout.FLAGS, i] & layout.STEERED:
                 straight += (end[i, 3] * end[i, 3] + end[i, 4] * end[i, 4]) / BODY[row].inv_mass
                 if BODY[row].inv_inertia > 0.0:
                     turning += end[i, 5] * end[i, 5] / BODY[row].inv_inertia
@@ -117,12 +85,12 @@ def alter_end(table: Table, stops: int) -> int:
         for c in range(9):
             end[i, c] += changes[i, c]
             changes[i, c] = 0.0
-        if row >= 0 and not finite(end[i, 0], end[i, 1], end[i, 2], end[i, 3], end[i, 4], end[i, 5]):
-            status = OVERFLOW
-    R.ENDS[END_COLUMNS * IDS.shape[1]] = 0.5 * (straight + turning)
-    if status == OVERFLOW:
-        return OVERFLOW
-    return put_ends(R.STATES, IDS, R.ENDS, status)
+        if row >= 0 and not transfer.finite(end[i, 0], end[i, 1], end[i, 2], end[i, 3], end[i, 4], end[i, 5]):
+            status = transfer.OVERFLOW
+    R.ENDS[layout.END_COLUMNS * IDS.shape[1]] = 0.5 * (straight + turning)
+    if status == transfer.OVERFLOW:
+        return transfer.OVERFLOW
+    return transfer.put_ends(R.STATES, IDS, R.ENDS, status)
 
 
 @kernel
@@ -130,9 +98,9 @@ def accept_rounding(table: Table) -> None:
     """Accept positions that differ from STATES[WRITTEN] by round-off as unedited: pymunk rounds the positions of bodies
     whose centre of mass is not their origin."""
     R = reading_of(table)
-    now, end, EXTRA = R.STATES[READ], R.STATES[WRITTEN], R.EXTRA
+    now, end, EXTRA = R.STATES[layout.READ], R.STATES[layout.WRITTEN], R.EXTRA
     for i in range(now.shape[0]):
-        size = max(abs(now[i, 0]), abs(now[i, 1])) + max(abs(EXTRA[i, COG_X]), abs(EXTRA[i, COG_Y]))
+        size = max(abs(now[i, 0]), abs(now[i, 1])) + max(abs(EXTRA[i, layout.COG_X]), abs(EXTRA[i, layout.COG_Y]))
         if max(abs(now[i, 0] - end[i, 0]), abs(now[i, 1] - end[i, 1])) <= 1e-14 * size:
             end[i, 0], end[i, 1] = now[i, 0], now[i, 1]
 
@@ -146,8 +114,8 @@ def any_near(STATES: FloatArray, ENDS: FloatArray, HANDLED: FloatArray, PAIRS: I
     box that contains the shape; its radius at rest. Of shapes that move the box is a circle about the origin of the
     body, whose centre and radius are written.
     """
-    now, N = STATES[READ], STATES.shape[1]
-    end = ENDS[END * N :]
+    now, N = STATES[layout.READ], STATES.shape[1]
+    end = ENDS[layout.END * N :]
     for k in range(HANDLED.shape[0]):
         i = int(HANDLED[k, 0])
         if i >= 0:
@@ -185,39 +153,39 @@ def place_for_rehearsal(
         the end is not finite.
     """
     R = reading_of(table)
-    status = copy_read(R, R.HOOKED[REHEARSAL_START])
+    status = copy_read(R, R.HOOKED[layout.REHEARSAL_START])
     if status < 0:
         return status
-    IDS, EXTRA, BODY, now = R.IDS, R.EXTRA, R.BODY, R.STATES[READ]
+    IDS, EXTRA, BODY, now = R.IDS, R.EXTRA, R.BODY, R.STATES[layout.READ]
     N = IDS.shape[1]
     pull = math.sqrt(gx * gx + gy * gy)
     down_x, down_y, deepest = 0.0, 0.0, -math.inf
     if pull > 0.0:
         down_x, down_y = gx / pull, gy / pull
     for i in range(N):
-        row = IDS[BODY_ROW, i]
+        row = IDS[layout.BODY_ROW, i]
         if row >= 0 and BODY[row].inv_mass > 0.0:
             deepest = max(deepest, now[i, 0] * down_x + now[i, 1] * down_y)
-    end = R.ENDS[END * N :]
+    end = R.ENDS[layout.END * N :]
     for i in range(N):
         x, y, angle, vx, vy, spin = now[i, 0], now[i, 1], now[i, 2], now[i, 3], now[i, 4], now[i, 5]
-        row = IDS[BODY_ROW, i]
+        row = IDS[layout.BODY_ROW, i]
         if row >= 0:
-            special, moves = IDS[FLAGS, i], BODY[row].inv_mass > 0.0
-            ax, ay, twist, damped = acceleration(now, i, BODY[row], special, EXTRA, gx, gy, half_damping)
+            special, moves = IDS[layout.FLAGS, i], BODY[row].inv_mass > 0.0
+            ax, ay, twist, damped = transfer.acceleration(now, i, BODY[row], special, EXTRA, gx, gy, half_damping)
             px, py = x, y
-            if special & ECCENTRIC:
-                dx, dy = to_centre(EXTRA, i, angle)
+            if special & layout.ECCENTRIC:
+                dx, dy = transfer.to_centre(EXTRA, i, angle)
                 px, py = px + dx, py + dy
             px += dt * (damped * vx + 0.5 * dt * ax)
             py += dt * (damped * vy + 0.5 * dt * ay)
             turned = angle + dt * (damped * spin + 0.5 * dt * twist)
-            if not finite(px, py, turned, 0.0, 0.0, 0.0):
-                return OVERFLOW
+            if not transfer.finite(px, py, turned, 0.0, 0.0, 0.0):
+                return transfer.OVERFLOW
             way = SUPPORT_SHIFT * (deepest - (x * down_x + y * down_y)) if moves and pull > 0.0 else 0.0
             x, y, angle = px - dt * vx + way * down_x, py - dt * vy + way * down_y, turned - dt * spin
-            if special & ECCENTRIC:
-                dx, dy = to_centre(EXTRA, i, angle)
+            if special & layout.ECCENTRIC:
+                dx, dy = transfer.to_centre(EXTRA, i, angle)
                 x, y = x - dx, y - dy
         end[6 * i], end[6 * i + 1], end[6 * i + 2] = x, y, angle
         end[6 * i + 3], end[6 * i + 4], end[6 * i + 5] = vx, vy, spin
@@ -232,8 +200,8 @@ def record_changes(table: Table, late: int) -> int:
     pymunk sets spins of bodies of infinite moment that gears hold to nan: nan counts as unchanged.
     """
     R = reading_of(table)
-    now, last, found = R.STATES[READ], R.HOOKED[BEFORE_CALL], 0
-    changes = R.HOOKED[CHANGES_AFTER if late > 0 else CHANGES_BEFORE]
+    now, last, found = R.STATES[layout.READ], R.HOOKED[layout.BEFORE_CALL], 0
+    changes = R.HOOKED[layout.CHANGES_AFTER if late > 0 else layout.CHANGES_BEFORE]
     for i in range(now.shape[0]):
         for c in range(9):
             before = last[i, c]

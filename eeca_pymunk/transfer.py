@@ -11,29 +11,10 @@ from __future__ import annotations
 
 import math
 
+from . import layout
 from .arrays import FloatArray, IntArray
 from .compiled import Table, kernel, nonallocating
 from .compiled.records import Rows
-from .layout import (
-    ACCELERATION_X,
-    ACCELERATION_Y,
-    ANGULAR_ACCELERATION,
-    BODY_ROW,
-    COG_X,
-    COG_Y,
-    ECCENTRIC,
-    END,
-    FLAGS,
-    KNOWN_ID,
-    READ,
-    READ_ID,
-    RESET_FORCES,
-    SHIFTED,
-    STEERED,
-    STOPPED,
-    VELOCITIES,
-    WRITTEN,
-)  # fmt: skip
 from .model.bodies import Body
 from .model.values import reading_of
 
@@ -56,7 +37,7 @@ def finite(a: float, b: float, c: float, d: float, e: float, f: float) -> bool:
 def to_centre(EXTRA: FloatArray, i: int, angle: float) -> tuple[float, float]:
     """R(angle) k (length): from the position of body i, whose centre of mass is not its origin, to its centre of
     mass."""
-    kx, ky = EXTRA[i, COG_X], EXTRA[i, COG_Y]
+    kx, ky = EXTRA[i, layout.COG_X], EXTRA[i, layout.COG_Y]
     c, s = math.cos(angle), math.sin(angle)
     return c * kx - s * ky, s * kx + c * ky
 
@@ -67,8 +48,13 @@ def acceleration(
 ) -> tuple[float, float, float, float]:
     """Acceleration (2) and angular acceleration of body i without contacts, by its force and torque in `now` (N, 9) and
     gravity, or those that its velocity function has set; and the factor of half a step's damping on its velocities."""
-    if special & STEERED:
-        return EXTRA[i, ACCELERATION_X], EXTRA[i, ACCELERATION_Y], EXTRA[i, ANGULAR_ACCELERATION], 1.0
+    if special & layout.STEERED:
+        return (
+            EXTRA[i, layout.ACCELERATION_X],
+            EXTRA[i, layout.ACCELERATION_Y],
+            EXTRA[i, layout.ANGULAR_ACCELERATION],
+            1.0,
+        )
     im = body.inv_mass
     if im > 0.0:
         return now[i, 6] * im + gx, now[i, 7] * im + gy, now[i, 8] * body.inv_inertia, half_damping
@@ -93,10 +79,10 @@ def read_states(
         FORCES if any body has a force or torque, else 0. A negative code, with BODY invalid, if the bodies are others,
         a static one was moved, or a number is not finite.
     """
-    now, before = STATES[READ], STATES[WRITTEN]
+    now, before = STATES[layout.READ], STATES[layout.WRITTEN]
     status = 0
     for i in range(IDS.shape[1]):
-        if IDS[READ_ID, i] != IDS[KNOWN_ID, i]:
+        if IDS[layout.READ_ID, i] != IDS[layout.KNOWN_ID, i]:
             return OTHER_BODIES
         x, y, angle, vx, vy, spin = now[i, 0], now[i, 1], now[i, 2], now[i, 3], now[i, 4], now[i, 5]
         fx, fy, torque = now[i, 6], now[i, 7], now[i, 8]
@@ -110,20 +96,20 @@ def read_states(
             status |= FORCES
             if not finite(fx, fy, torque, 0.0, 0.0, 0.0):
                 return NOT_FINITE
-        row = IDS[BODY_ROW, i]
+        row = IDS[layout.BODY_ROW, i]
         if row < 0:
             if moved:
                 return MOVED_STATIC
             continue
-        special = IDS[FLAGS, i]
+        special = IDS[layout.FLAGS, i]
         ax, ay, twist, damped = acceleration(now, i, BODY[row], special, EXTRA, gx, gy, half_damping)
-        if special & ECCENTRIC:
+        if special & layout.ECCENTRIC:
             dx, dy = to_centre(EXTRA, i, angle)
             x, y = x + dx, y + dy
         if moved:
             way = (abs(now[i, 0] - before[i, 0]) + abs(now[i, 1] - before[i, 1])) / max(BODY[row].extent, 1e-300)
             way += abs(angle - before[i, 2])
-            BODY[row].due = min(BODY[row].due, SHIFTED - way) if way >= 0.0 else -math.inf
+            BODY[row].due = min(BODY[row].due, layout.SHIFTED - way) if way >= 0.0 else -math.inf
         elif edited or damped != 1.0 or ax != BODY[row].ax or ay != BODY[row].ay or twist != BODY[row].angular:
             BODY[row].due = min(BODY[row].due, -1.0)
         BODY[row].x, BODY[row].y, BODY[row].angle = x, y, angle
@@ -141,8 +127,12 @@ def forget_last_end(table: Table) -> None:
     STATES, IDS, EXTRA = R.STATES, R.IDS, R.EXTRA
     for i in range(IDS.shape[1]):
         for c in range(9):
-            STATES[WRITTEN, i, c] = STATES[READ, i, c] if IDS[BODY_ROW, i] < 0 else math.nan
-        EXTRA[i, ACCELERATION_X], EXTRA[i, ACCELERATION_Y], EXTRA[i, ANGULAR_ACCELERATION] = 0.0, 0.0, 0.0
+            STATES[layout.WRITTEN, i, c] = STATES[layout.READ, i, c] if IDS[layout.BODY_ROW, i] < 0 else math.nan
+        EXTRA[i, layout.ACCELERATION_X], EXTRA[i, layout.ACCELERATION_Y], EXTRA[i, layout.ANGULAR_ACCELERATION] = (
+            0.0,
+            0.0,
+            0.0,
+        )
 
 
 @kernel
@@ -158,20 +148,20 @@ def write_states(
     Returns:
         `status` with the bits of `put_ends`; OVERFLOW, with STATES written, if a number is not finite.
     """
-    after = STATES[WRITTEN]
+    after = STATES[layout.WRITTEN]
     for i in range(IDS.shape[1]):
-        row = IDS[BODY_ROW, i]
+        row = IDS[layout.BODY_ROW, i]
         if row < 0:
             continue
         s = dt - BODY[row].since
-        special = IDS[FLAGS, i]
-        damped = half_damping if BODY[row].inv_mass > 0.0 and not special & STEERED else 1.0
+        special = IDS[layout.FLAGS, i]
+        damped = half_damping if BODY[row].inv_mass > 0.0 and not special & layout.STEERED else 1.0
         ax, ay, twist = BODY[row].ax, BODY[row].ay, BODY[row].angular
         vx, vy, spin = BODY[row].vx, BODY[row].vy, BODY[row].spin
         x, y = BODY[row].x + s * (vx + 0.5 * s * ax), BODY[row].y + s * (vy + 0.5 * s * ay)
         angle = BODY[row].angle + s * (spin + 0.5 * s * twist)
         vx, vy, spin = damped * (vx + s * ax), damped * (vy + s * ay), damped * (spin + s * twist)
-        if special & ECCENTRIC:
+        if special & layout.ECCENTRIC:
             dx, dy = to_centre(EXTRA, i, angle)
             x, y = x - dx, y - dy
         if not finite(x, y, angle, vx, vy, spin):
@@ -193,10 +183,10 @@ def put_ends(STATES: FloatArray, IDS: IntArray, ENDS: FloatArray, status: int) -
         long to write as all others.
     """
     N = IDS.shape[1]
-    now, after = STATES[READ], STATES[WRITTEN]
-    end, forces = ENDS[END * N :], ENDS[RESET_FORCES * N :]
+    now, after = STATES[layout.READ], STATES[layout.WRITTEN]
+    end, forces = ENDS[layout.END * N :], ENDS[layout.RESET_FORCES * N :]
     for i in range(N):
-        if IDS[BODY_ROW, i] < 0:
+        if IDS[layout.BODY_ROW, i] < 0:
             after[i, 3], after[i, 4], after[i, 5] = now[i, 3], now[i, 4], now[i, 5]
         elif after[i, 2] != now[i, 2] or after[i, 5] != now[i, 5] or after[i, 5] != 0.0:
             status |= TURNS
@@ -205,14 +195,14 @@ def put_ends(STATES: FloatArray, IDS: IntArray, ENDS: FloatArray, status: int) -
         end[4 * i + 2], end[4 * i + 3] = after[i, 3], after[i, 4]
     if status & TURNS:
         for i in range(N):
-            if IDS[BODY_ROW, i] < 0:
+            if IDS[layout.BODY_ROW, i] < 0:
                 after[i, 3], after[i, 4], after[i, 5] = now[i, 3], now[i, 4], now[i, 5]
             for k in range(6):
                 end[6 * i + k] = after[i, k]
     if status & FORCES:
         for i in range(N):
             for k in range(3):
-                forces[3 * i + k] = 0.0 if IDS[BODY_ROW, i] >= 0 else now[i, 6 + k]
+                forces[3 * i + k] = 0.0 if IDS[layout.BODY_ROW, i] >= 0 else now[i, 6 + k]
     return status
 
 
@@ -229,8 +219,8 @@ def write_stopped_ends(table: Table, status: int) -> None:
     have the columns of END."""
     R = reading_of(table)
     ENDS, N = R.ENDS, R.STATES.shape[1]
-    after = R.STATES[WRITTEN]
-    stopped, velocities = ENDS[STOPPED * N :], ENDS[VELOCITIES * N :]
+    after = R.STATES[layout.WRITTEN]
+    stopped, velocities = ENDS[layout.STOPPED * N :], ENDS[layout.VELOCITIES * N :]
     if status & TURNS:
         for i in range(N):
             for k in range(3):

@@ -4,25 +4,10 @@ from __future__ import annotations
 
 import math
 
+from . import layout
 from .arrays import FloatArray, IntArray
 from .compiled import Table, nonallocating
 from .compiled.records import Rows
-from .layout import (
-    ACCELERATION_X,
-    ACCELERATION_Y,
-    ANGULAR_ACCELERATION,
-    BODY_ROW,
-    CHANGES_AFTER,
-    CHANGES_BEFORE,
-    COG_X,
-    COG_Y,
-    ECCENTRIC,
-    FLAGS,
-    READ,
-    STATE_COLUMNS,
-    STEERED,
-    WRITTEN,
-)  # fmt: skip
 from .model.shapes import Link, Shape
 from .model.values import (
     CARRIED,
@@ -139,7 +124,11 @@ def write_rows(table: Table) -> None:
     R = reading_of(table)
     BODIES, SHAPES, BODY, LINK, ORDER = R.BODIES, R.SHAPES, R.BODY, R.LINK, R.ORDER
     for i in range(BODIES.shape[0]):
-        BODIES[i].x, BODIES[i].y, BODIES[i].angle = R.STATES[READ, i, 0], R.STATES[READ, i, 1], R.STATES[READ, i, 2]
+        BODIES[i].x, BODIES[i].y, BODIES[i].angle = (
+            R.STATES[layout.READ, i, 0],
+            R.STATES[layout.READ, i, 1],
+            R.STATES[layout.READ, i, 2],
+        )
     for s in range(SHAPES.shape[0]):
         SHAPES[s].owner = R.OWNER[s]
     place_points(BODIES, SHAPES, R.POINT)
@@ -177,13 +166,17 @@ def clear_exchange(R: Reading) -> None:
     for i in range(R.BODIES.shape[0]):
         body = R.BODIES[i]
         eccentric = 1 if body.centre_x != 0.0 or body.centre_y != 0.0 else 0
-        R.IDS[BODY_ROW, i] = body.row
-        R.IDS[FLAGS, i] = ECCENTRIC * eccentric + STEERED * body.steered
-        R.EXTRA[i, COG_X], R.EXTRA[i, COG_Y] = body.centre_x, body.centre_y
-        R.EXTRA[i, ACCELERATION_X], R.EXTRA[i, ACCELERATION_Y], R.EXTRA[i, ANGULAR_ACCELERATION] = 0.0, 0.0, 0.0
-        for c in range(STATE_COLUMNS):
-            R.HOOKED[CHANGES_BEFORE, i, c], R.HOOKED[CHANGES_AFTER, i, c] = 0.0, 0.0
-            R.STATES[WRITTEN, i, c] = R.STATES[READ, i, c] if body.kind == STATIC else math.nan
+        R.IDS[layout.BODY_ROW, i] = body.row
+        R.IDS[layout.FLAGS, i] = layout.ECCENTRIC * eccentric + layout.STEERED * body.steered
+        R.EXTRA[i, layout.COG_X], R.EXTRA[i, layout.COG_Y] = body.centre_x, body.centre_y
+        (
+            R.EXTRA[i, layout.ACCELERATION_X],
+            R.EXTRA[i, layout.ACCELERATION_Y],
+            R.EXTRA[i, layout.ANGULAR_ACCELERATION],
+        ) = 0.0, 0.0, 0.0
+        for c in range(layout.STATE_COLUMNS):
+            R.HOOKED[layout.CHANGES_BEFORE, i, c], R.HOOKED[layout.CHANGES_AFTER, i, c] = 0.0, 0.0
+            R.STATES[layout.WRITTEN, i, c] = R.STATES[layout.READ, i, c] if body.kind == STATIC else math.nan
         R.TOTALS[DYNAMICS] += 1 if body.kind == DYNAMIC else 0
         R.TOTALS[ECCENTRICS] += eccentric
         R.TOTALS[STEERERS] += body.steered
@@ -202,8 +195,8 @@ def read_space(table: Table, arranged: int) -> int:
     """
     R = reading_of(table)
     for i in range(R.STATES.shape[1]):
-        for c in range(STATE_COLUMNS):
-            if not abs(R.STATES[READ, i, c]) < math.inf:
+        for c in range(layout.STATE_COLUMNS):
+            if not abs(R.STATES[layout.READ, i, c]) < math.inf:
                 return NOT_FINITE
     if arranged != 0:
         for i in range(R.BODIES.shape[0]):

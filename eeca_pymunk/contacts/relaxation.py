@@ -16,17 +16,8 @@ from ..arrays import FloatArray
 from ..compiled import kernel
 from ..model.bodies import Rest
 from ..model.contacts import Problem, Solved
+from ..model.parameters import intervals
 from ..model.parameters.impulses import POLISH_AUGMENTATION, POLISHES_INTERVAL
-from ..model.parameters.intervals import (
-    BACKOFF_CONTACTS,
-    DIRECT_PROGRESS,
-    FAILED_DIRECT,
-    FAILED_DIRECT_AGAIN,
-    FIRST_SWEEPS,
-    LARGE_ISLAND,
-    LONGEST_BACKOFF,
-    SWEEPS_AFTER,
-)
 from ..model.parameters.joints import COLUMN_CONTACTS
 from ..rows.conjugate import sweep_conjugate
 from ..rows.direct import refine_and_sweep
@@ -59,34 +50,34 @@ def relax(
         out.sweeps += sweeps
         return worst
     sweeps, worst = 0, np.inf
-    while sweeps < FIRST_SWEEPS and worst > fine:
+    while sweeps < intervals.FIRST_SWEEPS and worst > fine:
         worst = sweep(problem, L, V)
         sweeps += 1
     out.sweeps += sweeps
     if worst <= fine:
         return worst
     # few: of so few contacts and bodies that homotopies can solve it.
-    fails, done, few = 0, 0, problem.m <= COLUMN_CONTACTS and problem.n < LARGE_ISLAND
+    fails, done, few = 0, 0, problem.m <= COLUMN_CONTACTS and problem.n < intervals.LARGE_ISLAND
     last = worst
     while done < rounds:
         passes = POLISHES_INTERVAL if STATE.augmentation > POLISH_AUGMENTATION else 1
         STATE.augmentation, worst, taken = refine_and_sweep(
-            problem, L, V, FREE, STATE.augmentation, passes, fine, worst, SWEEPS_AFTER
+            problem, L, V, FREE, STATE.augmentation, passes, fine, worst, intervals.SWEEPS_AFTER
         )  # fmt: skip
         done += 1
         out.sweeps += taken
         if worst <= max(fine, coarse):
             break
-        if worst > DIRECT_PROGRESS * last:
+        if worst > intervals.DIRECT_PROGRESS * last:
             fails += 1
         last = worst
-        if fails >= (FAILED_DIRECT_AGAIN if few or STATE.backoff > 0.0 else FAILED_DIRECT):
+        if fails >= (intervals.FAILED_DIRECT_AGAIN if few or STATE.backoff > 0.0 else intervals.FAILED_DIRECT):
             break
     if few and worst > max(fine, coarse):
         worst = solve_few(problem, L, V, max(fine, coarse), out)
     out.direct += done
-    if worst > max(fine, coarse) and problem.m > BACKOFF_CONTACTS:
-        STATE.backoff = min(2.0 * STATE.backoff + 2.0, LONGEST_BACKOFF)
+    if worst > max(fine, coarse) and problem.m > intervals.BACKOFF_CONTACTS:
+        STATE.backoff = min(2.0 * STATE.backoff + 2.0, intervals.LONGEST_BACKOFF)
         STATE.wait = STATE.backoff
     else:
         STATE.backoff = 0.0

@@ -12,18 +12,8 @@ from ..contacts.targets import hardly_bounces
 from ..geometry.flight import norm
 from ..geometry.sides import smaller
 from ..model.contacts import Row
+from ..model.parameters import intervals
 from ..model.parameters.events import RESOLUTION
-from ..model.parameters.intervals import (
-    EXACT_CONTACTS,
-    INTERVAL_WAY,
-    LARGE_ISLAND,
-    LARGE_SWEEPS,
-    LARGE_SWEEPS_HIT,
-    NORMAL_TURN,
-    SMALL_SWEEPS,
-    STICK_TOLERANCE,
-    TOUCH,
-)
 from ..model.scene import Scene
 from ..pairs.lists import far_apart
 from ..pairs.rules import barred, law
@@ -67,28 +57,30 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                 small = smaller(A, s, o)
                 busy = A.MEMBER[i].busy > 0 or A.MEMBER[j].busy > 0
                 speed = own + norm(BODY[j].vx, BODY[j].vy) + abs(BODY[j].spin) * BODY[j].extent
-                reach = 1.1 * (speed * h + A.PAR.pulled * h * h) + TOUCH * small
+                reach = 1.1 * (speed * h + A.PAR.pulled * h * h) + intervals.TOUCH * small
                 if together:
-                    reach = travel_bound(A, i, h) + travel_bound(A, j, h) + TOUCH * small
+                    reach = travel_bound(A, i, h) + travel_bound(A, j, h) + intervals.TOUCH * small
                 if far_apart(A, s, o, t, reach):
                     continue
                 # In a large island all loaded contacts remain candidates: a hit acts on a few bodies at once, and
                 # reaches the others through the interval.
                 may_be_loaded = lossy and not together
-                if not (n >= LARGE_ISLAND and may_be_loaded and remembered_force(A, s, o, since)[0] > 0.0):
+                if not (n >= intervals.LARGE_ISLAND and may_be_loaded and remembered_force(A, s, o, since)[0] > 0.0):
                     g, u, closing, _, mass = approach(A, s, o, t)
                     if not together:
                         if not busy:
-                            reach = 1.1 * (max(-u, 0.0) * h + max(A.PAR.pulled, closing) * h * h) + TOUCH * small
+                            reach = (
+                                1.1 * (max(-u, 0.0) * h + max(A.PAR.pulled, closing) * h * h) + intervals.TOUCH * small
+                            )
                         # Within an interval bodies move no farther; other pairs meet at their times of impact.
-                        reach = min(reach, 2.0 * INTERVAL_WAY * small)
+                        reach = min(reach, 2.0 * intervals.INTERVAL_WAY * small)
                     if g > reach:
                         continue
                     e = law(A, s, o)[0]
                     if e >= 1.0 and not lossy and not together:
                         if not persists(A, s, o, t, False):
                             continue
-                    elif g > TOUCH * small and not (together or busy):
+                    elif g > intervals.TOUCH * small and not (together or busy):
                         load = remembered_force(A, s, o, since)[1] if lossy else 0.0
                         if not hardly_bounces(e, u, max(closing, load / mass) * h):
                             continue
@@ -120,9 +112,9 @@ def before_end(A: Scene, t: float) -> bool:
 def sweeps_of(n: int, t: float) -> int:
     """Sweeps of an island of n bodies in an interval from instant t: fewer after a hit on a large one, whose solve
     begins with the forces of the interval before."""
-    if n < LARGE_ISLAND:
-        return SMALL_SWEEPS
-    return LARGE_SWEEPS if t == 0.0 else LARGE_SWEEPS_HIT
+    if n < intervals.LARGE_ISLAND:
+        return intervals.SMALL_SWEEPS
+    return intervals.LARGE_SWEEPS if t == 0.0 else intervals.LARGE_SWEEPS_HIT
 
 
 @nonallocating
@@ -132,7 +124,7 @@ def interval_length(A: Scene, found: IntArray, t: float) -> float:
     Islands of more than EXACT_CONTACTS contacts have one interval, as each costs a solve."""
     BODY, LINK = A.BODY, A.LINK
     h = A.PAR.dt - t
-    if found.shape[0] > EXACT_CONTACTS or in_haste(A):
+    if found.shape[0] > intervals.EXACT_CONTACTS or in_haste(A):
         return h
     rate = 0.0
     for c in range(found.shape[0]):
@@ -144,9 +136,9 @@ def interval_length(A: Scene, found: IntArray, t: float) -> float:
         if LINK[a].vertices == 1 and LINK[b].vertices == 1:
             speed = norm(BODY[j].vx - BODY[i].vx, BODY[j].vy - BODY[i].vy)
             rate = max(rate, speed / max(A.SHAPE[a].rounding + A.SHAPE[b].rounding, 1e-300))
-    if rate * h <= NORMAL_TURN:
+    if rate * h <= intervals.NORMAL_TURN:
         return h
-    return min(max(NORMAL_TURN / rate, A.PAR.dt / RESOLUTION), h)
+    return min(max(intervals.NORMAL_TURN / rate, A.PAR.dt / RESOLUTION), h)
 
 
 @nonallocating
@@ -158,10 +150,10 @@ def interval_within_way(A: Scene, found: IntArray, h: float) -> float:
         i, j = LINK[found[c, 0]].owner, LINK[found[c, 1]].owner
         small = smaller(A, found[c, 0], found[c, 1])
         way = norm(BODY[j].vx - BODY[i].vx, BODY[j].vy - BODY[i].vy)
-        rate = max(rate, way / (INTERVAL_WAY * small))
+        rate = max(rate, way / (intervals.INTERVAL_WAY * small))
         for s in (found[c, 0], found[c, 1]):
             if LINK[s].vertices > 1:
-                rate = max(rate, abs(BODY[LINK[s].owner].spin) / INTERVAL_WAY)
+                rate = max(rate, abs(BODY[LINK[s].owner].spin) / intervals.INTERVAL_WAY)
     return h if rate * h <= 1.0 else 1.0 / rate
 
 
@@ -180,10 +172,10 @@ def excess_way(A: Scene, ROWS: Rows[Row], V: FloatArray, VN: FloatArray, m: int,
         small = smaller(A, a, b)
         x = V[q, 0] + VN[q, 0] - V[p, 0] - VN[p, 0]
         y = V[q, 1] + VN[q, 1] - V[p, 1] - VN[p, 1]
-        far = max(far, 0.5 * h * norm(x, y) / (INTERVAL_WAY * small))
+        far = max(far, 0.5 * h * norm(x, y) / (intervals.INTERVAL_WAY * small))
         if A.LINK[a].vertices > 1 or A.LINK[b].vertices > 1:
             turn = max(abs(V[p, 2] + VN[p, 2]), abs(V[q, 2] + VN[q, 2]))
-            far = max(far, 0.5 * h * turn / INTERVAL_WAY)
+            far = max(far, 0.5 * h * turn / intervals.INTERVAL_WAY)
     return far
 
 
@@ -200,7 +192,7 @@ def stick_time(ROWS: Rows[Row], L: FloatArray, FREE: FloatArray, VN: FloatArray,
     Args:
         ROWS, L: the m contacts with their impulses.  FREE, VN: (k, 3) velocities at the end without and with them.
     """
-    if m > EXACT_CONTACTS:
+    if m > intervals.EXACT_CONTACTS:
         return h
     limit, beta, slip, others = 0.0, 0.0, 0.0, 0.0
     for z in range(m):
@@ -208,16 +200,16 @@ def stick_time(ROWS: Rows[Row], L: FloatArray, FREE: FloatArray, VN: FloatArray,
         before = abs(ROWS[z].ut)
         # The slip of contacts that stick throughout is round-off, or the error of what a turning body carries along.
         change = most / ROWS[z].k_t
-        if most == 0.0 or before <= max(STICK_TOLERANCE * change, ROWS[z].unsure):
+        if most == 0.0 or before <= max(intervals.STICK_TOLERANCE * change, ROWS[z].unsure):
             continue
-        if abs(tangent_rate(ROWS[z], VN)) > STICK_TOLERANCE * before:
+        if abs(tangent_rate(ROWS[z], VN)) > intervals.STICK_TOLERANCE * before:
             continue
         sign = 1.0 if ROWS[z].ut > 0.0 else -1.0
         limit += most
         beta -= sign * L[z, 1]
         if before > slip:
             slip, others = before, sign * (tangent_rate(ROWS[z], FREE) - ROWS[z].ut)
-    if beta <= STICK_TOLERANCE * limit or beta >= (1.0 - STICK_TOLERANCE) * limit:
+    if beta <= intervals.STICK_TOLERANCE * limit or beta >= (1.0 - intervals.STICK_TOLERANCE) * limit:
         return h
     rate = (slip + others) * limit / beta - others
     return h * slip / rate if rate > slip else h

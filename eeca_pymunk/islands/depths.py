@@ -15,13 +15,7 @@ from ..geometry.gap import gap_at
 from ..geometry.sides import depth_limit, half_width, held_side, remembers, smaller
 from ..model.contacts import Row
 from ..model.islands import Island, IslandContacts
-from ..model.parameters.intervals import (
-    CORRECTION_STEP,
-    INTERVAL_DEPTH,
-    INTERVAL_DEPTH_LEAST,
-    INTERVAL_RETRY,
-    OVERLAP_LEFT,
-)
+from ..model.parameters import intervals
 from ..model.scene import Scene
 from ..rows.build import normal_rate
 from .candidates import before_end, excess_way
@@ -32,7 +26,7 @@ def left_to_lift(A: Scene, end: float) -> float:
     """Depth, in parts of the smallest body, up to which contacts are not lifted at the end of an interval: OVERLAP_LEFT
     at the end of the step. Within it contacts are lifted only if that correction, which moves no point by more than
     CORRECTION_STEP, may not reach: what a wall that turns fast carries along sinks in each interval."""
-    return 0.5 * CORRECTION_STEP if before_end(A, end) else OVERLAP_LEFT
+    return 0.5 * intervals.CORRECTION_STEP if before_end(A, end) else intervals.OVERLAP_LEFT
 
 
 @nonallocating
@@ -48,11 +42,11 @@ def known_depth(A: Scene, a: int, b: int) -> float:
 def too_deep(A: Scene, a: int, b: int, gap: float, closing: float) -> float:
     """How many times too long an interval is in which a contact of shapes a and b with this gap closes by `closing`
     (lengths); 0 if it is not."""
-    if not closing > INTERVAL_DEPTH_LEAST * smaller(A, a, b):
+    if not closing > intervals.INTERVAL_DEPTH_LEAST * smaller(A, a, b):
         return 0.0
     deep = depth_limit(A, a, b)
     room = max(gap, 0.0) + deep
-    return max(closing / room, 1.01 * INTERVAL_RETRY) if closing > room + 0.5 * deep else 0.0
+    return max(closing / room, 1.01 * intervals.INTERVAL_RETRY) if closing > room + 0.5 * deep else 0.0
 
 
 @kernel
@@ -129,7 +123,7 @@ def deep_at_end(A: Scene, isle: Island, END: FloatArray, ROWS: Rows[Row], m: int
     _, nx, ny, x, y = gap_at(A, a, S[p, 0], S[p, 1], S[p, 2], b, S[q, 0], S[q, 1], S[q, 2])
     way = max(-h * gap_rate(S, V, p, q, nx, ny, x, y), 0.0)
     root = math.sqrt(max(way * way + 4.0 * (closing - way) * room, 0.0))
-    return max((way + root) / (2.0 * room), 1.01 * INTERVAL_RETRY)
+    return max((way + root) / (2.0 * room), 1.01 * intervals.INTERVAL_RETRY)
 
 
 @nonallocating
@@ -145,7 +139,7 @@ def rises_too_far(A: Scene, ROWS: Rows[Row], L: FloatArray, VN: FloatArray, m: i
         before, after = ROWS[z].un, normal_rate(ROWS[z], VN)
         if before > 0.0 and after < 0.0 and L[z, 0] > 0.0:
             a, b = shapes_of(A, ROWS[z])
-            far = max(far, 0.5 * h * before * before / ((before - after) * INTERVAL_DEPTH * smaller(A, a, b)))
+            far = max(far, 0.5 * h * before * before / ((before - after) * intervals.INTERVAL_DEPTH * smaller(A, a, b)))
     return far
 
 
@@ -155,7 +149,7 @@ def times_too_long(A: Scene, isle: Island, contacts: IslandContacts, m: int, h: 
     ROWS, VN = contacts.ROWS, contacts.VN
     far = max(excess_way(A, ROWS, isle.V, VN, m, h), closes_too_far(A, isle, ROWS, VN, m, h))
     far = max(far, rises_too_far(A, ROWS, contacts.L, VN, m, h))
-    if far <= INTERVAL_RETRY and len(A.SIDE) > 0:
+    if far <= intervals.INTERVAL_RETRY and len(A.SIDE) > 0:
         END = isle.POSE + 0.5 * h * (isle.V + VN)
         far = too_deep_at_end(A, isle, END, ROWS, m, h, False)
     return far

@@ -19,16 +19,8 @@ from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES
 from ..model.scene import Scene
 from ..model.step import AGAIN, CONTACTS, DONE, PUSHES_FULL
 from ..rows.build import rates
+from . import candidates
 from .at_rest import put_to_rest
-from .candidates import (
-    in_haste,
-    interval_length,
-    interval_within_way,
-    pairs_within,
-    stick_time,
-    sweeps_of,
-    travel_bound,
-)
 from .depths import left_to_lift, times_too_long
 from .local import clear_places, local_island, needs_memory, number_bodies, open_interval
 from .membership import lossy
@@ -103,12 +95,12 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
     MINE = number_bodies(A, root)
     n = len(MINE)
     may_lose = lossy(A, root)
-    found = pairs_within(A, root, t, longest, may_lose, MINE)
-    h = interval_within_way(A, found, longest) if A.COUNT.together == 0 else longest
+    found = candidates.pairs_within(A, root, t, longest, may_lose, MINE)
+    h = candidates.interval_within_way(A, found, longest) if A.COUNT.together == 0 else longest
     if h < longest:
-        found = pairs_within(A, root, t, h, may_lose, MINE)
+        found = candidates.pairs_within(A, root, t, h, may_lose, MINE)
     p = len(found)
-    h = min(h, interval_length(A, found, t))
+    h = min(h, candidates.interval_length(A, found, t))
     if needs_memory(A, p):
         clear_places(A, MINE)
         return PUSHES_FULL, 0.0
@@ -120,8 +112,8 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
     least = 0.0
     if COUNT.together > 0:
         for q in range(k):
-            least = max(least, travel_bound(A, isle.WHO[q], h))
-    sweeps = sweeps_of(n, t)
+            least = max(least, candidates.travel_bound(A, isle.WHO[q], h))
+    sweeps = candidates.sweeps_of(n, t)
     m = 0
     with_supports = bodies_with_supports(A, isle, n)
     placed = was_placed(A, isle, n)
@@ -131,7 +123,11 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
     shortest = A.PAR.dt / RESOLUTION
     if p > 0 and h > 0.0:
         m = step_island(A, isle, contacts, n, h, sweeps, least, owed, quiet)
-        stuck = h if in_haste(A) or OUT[0].at_rest > 0 else stick_time(ROWS, L, V + h * isle.ACC, VN, m, h)
+        stuck = (
+            h
+            if candidates.in_haste(A) or OUT[0].at_rest > 0
+            else candidates.stick_time(ROWS, L, V + h * isle.ACC, VN, m, h)
+        )
         if stuck < h:
             # The interval ends where slip ends, as the law of friction changes there.
             h = min(max(stuck, shortest), h)
@@ -173,7 +169,7 @@ def contacts_at(A: Scene, root: int, t: float) -> tuple[Island, IslandContacts, 
     move, with their places until `clear_places`, and the number of contacts."""
     MINE = number_bodies(A, root)
     n = len(MINE)
-    found = pairs_within(A, root, t, 0.0, True, MINE)
+    found = candidates.pairs_within(A, root, t, 0.0, True, MINE)
     isle = local_island(A, MINE, found, t)
     k, contacts = len(isle.WHO), make_contacts(len(found), len(isle.WHO))
     m = gather_contacts(A, isle, contacts, isle.POSE, np.zeros(k), 0.0, k == n)

@@ -20,32 +20,9 @@ from ..contacts.walls import stop_at_walls
 from ..islands.candidates import before_end, sweeps_of
 from ..model.contacts import Bounded, JointedProblem
 from ..model.joints import Joints
+from ..model.parameters import joints
 from ..model.parameters.impulses import WEDGED
 from ..model.parameters.intervals import LARGE_ISLAND
-from ..model.parameters.joints import (
-    AGREE,
-    AGREE_ELASTIC,
-    AGREE_REST,
-    ARM_ERROR,
-    CHORD,
-    COLUMN_CONTACTS,
-    COLUMN_SWEEPS,
-    CONTACT_WORK,
-    GUESS_SPEED,
-    JOINTS_NEAR,
-    OUTER,
-    OUTER_FLOOR,
-    OUTER_MANY,
-    OUTER_PART,
-    OUTER_PROGRESS,
-    PRESS_RESIDUAL,
-    PRESS_RESIDUAL_REST,
-    PRESS_SWEEPS,
-    PRESS_SWEEPS_ELASTIC,
-    PRESS_SWEEPS_FEW,
-    PRESS_WORK_ROUND_OFF,
-    PRESS_WORK_TAUT,
-)
 from ..model.scene import Scene
 from ..rows.build import conserves, rates, rubs
 from ..rows.columns import push_columns
@@ -85,9 +62,13 @@ def aims(change: float, slow: float, fast: float, elastic: bool) -> tuple[float,
     contacts and components at which iterations end; the residual of the contacts' laws. change: |a| h.  slow, fast:
     speeds of the island."""
     if elastic:
-        return change + fast, AGREE_ELASTIC * (change + fast), 1e-15 * (change + fast)
+        return change + fast, joints.AGREE_ELASTIC * (change + fast), 1e-15 * (change + fast)
     scale, rests = change + slow, slow < change
-    return scale, (AGREE_REST if rests else AGREE) * scale, (PRESS_RESIDUAL_REST if rests else PRESS_RESIDUAL) * scale
+    return (
+        scale,
+        (joints.AGREE_REST if rests else joints.AGREE) * scale,
+        (joints.PRESS_RESIDUAL_REST if rests else joints.PRESS_RESIDUAL) * scale,
+    )
 
 
 @kernel
@@ -133,40 +114,44 @@ def solve_contacts(
     SLIP, limited, quick = take_slips(ROWS, m), False, fast + pull * h
     elastic = conserves(ROWS, m)
     scale, agree, fine = aims(pull * h, slow, fast, elastic)
-    most = PRESS_SWEEPS_ELASTIC if elastic else (PRESS_SWEEPS_FEW if m <= COLUMN_CONTACTS else PRESS_SWEEPS)
-    exactly, rounds = elastic or m <= COLUMN_CONTACTS, OUTER
+    most = (
+        joints.PRESS_SWEEPS_ELASTIC
+        if elastic
+        else (joints.PRESS_SWEEPS_FEW if m <= joints.COLUMN_CONTACTS else joints.PRESS_SWEEPS)
+    )
+    exactly, rounds = elastic or m <= joints.COLUMN_CONTACTS, joints.OUTER
     if not exactly:
-        rounds = OUTER_PART if before_end(A, interval.t + h) else OUTER_MANY
+        rounds = joints.OUTER_PART if before_end(A, interval.t + h) else joints.OUTER_MANY
         if n >= LARGE_ISLAND:
             most = sweeps_of(n, interval.t)
     # While many contacts have not converged, joints need not be exact before the last step of the components.
     if J.PROGRESS.effort > J.PROGRESS.budget:
-        rounds, most = OUTER_PART, min(most, PRESS_SWEEPS)
-    J.PROGRESS.near = 0.0 if exactly or slow < pull * h else JOINTS_NEAR
+        rounds, most = joints.OUTER_PART, min(most, joints.PRESS_SWEEPS)
+    J.PROGRESS.near = 0.0 if exactly or slow < pull * h else joints.JOINTS_NEAR
     # off: difference between the velocities of contacts and components, best: its smallest value since contacts last
     # gained energy, reached: of all; worst: residual of the laws; bent: error of the arms.
     EFFECT = np.zeros((len(isle.IM), 3))
     PREVIOUS = np.empty((len(isle.IM), 3))
     FORESEEN, UNKNOWN = np.empty((len(isle.IM), 3)), np.empty((0, 3))
     converged, best, worst, LEAST, USED, agreed = False, np.inf, 0.0, L.copy(), L.copy(), False
-    bent, reached, B = 0.0, np.inf, make_bounded(J, groups, m <= COLUMN_CONTACTS)
+    bent, reached, B = 0.0, np.inf, make_bounded(J, groups, m <= joints.COLUMN_CONTACTS)
     NOW = np.empty(len(B.OF))
     problem = JointedProblem(ROWS, C, B, m)
     free = len(isle.IM) == n and not has_partner(groups, J.COMPONENT, J.JOINED)
     for outer in range(rounds):
         if J.PROGRESS.effort > J.PROGRESS.share:
             break
-        J.PROGRESS.effort += CONTACT_WORK * (m + 2)
-        build = outer % CHORD == 0
+        J.PROGRESS.effort += joints.CONTACT_WORK * (m + 2)
+        build = outer % joints.CHORD == 0
         advance(A, J, interval, L, B, build, FORESEEN if outer > 0 else UNKNOWN)
         bent = align(interval, True) if free else 0.0
         if outer > 0:
             off = farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n)
             reached = min(reached, off)
-            stalls = off > OUTER_PROGRESS * best
-            if off <= agree or (off <= OUTER_FLOOR * scale and stalls):
+            stalls = off > joints.OUTER_PROGRESS * best
+            if off <= agree or (off <= joints.OUTER_FLOOR * scale and stalls):
                 # Velocities agree, but not well enough as long as contacts gain energy by them.
-                error = work_error(interval, L, slow, pull, PRESS_WORK_ROUND_OFF)
+                error = work_error(interval, L, slow, pull, joints.PRESS_WORK_ROUND_OFF)
                 pays = elastic or lost(interval, L) >= owed - error
                 if pays or (stalls and limited):
                     converged, agreed = True, True
@@ -187,7 +172,7 @@ def solve_contacts(
             fill_free(groups, C, ROWS, isle.IM, isle.II, m)
         if outer == 0:
             EFFECT, most_pull = accelerations(interval, L, B)
-            if most_pull * h > GUESS_SPEED * quick and L.any():
+            if most_pull * h > joints.GUESS_SPEED * quick and L.any():
                 L[:] = 0.0
                 # The guess is bad: the bodies do not move as the columns say.
                 advance(A, J, interval, L, B, True, UNKNOWN)
@@ -206,15 +191,15 @@ def solve_contacts(
         leave_out(C, L, m, FORESEEN)
         BOTH = with_bounded(B, L, m)
         work = J.PROGRESS.share - J.PROGRESS.effort
-        worst = solve_columns(problem, BOTH, FORESEEN, fine, COLUMN_SWEEPS if build else 0, most, work)
-        if worst > WEDGED * scale and m <= COLUMN_CONTACTS and rubs(ROWS, m):
+        worst = solve_columns(problem, BOTH, FORESEEN, fine, joints.COLUMN_SWEEPS if build else 0, most, work)
+        if worst > WEDGED * scale and m <= joints.COLUMN_CONTACTS and rubs(ROWS, m):
             worst = solve_wedged(problem, BOTH, FORESEEN, fine, most, work)
         if not exactly:
             stop_at_walls(A, problem, n, C.OUT, BOTH, FORESEEN)
         count_operations(J, C)
         for i in range(m):
             L[i, 0], L[i, 1] = BOTH[i, 0], BOTH[i, 1]
-        converged = worst <= 10.0 * max(fine, min(agree, AGREE * scale))
+        converged = worst <= 10.0 * max(fine, min(agree, joints.AGREE * scale))
         if farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n) <= 1e-3 * agree:
             # The motion is that of USED: others have the same effect by the columns, but perhaps not in a step.
             copy(L, USED)
@@ -230,21 +215,21 @@ def solve_contacts(
             copy(L, LEAST)
             advance(A, J, interval, L, B, False, UNKNOWN)
         # Elastic joints leave round-off of ways times their stiffness, which more iterations do not lower.
-        converged = (converged and off <= agree) or (best <= AGREE * scale and some_give(J, groups))
+        converged = (converged and off <= agree) or (best <= joints.AGREE * scale and some_give(J, groups))
     # Impulses that are no solution may let walls do any work.
     quick = fast + pull * h
-    if excessive(L, m, isle.IM, n, quick) or (not converged and m <= COLUMN_CONTACTS):
+    if excessive(L, m, isle.IM, n, quick) or (not converged and m <= joints.COLUMN_CONTACTS):
         solve_gently(A, J, interval, L, B, free)
         converged, bent = False, np.inf if free else 0.0
         if excessive(L, m, isle.IM, n, quick):
             L[:] = 0.0
             advance(A, J, interval, L, B, False, UNKNOWN)
-    if bent > ARM_ERROR:
+    if bent > joints.ARM_ERROR:
         advance_aligned(A, J, interval, L, B, free)
     # If joints pull hard, velocities, and so works, are only as exact as they agree.
-    known = PRESS_WORK_ROUND_OFF
+    known = joints.PRESS_WORK_ROUND_OFF
     if some_give(J, groups) or some_taut(J, groups):
-        known = max(known, min(2.0 * reached / (slow + pull * h), PRESS_WORK_TAUT))
+        known = max(known, min(2.0 * reached / (slow + pull * h), joints.PRESS_WORK_TAUT))
     copy(FORESEEN, motion.MEAN)
     lock_jointed(A, J, interval, L, B, free, elastic, owed, work_error(interval, L, slow, pull, known))
-    return converged and farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n) <= max(agree, AGREE * scale)
+    return converged and farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n) <= max(agree, joints.AGREE * scale)

@@ -11,14 +11,8 @@ from ..contacts.counts import note_unmet, spend
 from ..contacts.geometry import gather_contacts
 from ..contacts.interval import make_contacts, recall, speeds
 from ..contacts.memory import remember_loads, shapes_of
+from ..islands import local
 from ..islands.candidates import pairs_within
-from ..islands.local import (
-    clear_places,
-    local_island,
-    needs_memory,
-    number_bodies,
-    open_interval,
-)
 from ..islands.membership import lossy
 from ..model.joint_steps import ELASTIC
 from ..model.joints import Joints
@@ -109,7 +103,7 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     if single and meets_no_other(A, root):
         return begin_alone(A, J, root, t, h, last)
     COUNT = A.COUNT
-    MINE = number_bodies(A, root)
+    MINE = local.number_bodies(A, root)
     n = len(MINE)
     # All pairs within the step, also if the interval is shorter: others would not be searched for impacts.
     found = pairs_within(A, root, t, A.PAR.planned - t, lossy(A, root), MINE)
@@ -117,16 +111,16 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     spend(A, n, 2 * p, 0.0)  # besides what joints take
     J.PROGRESS.effort += INTERVAL_WORK * (p + 2)
     if p == 0 and single:
-        clear_places(A, MINE)
+        local.clear_places(A, MINE)
         return begin_alone(A, J, root, t, h, last)
     shorter = within_sagitta(A, found, t)
     if shorter < h and not last:
-        clear_places(A, MINE)
+        local.clear_places(A, MINE)
         return AGAIN, shorter
-    if needs_memory(A, p):
-        clear_places(A, MINE)
+    if local.needs_memory(A, p):
+        local.clear_places(A, MINE)
         return PUSHES_FULL, h
-    isle = local_island(A, MINE, found, t)
+    isle = local.local_island(A, MINE, found, t)
     k = len(isle.WHO)
     groups = find_groups(isle.WHO, isle.IM, J)
     for s in groups.JOINTED:
@@ -158,7 +152,7 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     if far > INTERVAL_RETRY and not last:
         for s in groups.JOINTED:
             restore_joints(J, s)
-        clear_places(A, MINE)
+        local.clear_places(A, MINE)
         return AGAIN, h / far
     forced = forced_deeper(A, interval)
     if not solved or forced >= 0:
@@ -175,9 +169,9 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     if not conserves(ROWS, m):
         lift_island(A, J, interval, root, t + h, lost(interval, L), False)
         HELD = project_velocities(A, J, interval, L, t + h, slow + pull * h)
-    clear_places(A, MINE)
+    local.clear_places(A, MINE)
     first = COUNT.pushes
-    open_interval(A, root, isle, contacts, motion.V, m, t, h)
+    local.open_interval(A, root, isle, contacts, motion.V, m, t, h)
     for z in range(m):
         pushed = A.PUSHED[first + z]
         pushed.un_before = pushed.un_after = normal_rate(ROWS[z], motion.WAY) / h

@@ -9,16 +9,7 @@ from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.joint_steps import POSES, SPEEDS, BodyStep, JointLedger
 from ..model.joints import DUAL, Workspace
-from ..model.parameters.joints import (
-    CLOSING_EPSILON,
-    CLOSINGS,
-    CONDENSED_PASSES,
-    JOINT_SPEED_LEFT,
-    JOINT_SPEED_ROUND_OFF,
-    JOINT_TOUCH,
-    REDUNDANT_EPSILON,
-    REDUNDANT_PASSES,
-)
+from ..model.parameters import joints
 from ..newton.entries import acts
 from ..newton.systems import apply, back, factorise, first_iterate, linearise
 from .bounds import has_bound, limit_gap, limit_gap_rate
@@ -43,11 +34,11 @@ def project(W: Workspace, what: int) -> None:
     component.factored = 0
     system = DUAL if component.rigid > 0 else component.system
     # Rows that contradict each other must not move bodies far.
-    epsilon = CLOSING_EPSILON if what == POSES else REDUNDANT_EPSILON
-    for turn in range(REDUNDANT_PASSES + 3 * W.joints):
+    epsilon = joints.CLOSING_EPSILON if what == POSES else joints.REDUNDANT_EPSILON
+    for turn in range(joints.REDUNDANT_PASSES + 3 * W.joints):
         fresh = passes == 0
         error = linearise(W, what, 2.0, 1.0, 0.0, turn == 0, system, fresh)
-        if what == POSES and (error <= 1e-14 or turn == CLOSINGS):
+        if what == POSES and (error <= 1e-14 or turn == joints.CLOSINGS):
             return
         if what == SPEEDS and turn == 0 and hold_closing(W, True):
             error = linearise(W, what, 2.0, 1.0, 0.0, False, system, True)
@@ -55,7 +46,7 @@ def project(W: Workspace, what: int) -> None:
             system = factorise(W, what, 2.0, 1.0, 0.0, system, epsilon)
         if system < 0:
             return
-        back(W, system, CONDENSED_PASSES, W.J.RIGHT)
+        back(W, system, joints.CONDENSED_PASSES, W.J.RIGHT)
         apply(W, what)
         if what == SPEEDS:
             passes += 1
@@ -145,7 +136,7 @@ def release(W: Workspace, what: int) -> bool:
 def noise(W: Workspace, k: int, r: int) -> float:
     """The impulse that changes the rate of row r of joint k by the round-off of the velocities before. A limit that
     pulls no more is not released: it would be met again at once."""
-    return float(JOINT_SPEED_ROUND_OFF * terms(W, k, r) * W.J.HINGE[k].scale[r] ** 2)
+    return float(joints.JOINT_SPEED_ROUND_OFF * terms(W, k, r) * W.J.HINGE[k].scale[r] ** 2)
 
 
 @nonallocating
@@ -167,13 +158,13 @@ def hold_closing(W: Workspace, kept: bool) -> bool:
     for k in range(W.joints):
         if link[k].side == 0 and link[k].bounded == 0:
             for side in (-1, 1):
-                if not (has_bound(W, k, side) and limit_gap(W, k, side) <= JOINT_TOUCH * hinge[k].size):
+                if not (has_bound(W, k, side) and limit_gap(W, k, side) <= joints.JOINT_TOUCH * hinge[k].size):
                     continue
                 a, b, last = local[link[k].body[0]], local[link[k].body[1]], link[k].rows - 1
                 if kept:
                     closes = limit_gap_rate(hinge[k], link[k].rows, side, a.v_kept, b.v_kept) < 0.0
                 else:
-                    least = terms(W, k, last) * JOINT_SPEED_ROUND_OFF
+                    least = terms(W, k, last) * joints.JOINT_SPEED_ROUND_OFF
                     closes = limit_gap_rate(hinge[k], link[k].rows, side, a.v0, b.v0) < -least
                 if closes:
                     link[k].side = side
@@ -198,5 +189,5 @@ def speeds_fit(W: Workspace) -> bool:
                 two = W.J.HINGE[k].rows[r, c + 3] * W.J.LOCAL[link[k].body[1]].v0[c]
                 rate += one + two
                 total += abs(one) + abs(two)
-            well = well and abs(rate) <= JOINT_SPEED_LEFT * total
+            well = well and abs(rate) <= joints.JOINT_SPEED_LEFT * total
     return well

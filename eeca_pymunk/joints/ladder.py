@@ -16,17 +16,7 @@ from __future__ import annotations
 from ..compiled import nonallocating
 from ..model.joint_steps import ELASTIC, EXACT, HALVED, LINEAR
 from ..model.joints import GIVES_WAY, ROTARY_SPRING, SPRING, Workspace
-from ..model.parameters.joints import (
-    COMPONENT_BUDGET,
-    CONDENSED_PASSES,
-    ELASTIC_PARTS,
-    HASTE,
-    JOINT_GAIN,
-    LEAST_SOLUTIONS,
-    REDUNDANT_EPSILON,
-    REDUNDANT_MOST,
-    REPAID,
-)
+from ..model.parameters import joints
 from ..newton.effort import work_of_iteration
 from ..newton.motion import go_back
 from ..newton.solve import drop_impulses
@@ -64,11 +54,11 @@ def has_elastic_joint(W: Workspace) -> bool:
 def limit_work(W: Workspace) -> None:
     """Set the work that this component may take in a step, PROGRESS.limit and hurry."""
     component, progress = W.J.COMPONENT[W.s], W.J.PROGRESS
-    one = work_of_iteration(component.system, CONDENSED_PASSES, component.boxes, W.joints, component)
+    one = work_of_iteration(component.system, joints.CONDENSED_PASSES, component.boxes, W.joints, component)
     # With no work left, components that are solved easily still are.
-    share = max((progress.budget - progress.effort) * COMPONENT_BUDGET, LEAST_SOLUTIONS * one)
+    share = max((progress.budget - progress.effort) * joints.COMPONENT_BUDGET, joints.LEAST_SOLUTIONS * one)
     progress.limit = progress.effort + share
-    progress.hurry = progress.effort + HASTE * (progress.limit - progress.effort)
+    progress.hurry = progress.effort + joints.HASTE * (progress.limit - progress.effort)
 
 
 @nonallocating
@@ -78,7 +68,7 @@ def compliance_on(rung: int, h: float, yields: bool, before: float) -> float:
         return 0.0
     steps = max(rung - ELASTIC_RUNG - 1, 0)
     relative = 1e-4 if rung + 1 == RUNGS else 1e-9 * 10.0**steps
-    compliance = relative * (h / ELASTIC_PARTS) ** 2
+    compliance = relative * (h / joints.ELASTIC_PARTS) ** 2
     return max(compliance if relative > 1e-9 else 0.0, before) if yields else compliance
 
 
@@ -123,9 +113,9 @@ def repaid(W: Workspace, own: bool) -> bool:
         return True
     had = kinetic_of_component(W.J.LOCAL, W.bodies, SAVED)
     had += 0.0 if own else kinetic_of_component(W.J.LOCAL, W.bodies, NOW)
-    if own and not gain <= REPAID * had:
+    if own and not gain <= joints.REPAID * had:
         return False
-    if own or gain > JOINT_GAIN * had:
+    if own or gain > joints.JOINT_GAIN * had:
         part.closed -= lock_energy(W.J.LOCAL, W.bodies, gain)
     return True
 
@@ -164,9 +154,9 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
     rung = ELASTIC_RUNG if yields else ORDER_4 if order == 4 and smooth(W) else WHOLE_STEP
     if rung != ORDER_4 or touched:
         forget_parts(W)
-    progress.most_epsilon = REDUNDANT_MOST
+    progress.most_epsilon = joints.REDUNDANT_MOST
     while rung < RUNGS and not progress.effort > progress.limit:
-        parts = 5 if rung == ORDER_4 else 1 if rung == ELASTIC_RUNG else 1 << rung if rung < 3 else ELASTIC_PARTS
+        parts = 5 if rung == ORDER_4 else 1 if rung == ELASTIC_RUNG else 1 << rung if rung < 3 else joints.ELASTIC_PARTS
         compliance = compliance_on(rung, h, yields, first.compliance)
         clear_ledger(W.J.PART)
         done = take_parts(W, h, length, rung, parts, compliance / (h / parts) ** 2, cold)
@@ -177,8 +167,8 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
         again = cold != loops or (rung == ORDER_4 and recalls(W, h))
         restore_start(W)
         forget_parts(W)
-        tight = loops and rung == WHOLE_STEP and not again and progress.most_epsilon == REDUNDANT_MOST
+        tight = loops and rung == WHOLE_STEP and not again and progress.most_epsilon == joints.REDUNDANT_MOST
         rung, cold = rung if again or tight else rung + 1, loops
         # Compliance makes rows independent by itself.
-        progress.most_epsilon = REDUNDANT_EPSILON if tight or rung >= ELASTIC_RUNG else REDUNDANT_MOST
+        progress.most_epsilon = joints.REDUNDANT_EPSILON if tight or rung >= ELASTIC_RUNG else joints.REDUNDANT_MOST
     return LINEAR

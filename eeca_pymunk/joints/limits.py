@@ -27,29 +27,10 @@ from __future__ import annotations
 from ..compiled import inlined, nonallocating
 from ..model.joint_steps import POSES, SPEEDS, JointLedger, Parts
 from ..model.joints import Workspace
-from ..model.parameters.joints import (
-    JOINT_TOUCH,
-    LIMIT_EVENTS,
-    LIMIT_SECANTS,
-    LIMIT_SECANTS_HASTE,
-    LIMIT_SOLVES,
-    LIMIT_WAY,
-    MEET_INSTANT,
-)
+from ..model.parameters import joints
 from ..newton.motion import accept_part
 from ..newton.solve import drop_impulses, solve, solve_linearly
-from .bounds import (
-    begin_part,
-    first_bound,
-    gap_rates,
-    held_till_then,
-    hold_present_gaps,
-    hops,
-    limit_gap,
-    passed_within,
-    standing,
-    update_idle,
-)
+from . import bounds
 from .correct import fitting_loss, project, release
 from .ledger import account_part
 from .parts import begin_as_before, begin_next, meets_limit, note_part, weaken_lead
@@ -71,12 +52,12 @@ def stop_at(W: Workspace, k: int, side: int, at_once: bool, stays: bool, ledger:
     for i in range(W.joints):
         link[i].let_go = link[i].side if stays else 0
     project(W, SPEEDS)
-    begin_part(link, W.joints)
+    bounds.begin_part(link, W.joints)
     if at_once:
         link[k].side = side  # a velocity that released it is round-off: forces press it to its bound at once
     ledger.limited += fitting_loss(W.J.LOCAL, W.bodies, ledger)
     drop_impulses(W)
-    hold_present_gaps(W)
+    bounds.hold_present_gaps(W)
 
 
 @nonallocating
@@ -88,7 +69,7 @@ def search_for(S: Parts, k: int, side: int, when: float, high: float) -> None:
 @nonallocating
 def late(W: Workspace, S: Parts) -> bool:
     """Whether instants are no longer searched: limits that are met then land."""
-    return bool(S.events >= LIMIT_EVENTS or W.J.PROGRESS.effort > W.J.PROGRESS.hurry)
+    return bool(S.events >= joints.LIMIT_EVENTS or W.J.PROGRESS.effort > W.J.PROGRESS.hurry)
 
 
 @nonallocating
@@ -96,7 +77,7 @@ def end_part(W: Workspace, S: Parts, linear: bool, h: float, whole: bool, ledger
     """End a part at whose end no limit is passed; or, if a limit was passed and passed back within it, solve again to
     an instant in between. Arguments as of `step_with_limits`."""
     component = W.J.COMPONENT[W.s]
-    within = S.when if linear or late(W, S) else passed_within(W, S.when)
+    within = S.when if linear or late(W, S) else bounds.passed_within(W, S.when)
     if within != S.when:
         if whole:
             return FAILS
@@ -110,7 +91,7 @@ def end_part(W: Workspace, S: Parts, linear: bool, h: float, whole: bool, ledger
     if S.left == 0.0:
         return ENDS
     S.when, S.solved = S.left, 0.0
-    begin_part(W.link, W.joints)
+    bounds.begin_part(W.link, W.joints)
     drop_impulses(W)
     return GOES_ON
 
@@ -118,17 +99,17 @@ def end_part(W: Workspace, S: Parts, linear: bool, h: float, whole: bool, ledger
 @nonallocating
 def at_end(W: Workspace, S: Parts, linear: bool, h: float, whole: bool, ledger: JointLedger) -> int:
     """Decide what follows a solve to the end of the step. Arguments as of `step_with_limits`."""
-    most = LIMIT_SOLVES if linear else 2 * W.joints + 100  # after these, none is released or searched
+    most = joints.LIMIT_SOLVES if linear else 2 * W.joints + 100  # after these, none is released or searched
     if S.solves < most and release(W, POSES):
         return GOES_ON
-    k, side, instant = first_bound(W, S.when)
+    k, side, instant = bounds.first_bound(W, S.when)
     if k < 0 or linear:
         return end_part(W, S, linear, h, whole, ledger)
     if whole:
         return FAILS
     lands = late(W, S) or S.solves >= most
     S.events += 1
-    if S.hopped < W.joints and hops(W, k, side, instant, S.when):
+    if S.hopped < W.joints and bounds.hops(W, k, side, instant, S.when):
         S.solved, S.hopped = 0.0, S.hopped + 1
         stop_at(W, k, side, True, True, ledger)
     elif lands:
@@ -145,7 +126,7 @@ def seek(W: Workspace, S: Parts, gap_now: float) -> None:
         S.low = S.when
     else:
         S.high = S.when
-    _, rate = gap_rates(W, S.limit, S.side)
+    _, rate = bounds.gap_rates(W, S.limit, S.side)
     # From beyond the bound, a flat secant (of a gap that opens first) hardly moves: the rate is used instead.
     if S.secants > 1 and S.when != S.last:
         secant = (gap_now - S.gap) / (S.when - S.last)
@@ -158,15 +139,15 @@ def seek(W: Workspace, S: Parts, gap_now: float) -> None:
 @nonallocating
 def at_limit(W: Workspace, S: Parts) -> int:
     """Decide what follows a solve to the instant of a limit: MEETS if that is met, and no other one before."""
-    update_idle(W, S.limit, S.when)
-    gap_now, touch = limit_gap(W, S.limit, S.side), JOINT_TOUCH * W.J.HINGE[S.limit].size
+    bounds.update_idle(W, S.limit, S.when)
+    gap_now, touch = bounds.limit_gap(W, S.limit, S.side), joints.JOINT_TOUCH * W.J.HINGE[S.limit].size
     S.secants += 1
     if S.foreseen > 0:  # met by the last solution, perhaps not by this one
-        _, rate = gap_rates(W, S.limit, S.side)
+        _, rate = bounds.gap_rates(W, S.limit, S.side)
         if not (rate < 0.0 and 0.0 < S.when - gap_now / rate < S.left):
             S.limit, S.when, S.secants, S.events, S.foreseen = -1, S.left, 0, S.events - 1, 0
             return GOES_ON
-    most = LIMIT_SECANTS if W.J.PROGRESS.effort <= W.J.PROGRESS.hurry else LIMIT_SECANTS_HASTE
+    most = joints.LIMIT_SECANTS if W.J.PROGRESS.effort <= W.J.PROGRESS.hurry else joints.LIMIT_SECANTS_HASTE
     if abs(gap_now) > 0.1 * touch and S.secants < most:
         seek(W, S, gap_now)
         return GOES_ON
@@ -174,10 +155,10 @@ def at_limit(W: Workspace, S: Parts) -> int:
         W.link[S.limit].side = S.side
         S.limit, S.when = -1, S.left
         return GOES_ON
-    k, side, instant = first_bound(W, S.when)
+    k, side, instant = bounds.first_bound(W, S.when)
     if k < 0 or k == S.limit:
         return MEETS
-    if held_till_then(W, k, side, instant) or late(W, S):
+    if bounds.held_till_then(W, k, side, instant) or late(W, S):
         W.link[k].side = side  # holds, or lands
         search_for(S, S.limit, S.side, S.when, S.left)
     else:
@@ -192,9 +173,9 @@ def meet_limit(W: Workspace, S: Parts, h: float, ledger: JointLedger) -> None:
     round-off."""
     at_once = not is_solved(S, h)
     if not at_once:
-        rate, after = gap_rates(W, S.limit, S.side)
-        near = rate < 0.0 and -S.when * min(rate, after) <= LIMIT_WAY * W.J.HINGE[S.limit].size
-        at_once = near or S.when <= MEET_INSTANT * abs(h)
+        rate, after = bounds.gap_rates(W, S.limit, S.side)
+        near = rate < 0.0 and -S.when * min(rate, after) <= joints.LIMIT_WAY * W.J.HINGE[S.limit].size
+        at_once = near or S.when <= joints.MEET_INSTANT * abs(h)
     if not at_once:  # else round-off of places, over S.when, would become velocities
         account_part(W, S.when, ledger)
         accept_part(W.J.LOCAL, W.bodies, S.when)
@@ -226,14 +207,14 @@ def step_with_limits(
     S, component = W.J.PARTS, W.J.COMPONENT[W.s]
     S.left = h
     S.part = S.events = S.solves = 0
-    begin_part(W.link, W.joints)
+    bounds.begin_part(W.link, W.joints)
     if component.parts_within != h or linear or whole:
         component.parts, component.parts_within = 0, 0.0 if linear or whole else h
     component.parts = component.parts if meets_limit(component) else 0
     begin_next(W, S, loops)
     while True:
         if is_solved(S, h):
-            redundant = loops or standing(W.link, W.joints)
+            redundant = loops or bounds.standing(W.link, W.joints)
             if S.solved != 0.0 and not linear:
                 begin_as_before(W, S.solved, S.when)
             if not (solve_linearly(W, S.when, length) if linear else solve(W, S.when, length, redundant, give)):

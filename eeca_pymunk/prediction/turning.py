@@ -19,19 +19,11 @@ import math
 
 from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
+from ..geometry import sides
 from ..geometry.convex import place_vertices
 from ..geometry.flight import pose
 from ..geometry.gap import gap_round_off
 from ..geometry.manifold import common_face
-from ..geometry.sides import (
-    closest_on_side,
-    near_side,
-    note_side,
-    pair_number,
-    remembers,
-    side_row,
-    smaller,
-)
 from ..model.bodies import Body
 from ..model.parameters.events import ADVANCES, APPROACH_ROUND_OFF, LONGEST_SEARCH, RESOLUTION
 from ..model.parameters.intervals import TOUCH
@@ -90,22 +82,22 @@ def begin_side(A: Scene, a: int, b: int, start: float, duration: float, toleranc
     x_b, y_b, angle_b = pose(A.BODY, j, start)
     p = place_vertices(A, a, x_a, y_a, angle_a, P)
     q = place_vertices(A, b, x_b, y_b, angle_b, Q)
-    near = closest_on_side(A, P, p, Q, q, a, b)
+    near = sides.closest_on_side(A, P, p, Q, q, a, b)
     d, nx, ny, px, py = near.distance, near.nx, near.ny, near.x, near.y
-    key = pair_number(A, a, b)
-    side = A.SIDE[side_row(A, key)]
-    if d > near_side(A, a, b):
-        note_side(A, a, b, nx, ny, False)
+    key = sides.pair_number(A, a, b)
+    side = A.SIDE[sides.side_row(A, key)]
+    if d > sides.near_side(A, a, b):
+        sides.note_side(A, a, b, nx, ny, False)
     elif side.key != key:
         parting = opening(motion(A.BODY, i, start), motion(A.BODY, j, start), nx, ny, px, py)
         pressing = nx * (A.BODY[i].ax - A.BODY[j].ax) + ny * (A.BODY[i].ay - A.BODY[j].ay)
         resting = abs(parting) * duration <= tolerance
         other = (resting and pressing < 0.0) or (not resting and d <= tolerance and parting < 0.0)
         sign = -1.0 if p == 2 and q == 2 and other else 1.0
-        note_side(A, a, b, sign * nx, sign * ny, True)
+        sides.note_side(A, a, b, sign * nx, sign * ny, True)
     else:
         side.nx, side.ny = nx, ny  # it turns with the shapes
-        if d >= -near_side(A, a, b) and not in_one_island(A, i, j):
+        if d >= -sides.near_side(A, a, b) and not in_one_island(A, i, j):
             side.deep = 0.0
 
 
@@ -142,11 +134,11 @@ def general(A: Scene, a: int, b: int, horizon: float) -> tuple[float, bool]:
     their paths; afterwards that is again the side at its start, since an impulse may change the paths before."""
     if a > b:
         a, b = b, a
-    if not remembers(A, a, b):
+    if not sides.remembers(A, a, b):
         return search(A, a, b, horizon, math.inf)
     start = max(A.BODY[A.LINK[a].owner].since, A.BODY[A.LINK[b].owner].since)
     begin_side(A, a, b, start, max(horizon - start, 0.0), gap_round_off(A, a, b))
-    side = A.SIDE[side_row(A, pair_number(A, a, b))]
+    side = A.SIDE[sides.side_row(A, sides.pair_number(A, a, b))]
     key, nx, ny, deep = side.key, side.nx, side.ny, side.deep
     t, certain = search(A, a, b, horizon, math.inf)
     side.key, side.nx, side.ny, side.deep = key, nx, ny, deep
@@ -187,10 +179,10 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
     around, bend_a, bend_b = bends(A, a, b, start, duration)
     extent = SHAPE[a].rounding + SHAPE[b].rounding
     still = APPROACH_ROUND_OFF * (speed_bound(A, a, start) + speed_bound(A, b, start))
-    depth = TOUCH * smaller(A, a, b)
+    depth = TOUCH * sides.smaller(A, a, b)
     of_a, of_b = Closing(extent, bend_a, tolerance, depth, still), Closing(extent, bend_b, tolerance, depth, still)
     P, Q = A.CORE[0], A.CORE[1]
-    if remembers(A, a, b):
+    if sides.remembers(A, a, b):
         begin_side(A, a, b, start, duration, tolerance)
     looks, mark, interval = 0, s, duration / RESOLUTION
     most = LONGEST_SEARCH * most_work(A)
@@ -202,10 +194,10 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
         one, two = motion(BODY, i, start + s), motion(BODY, j, start + s)
         p = place_vertices(A, a, one.x, one.y, one.angle, P)
         q = place_vertices(A, b, two.x, two.y, two.angle, Q)
-        closest = closest_on_side(A, P, p, Q, q, a, b)
+        closest = sides.closest_on_side(A, P, p, Q, q, a, b)
         d, nx, ny, px, py, faces = closest.distance, closest.nx, closest.ny, closest.x, closest.y, closest.faces
-        if d > near_side(A, a, b):
-            note_side(A, a, b, nx, ny, False)
+        if d > sides.near_side(A, a, b):
+            sides.note_side(A, a, b, nx, ny, False)
         fixed = Closing(extent, around + pulled_along(A, a, b, nx, ny), tolerance, depth, still)
         safe, near, met = fixed_axis(P, p, Q, q, nx, ny, one, two, fixed)
         # Edges along whose normals the shapes overlap more than along n do not bound when they meet.

@@ -15,26 +15,7 @@ from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import AnyProblem, Solved
-from ..model.parameters.impulses import (
-    AUGMENTATION,
-    BLOCK_DIRECT,
-    BLOCK_DIRECT_FRICTION,
-    BLOCK_LAST_SWEEPS,
-    BLOCK_LAST_SWEEPS_FRICTION,
-    BLOCK_PROGRESS,
-    BLOCK_RESIDUAL,
-    BLOCK_RESIDUAL_FRICTION,
-    BLOCK_STALLS,
-    BLOCK_SWEEPS,
-    BLOCK_SWEEPS_AFTER,
-    BLOCK_SWEEPS_FRICTION,
-    DENSE_CONTACTS,
-    DIRECT_RESIDUAL,
-    DRIFTS,
-    POLISHES,
-    RATE_ROUND_OFF,
-    SMALL_BLOCK,
-)
+from ..model.parameters import impulses
 from ..model.parameters.intervals import DIRECT_MOVING, INTERVAL_RESIDUAL_SPEED, SMALL_SWEEPS
 from .build import aim, conserves, largest_terms, rates, rubs
 from .conjugate import sweep_conjugate
@@ -71,24 +52,24 @@ def resolve(
         return worst
     least = worst
     stalled = 0
-    log_R = AUGMENTATION
+    log_R = impulses.AUGMENTATION
     for _ in range(rounds):
         if drifts > 0:
             worst = skip_drift(problem, L, V, FREE, worst)
             OUT[0].sweeps += 1
         log_R, worst, taken = refine_and_sweep(
-            problem, L, V, FREE, log_R, POLISHES, tolerance, worst, BLOCK_SWEEPS_AFTER
+            problem, L, V, FREE, log_R, impulses.POLISHES, tolerance, worst, impulses.BLOCK_SWEEPS_AFTER
         )
         OUT[0].sweeps += taken
         OUT[0].direct += 1
         if worst <= tolerance:
             return worst
-        if worst < BLOCK_PROGRESS * least:
+        if worst < impulses.BLOCK_PROGRESS * least:
             least = worst
             stalled = 0
         else:
             stalled += 1
-            if stalled >= BLOCK_STALLS:
+            if stalled >= impulses.BLOCK_STALLS:
                 break
     if last > 0:
         taken, worst = sweep_conjugate(problem, L, V, tolerance, last)
@@ -97,7 +78,9 @@ def resolve(
         if worst <= tolerance:
             break
         worst = skip_drift(problem, L, V, FREE, worst)
-        log_R, worst = refine(problem, L, V, FREE, AUGMENTATION, POLISHES, DIRECT_RESIDUAL * tolerance, worst)
+        log_R, worst = refine(
+            problem, L, V, FREE, impulses.AUGMENTATION, impulses.POLISHES, impulses.DIRECT_RESIDUAL * tolerance, worst
+        )
         taken, worst = sweep_conjugate(problem, L, V, tolerance, last)
         OUT[0].sweeps += taken + 1
         OUT[0].direct += 1
@@ -143,19 +126,24 @@ def solve_block(problem: AnyProblem, L: FloatArray, V: FloatArray, owed: float, 
     FREE = V.copy()
     push(problem, L, 1.0, V)
     rough = rubs(ROWS, m)
-    floor = RATE_ROUND_OFF * largest_terms(ROWS, FREE, m)
-    tolerance = max(speed * (BLOCK_RESIDUAL_FRICTION if rough else BLOCK_RESIDUAL), floor)
+    floor = impulses.RATE_ROUND_OFF * largest_terms(ROWS, FREE, m)
+    tolerance = max(speed * (impulses.BLOCK_RESIDUAL_FRICTION if rough else impulses.BLOCK_RESIDUAL), floor)
     exact = conserves(ROWS, m)
     # Direct solves help where contacts stick; where many slip only sweeps converge, so there are more of them.
-    first, rounds, last, drifts = BLOCK_SWEEPS_FRICTION, BLOCK_DIRECT_FRICTION, BLOCK_LAST_SWEEPS_FRICTION, DRIFTS
-    if hasty and m > DENSE_CONTACTS and not exact:
+    first, rounds, last, drifts = (
+        impulses.BLOCK_SWEEPS_FRICTION,
+        impulses.BLOCK_DIRECT_FRICTION,
+        impulses.BLOCK_LAST_SWEEPS_FRICTION,
+        impulses.DRIFTS,
+    )
+    if hasty and m > impulses.DENSE_CONTACTS and not exact:
         # A hit on a lossy pile is solved as accurately as the intervals before and after it.
         tolerance = max(INTERVAL_RESIDUAL_SPEED * speed, floor)
         first, rounds, last, drifts = SMALL_SWEEPS, DIRECT_MOVING, 0, 0
     elif not rough:
-        first, rounds, last, drifts = BLOCK_SWEEPS, BLOCK_DIRECT, BLOCK_LAST_SWEEPS, 0
-        if m <= SMALL_BLOCK:
-            first = 4 * BLOCK_SWEEPS
+        first, rounds, last, drifts = impulses.BLOCK_SWEEPS, impulses.BLOCK_DIRECT, impulses.BLOCK_LAST_SWEEPS, 0
+        if m <= impulses.SMALL_BLOCK:
+            first = 4 * impulses.BLOCK_SWEEPS
     worst = resolve(problem, L, V, FREE, first, rounds, last, drifts, tolerance, OUT)
     OUT[0].residual, OUT[0].tolerance = worst, tolerance
     close_block(problem, L, V, FREE, owed, exact, OUT)

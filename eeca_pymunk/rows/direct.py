@@ -7,18 +7,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import Choice, kernel
 from ..model.contacts import AnyProblem, JointedProblem
-from ..model.parameters.impulses import (
-    AUGMENTATION,
-    AUGMENTATION_LEAST,
-    AUGMENTATION_LESS,
-    AUGMENTATION_MORE,
-    AUGMENTATION_STEP,
-    DENSE_CONTACTS,
-    DIRECT_LOST,
-    DIRECT_RESIDUAL,
-    DIRECT_SINGLE,
-    REFINEMENTS,
-)
+from ..model.parameters import impulses
 from .dense import newton
 from .polish import polish_free, segment
 from .sweeps import restore_impulses, sweep
@@ -53,31 +42,31 @@ def refine(
     m = problem.m
     L0, V0 = L.copy(), V.copy()
     reached, clamped = np.inf, 0
-    if m <= DENSE_CONTACTS:
+    if m <= impulses.DENSE_CONTACTS:
         for attempt in range(2):
             # Friction that energy limits: first each contact by itself, then with the other contact of its face.
-            if reached > DIRECT_SINGLE * worst:
+            if reached > impulses.DIRECT_SINGLE * worst:
                 restore_impulses(L, V, L0, V0)
-                reached, clamped = newton(problem, L, V, FREE, REFINEMENTS, tolerance, attempt == 1)
+                reached, clamped = newton(problem, L, V, FREE, impulses.REFINEMENTS, tolerance, attempt == 1)
     else:
         reached, clamped = polish(problem, L, V, FREE, 10.0**log_R, passes, tolerance)
     part = 1.0
-    if not reached <= DIRECT_LOST * worst + tolerance:
+    if not reached <= impulses.DIRECT_LOST * worst + tolerance:
         restore_impulses(L, V, L0, V0)
         part = 0.0
     elif clamped > 0:
         # With slip the solution minimises no energy: the residual of a sweep decides; without, `segment`.
-        if m <= DENSE_CONTACTS:
+        if m <= impulses.DENSE_CONTACTS:
             L1, V1 = L.copy(), V.copy()
             after = sweep(problem, L, V)
             if after < worst:
                 return log_R, after
             restore_impulses(L, V, L1, V1)
         part = segment(problem, L, V, L0, V0)
-    if part > AUGMENTATION_MORE:
-        log_R = min(log_R + AUGMENTATION_STEP, AUGMENTATION)
-    elif part < AUGMENTATION_LESS:
-        log_R = max(log_R - AUGMENTATION_STEP, AUGMENTATION_LEAST)
+    if part > impulses.AUGMENTATION_MORE:
+        log_R = min(log_R + impulses.AUGMENTATION_STEP, impulses.AUGMENTATION)
+    elif part < impulses.AUGMENTATION_LESS:
+        log_R = max(log_R - impulses.AUGMENTATION_STEP, impulses.AUGMENTATION_LEAST)
     return log_R, sweep(problem, L, V)
 
 
@@ -89,7 +78,7 @@ def refine_and_sweep(
     """A round of a solve: `refine`, and up to `most` sweeps until one changes no velocity by more than `tolerance`.
     Returns log_R for the next round, the change of velocity in the last sweep, and the number of sweeps, with that of
     `refine`."""
-    log_R, worst = refine(problem, L, V, FREE, log_R, passes, DIRECT_RESIDUAL * tolerance, worst)
+    log_R, worst = refine(problem, L, V, FREE, log_R, passes, impulses.DIRECT_RESIDUAL * tolerance, worst)
     sweeps = 1
     while sweeps <= most and worst > tolerance:
         worst = sweep(problem, L, V)

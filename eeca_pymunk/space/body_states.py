@@ -11,29 +11,10 @@ import numpy as np
 import pymunk
 from pymunk import batch
 
+from .. import layout
 from ..arrays import FloatArray, IntArray, Memory
 from ..compiled import Table
 from ..compiled.records import Rows
-from ..layout import (
-    ACCELERATION_X,
-    CHANGES_AFTER,
-    CHANGES_BEFORE,
-    END,
-    END_COLUMNS,
-    EXTRA_COLUMNS,
-    HOOKED_TABLES,
-    KNOWN_ID,
-    PLACED,
-    READ,
-    READ_ID,
-    RESET_FORCES,
-    START,
-    STATE_COLUMNS,
-    STOPPED,
-    UNALTERED,
-    VELOCITIES,
-    WRITTEN,
-)  # fmt: skip
 from ..model.bodies import Body
 from ..model.values import STATIC
 from ..rehearsing import accept_rounding, alter_end, copy_start
@@ -49,11 +30,20 @@ _FORCES = {0: _F.FORCE | _F.TORQUE}
 # angles and spins.
 _TABLES = {
     start + turns: (start, fields)
-    for start, both in ((END, _WHOLE), (STOPPED, _WHOLE), (VELOCITIES, _SPEEDS), (RESET_FORCES, _FORCES))
+    for start, both in (
+        (layout.END, _WHOLE),
+        (layout.STOPPED, _WHOLE),
+        (layout.VELOCITIES, _SPEEDS),
+        (layout.RESET_FORCES, _FORCES),
+    )
     for turns, fields in both.items()
 }
 # Where IDS, EXTRA and HOOKED begin in the memory, whose first array is STATES: in words of 8 bytes, over N.
-_IDS, _EXTRA, _HOOKED = 2 * STATE_COLUMNS, 2 * STATE_COLUMNS + 4, 2 * STATE_COLUMNS + 4 + EXTRA_COLUMNS
+_IDS, _EXTRA, _HOOKED = (
+    2 * layout.STATE_COLUMNS,
+    2 * layout.STATE_COLUMNS + 4,
+    2 * layout.STATE_COLUMNS + 4 + layout.EXTRA_COLUMNS,
+)
 _KERNELS = copy_start, write_ends, write_stopped_ends, alter_end, accept_rounding, forget_last_end
 
 
@@ -103,20 +93,20 @@ class BodyStates:
         if past is not None:
             past.STATES, past.IDS = past.STATES.copy(), past.IDS.copy()
         self._memory: Memory = memory
-        ends, row = END_COLUMNS * N + 1, 8 * N
+        ends, row = layout.END_COLUMNS * N + 1, 8 * N
         ids, extra, hooked = _IDS * row, _EXTRA * row, _HOOKED * row
-        memory.provide(0, hooked + HOOKED_TABLES * STATE_COLUMNS * row + 8 * ends)
+        memory.provide(0, hooked + layout.HOOKED_TABLES * layout.STATE_COLUMNS * row + 8 * ends)
         # STATES and IDS have more rows than a call fills, so that there is room for one body more: pymunk replaces
         # memory that is too small by its own. After additions the ids differ at once, and other arrays are made.
-        self.STATES: FloatArray = memory.array((2, N, STATE_COLUMNS), float, 0)
+        self.STATES: FloatArray = memory.array((2, N, layout.STATE_COLUMNS), float, 0)
         self.IDS: IntArray = memory.array((4, N), np.int64, ids)
-        self.EXTRA: FloatArray = memory.array((N, EXTRA_COLUMNS), float, extra)
-        self.HOOKED: FloatArray = memory.array((HOOKED_TABLES, N, STATE_COLUMNS), float, hooked)
-        self.ENDS: FloatArray = memory.array((ends,), float, hooked + HOOKED_TABLES * STATE_COLUMNS * row)
+        self.EXTRA: FloatArray = memory.array((N, layout.EXTRA_COLUMNS), float, extra)
+        self.HOOKED: FloatArray = memory.array((layout.HOOKED_TABLES, N, layout.STATE_COLUMNS), float, hooked)
+        self.ENDS: FloatArray = memory.array((ends,), float, hooked + layout.HOOKED_TABLES * layout.STATE_COLUMNS * row)
         last = None if past is None else past.gather
         self.gather = private_batch.reader(space, STATE_FIELDS, self.STATES, self.IDS, last)
         self.gather()
-        self.IDS[KNOWN_ID] = self.IDS[READ_ID]
+        self.IDS[layout.KNOWN_ID] = self.IDS[layout.READ_ID]
         self._write: _Writers = _Writers(self, None if past is None else past._write)
 
     def bind(self, reading: Table, bound: Callable[..., list[Callable[..., Any]]]) -> None:
@@ -137,17 +127,17 @@ class BodyStates:
 
     def reset_forces(self) -> None:
         """Write the forces and torques at the end of the step (table RESET_FORCES), reset as pymunk does."""
-        self._write[RESET_FORCES]()
+        self._write[layout.RESET_FORCES]()
 
     @property
     def start(self) -> FloatArray:
         """(N, 9) the state at the start of a step that calls functions, copied by `copy_start`."""
-        state: FloatArray = self.HOOKED[START]
+        state: FloatArray = self.HOOKED[layout.START]
         return state
 
     def forget_changes(self) -> None:
         """Forget the changes by functions within a step, HOOKED[CHANGES_BEFORE] and HOOKED[CHANGES_AFTER]."""
-        self.HOOKED[CHANGES_BEFORE] = self.HOOKED[CHANGES_AFTER] = 0.0
+        self.HOOKED[layout.CHANGES_BEFORE] = self.HOOKED[layout.CHANGES_AFTER] = 0.0
 
     def alter_end(self, stops: bool) -> tuple[int, float]:
         """See `rehearsing.alter_end`; returns its status, and the energy lost by damping 0."""
@@ -156,7 +146,7 @@ class BodyStates:
     def keep_unaltered(self) -> None:
         """Set STATES[WRITTEN] to the end of the step without HOOKED[CHANGES_AFTER], so that bodies that functions have
         changed in the step count as edited in the next one."""
-        self.STATES[WRITTEN] = self.HOOKED[UNALTERED]
+        self.STATES[layout.WRITTEN] = self.HOOKED[layout.UNALTERED]
 
     def is_current(self) -> bool:
         """Whether `gather` has read these bodies, and no static one was moved."""
@@ -164,17 +154,17 @@ class BodyStates:
 
     def same_bodies(self) -> bool:
         """Whether `gather` has read these bodies and no others."""
-        return np.array_equal(self.IDS[READ_ID], self.IDS[KNOWN_ID])
+        return np.array_equal(self.IDS[layout.READ_ID], self.IDS[layout.KNOWN_ID])
 
     def moved_static(self) -> bool:
         """Whether a static body was moved since the rows were made, by the states that `gather` has read."""
         still = self.bodies.static
-        return not np.array_equal(self.STATES[READ, still, :3], self.STATES[WRITTEN, still, :3])
+        return not np.array_equal(self.STATES[layout.READ, still, :3], self.STATES[layout.WRITTEN, still, :3])
 
     @property
     def state(self) -> FloatArray:
         """(N, 9) position, angle, velocity, spin, force and torque of `bodies`, as `gather` has read them."""
-        now: FloatArray = self.STATES[READ]
+        now: FloatArray = self.STATES[layout.READ]
         return now
 
     def set_accelerations(self, change: Sequence[tuple[float, float, float]], dt: float) -> None:
@@ -192,7 +182,7 @@ class BodyStates:
     @cached_property
     def _pushed(self) -> list[int]:
         """Where the accelerations of the bodies with velocity functions begin in `_extra`."""
-        return [row * EXTRA_COLUMNS + ACCELERATION_X for row in self.bodies.velocity_hooks.tolist()]
+        return [row * layout.EXTRA_COLUMNS + layout.ACCELERATION_X for row in self.bodies.velocity_hooks.tolist()]
 
     def write_whole(self) -> int:
         """Write the end of the step to ENDS, always with forces and angles; returns the status bits."""
@@ -202,7 +192,7 @@ class BodyStates:
         """(N, 9) the end of the step, by STATES[WRITTEN]; forces of moving bodies are 0, as after a step of pymunk."""
         state = self.state.copy()
         moving = ~self.bodies.static
-        state[moving, :6], state[moving, 6:] = self.STATES[WRITTEN, moving, :6], 0.0
+        state[moving, :6], state[moving, 6:] = self.STATES[layout.WRITTEN, moving, :6], 0.0
         return state
 
     def recall(self, before: BodyStates) -> None:
@@ -214,26 +204,26 @@ class BodyStates:
         same = [(i, j) for i, j in at if j >= 0 and kinds[i] != STATIC and inertia[i] == known[j]]
         if same:
             to, of = zip(*same, strict=True)
-            self.STATES[WRITTEN, to] = before.STATES[WRITTEN, of]
+            self.STATES[layout.WRITTEN, to] = before.STATES[layout.WRITTEN, of]
 
     def void_predictions(self) -> None:
         """Void all predictions: in the next step all bodies count as placed by the program (PLACED in `layout.py`)."""
         due = self.BODY["due"]
-        np.minimum(due, PLACED, out=due)
+        np.minimum(due, layout.PLACED, out=due)
 
     def scatter(self, status: int) -> None:
         """Write poses and velocities at the end of the step to the space, angles and spins if the bit TURNS is set."""
-        self._write[END + (status & TURNS)]()
+        self._write[layout.END + (status & TURNS)]()
         if self.eccentric:
-            self._write[END + (status & TURNS)]()
+            self._write[layout.END + (status & TURNS)]()
 
     def scatter_stopped(self, status: int) -> None:
         """Write the poses, and velocity 0; `scatter_velocities` must follow."""
         self._write_stopped_ends(status)
-        self._write[STOPPED + (status & TURNS)]()
+        self._write[layout.STOPPED + (status & TURNS)]()
         if self.eccentric:
-            self._write[STOPPED + (status & TURNS)]()
+            self._write[layout.STOPPED + (status & TURNS)]()
 
     def scatter_velocities(self, status: int) -> None:
         """Write the velocities."""
-        self._write[VELOCITIES + (status & TURNS)]()
+        self._write[layout.VELOCITIES + (status & TURNS)]()

@@ -20,20 +20,7 @@ from typing import Any, NamedTuple
 import pymunk
 
 from ..errors import UnsupportedFeature
-from ..model.joints import (
-    EDITED,
-    GEAR,
-    GROOVE,
-    MOTOR,
-    PIN,
-    PIVOT,
-    RATCHET,
-    ROTARY_LIMIT,
-    ROTARY_SPRING,
-    SLIDE,
-    SPRING,
-    Joint,
-)
+from ..model import joints
 
 _SMALL = 1e-9  # a pin is a pivot if its length, over the largest coordinate of its anchors, is at most this
 _KINDS = (
@@ -131,16 +118,21 @@ class ConstraintValues(NamedTuple):
         total = sum(self.anchor_a) + sum(self.anchor_b) + self.length + sum(self.groove) + stiffness + damping + rest
         total += sum(self.gear) + self.rate + sum(self.ratchet)
         signs = force >= 0.0 and 0.0 <= error <= 1.0 and bias >= 0.0 and damping >= 0.0 and self.length >= 0.0
-        zero = self.kind == GEAR and self.gear[0] == 0.0
+        zero = self.kind == joints.GEAR and self.gear[0] == 0.0
         return (
-            signs and math.isfinite(total) and lower <= upper and not (self.kind == SLIDE and upper < 0.0) and not zero
+            signs
+            and math.isfinite(total)
+            and lower <= upper
+            and not (self.kind == joints.SLIDE and upper < 0.0)
+            and not zero
         )
 
     def put(self, memory: bytearray, j: int, a: int, b: int) -> None:
         """Write the values to row j of JOINT, whose memory is given, as EDITED, for bodies in the rows a and b."""
         _ROW.pack_into(
-            memory, j * Joint.TYPE.itemsize, self.kind, a, b, self.bounded, *self.anchor_a, *self.anchor_b, *self.force,
-            self.length, *self.limits, *self.groove, *self.spring, 0.0, *self.gear, self.rate, *self.ratchet, 0, EDITED,
+            memory, j * joints.Joint.TYPE.itemsize, self.kind, a, b, self.bounded, *self.anchor_a, *self.anchor_b,
+            *self.force, self.length, *self.limits, *self.groove, *self.spring, 0.0, *self.gear, self.rate,
+            *self.ratchet, 0, joints.EDITED,
         )  # fmt: skip
 
 
@@ -163,17 +155,17 @@ def read(c: Any) -> ConstraintValues:
 
 def _read(c: Any, force: tuple[float, float, float]) -> ConstraintValues:
     if isinstance(c, pymunk.SimpleMotor):
-        return ConstraintValues(MOTOR, force, rate=c.rate)
+        return ConstraintValues(joints.MOTOR, force, rate=c.rate)
     if isinstance(c, pymunk.DampedRotarySpring):
-        return ConstraintValues(ROTARY_SPRING, force, spring=(c.stiffness, c.damping, c.rest_angle))
+        return ConstraintValues(joints.ROTARY_SPRING, force, spring=(c.stiffness, c.damping, c.rest_angle))
     if isinstance(c, pymunk.RotaryLimitJoint):
         if c.min == c.max:
-            return ConstraintValues(GEAR, force, gear=(1.0, c.min))
-        return ConstraintValues(ROTARY_LIMIT, force, limits=(c.min, c.max))
+            return ConstraintValues(joints.GEAR, force, gear=(1.0, c.min))
+        return ConstraintValues(joints.ROTARY_LIMIT, force, limits=(c.min, c.max))
     if isinstance(c, pymunk.RatchetJoint):
-        return ConstraintValues(RATCHET, force, ratchet=(c.ratchet, c.phase, _notch(c)))
+        return ConstraintValues(joints.RATCHET, force, ratchet=(c.ratchet, c.phase, _notch(c)))
     if isinstance(c, pymunk.GearJoint):
-        return ConstraintValues(GEAR, force, gear=(c.ratio, c.phase))
+        return ConstraintValues(joints.GEAR, force, gear=(c.ratio, c.phase))
     b = _anchor(c.anchor_b, c.b)
     if isinstance(c, pymunk.GrooveJoint):
         return _groove(c, force, b)
@@ -182,11 +174,13 @@ def _read(c: Any, force: tuple[float, float, float]) -> ConstraintValues:
         return _pin(c.distance, force, a, b)
     if isinstance(c, pymunk.SlideJoint):
         return (
-            _pin(c.max, force, a, b) if c.min == c.max else ConstraintValues(SLIDE, force, a, b, limits=(c.min, c.max))
+            _pin(c.max, force, a, b)
+            if c.min == c.max
+            else ConstraintValues(joints.SLIDE, force, a, b, limits=(c.min, c.max))
         )
     if isinstance(c, pymunk.PivotJoint):
-        return ConstraintValues(PIVOT, force, a, b)
-    return ConstraintValues(SPRING, force, a, b, spring=(c.stiffness, c.damping, c.rest_length))
+        return ConstraintValues(joints.PIVOT, force, a, b)
+    return ConstraintValues(joints.SPRING, force, a, b, spring=(c.stiffness, c.damping, c.rest_length))
 
 
 def _anchor(anchor: tuple[float, float], body: pymunk.Body) -> tuple[float, float]:
@@ -200,7 +194,7 @@ def _pin(
 ) -> ConstraintValues:  # fmt: skip
     """A pin, or a pivot if its length is 0, for which a pin has no direction."""
     scale = max(map(abs, (*a, *b)))
-    kind = PIVOT if length <= _SMALL * max(scale, 1e-300) or length == 0.0 else PIN
+    kind = joints.PIVOT if length <= _SMALL * max(scale, 1e-300) or length == 0.0 else joints.PIN
     return ConstraintValues(kind, force, a, b, length)
 
 
@@ -208,11 +202,11 @@ def _groove(c: pymunk.GrooveJoint, force: tuple[float, float, float], b: tuple[f
     """A groove, or a pivot if its ends are equal, for which a groove has no direction."""
     first, last = c.groove_a - c.a.center_of_gravity, c.groove_b - c.a.center_of_gravity
     if c.groove_a == c.groove_b:
-        return ConstraintValues(PIVOT, force, (first.x, first.y), b)
+        return ConstraintValues(joints.PIVOT, force, (first.x, first.y), b)
     along = (last - first).normalized()
     normal = along.perpendicular()
     ends, offset = (along.dot(first), along.dot(last)), normal.dot(first)
-    return ConstraintValues(GROOVE, force, (0.0, 0.0), b, limits=ends, groove=(*normal, offset))
+    return ConstraintValues(joints.GROOVE, force, (0.0, 0.0), b, limits=ends, groove=(*normal, offset))
 
 
 def _notch(c: pymunk.RatchetJoint) -> float:

@@ -13,6 +13,7 @@ import pytest
 import eeca_pymunk as ep
 from eeca_pymunk.impacts import joint_impact
 from eeca_pymunk.jointed import press, solve
+from eeca_pymunk.model.parameters import joints as parameters
 from eeca_pymunk.newton import boxes, effort, response, systems
 from eeca_pymunk.rows import columns, coulomb, dense, homotopy
 
@@ -157,7 +158,7 @@ def counted(function: Callable[..., Any], amount: Callable[..., float], done: li
         (ON_FLOOR, homotopy, "HOMOTOPY_WORK", HOMOTOPIES),
         (ON_FLOOR, dense, "MATRIX_WORK", MATRICES),
         (ON_FLOOR, homotopy, "CHANGE_WORK", CHANGES),
-        (ON_FLOOR, press, "CONTACT_WORK", ITERATIONS),
+        (ON_FLOOR, parameters, "CONTACT_WORK", ITERATIONS),
         (ON_FLOOR, solve, "INTERVAL_WORK", INTERVALS),
         (IMPACT, effort, "ROW_WORK", ROWS),
         (IMPACT, effort, "FACTOR_WORK", FACTORS),
