@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from ..compiled import kernel
-from ..joints.closing import farthest
-from ..joints.correct import project
-from ..joints.start import springs_of
+from ..joints.closing import close_poses, farthest, hold_passed
+from ..joints.start import compute_rows, springs_of
 from ..joints.workspace import workspace
-from ..model.joint_steps import POSES
 from ..model.joints import Joints
 from ..model.parameters.joints import LINEAR_APART
 from ..model.scene import Scene
@@ -30,10 +28,14 @@ def carry(A: Scene, J: Joints, root: int, t: float) -> None:
             continue
         W, first = workspace(J, s), J.COMPONENT[s].first_body
         size_joints(W, gather_alone(A, J, s, began, A.PAR.planned))
+        for k in range(W.joints):
+            W.link[k].side = W.J.JOINT[W.link[k].joint].side
         stored = springs_of(W)
+        if hold_passed(W):
+            compute_rows(W)
         keep_apart(W)
         gather_alone(A, J, s, t, A.PAR.planned)
-        project(W, POSES)
+        close_poses(W)
         stored = springs_of(W) - stored
         if not farthest(W) <= LINEAR_APART:
             continue

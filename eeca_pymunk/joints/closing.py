@@ -8,7 +8,7 @@ from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.joint_steps import POSES, SPEEDS, BodyStep, JointLedger
 from ..model.joints import APART, EDITED, GIVES_WAY, LEFT_APART, Workspace
-from ..model.parameters.joints import JOINT_APART
+from ..model.parameters.joints import JOINT_APART, JOINT_TOUCH
 from ..newton.entries import acts
 from ..newton.motion import go_back, save
 from ..newton.rows import joint_rows
@@ -85,6 +85,32 @@ def closing_work(local: Rows[BodyStep], bodies: int) -> float:
             if local[i].mobility[c] > 0.0:
                 work -= local[i].acceleration[c] * (local[i].pose[c] - local[i].saved_pose[c]) / local[i].mobility[c]
     return work
+
+
+@nonallocating
+def hold_passed(W: Workspace) -> bool:
+    """Let all inactive limits that are passed act, at their bounds; whether there are any. Rows must be those of the
+    present poses."""
+    hinge, link, found = W.J.HINGE, W.link, False
+    for k in range(W.joints):
+        if link[k].side != 0 or link[k].bounded != 0:
+            continue
+        for side in (-1, 1):
+            if has_bound(W, k, side) and limit_gap(W, k, side) < -JOINT_TOUCH * hinge[k].size:
+                link[k].side, hinge[k].target[link[k].rows - 1] = side, 0.0
+                found = True
+    return found
+
+
+@nonallocating
+def close_poses(W: Workspace) -> None:
+    """Project poses onto the joints, and onto the limits that this passes."""
+    project(W, POSES)
+    for _ in range(W.joints):
+        compute_rows(W)
+        if not hold_passed(W):
+            return
+        project(W, POSES)
 
 
 @nonallocating

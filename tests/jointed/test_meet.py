@@ -118,6 +118,26 @@ def test_what_hangs_on_a_moving_body_is_where_that_has_it_as_a_step_is_cut(t: fl
     assert abs(A.PAR.external - external) > 1e-3
 
 
+@pytest.mark.parametrize("slack", [0.0, 0.01, 0.5])
+def test_limits_hold_on_what_a_moving_body_carries_along_as_a_step_is_cut(slack: float) -> None:
+    """The limit is reached on the way; other joints alone would take the bodies beyond it (random scene 27000144)."""
+    space = pymunk.Space()
+    cart, near, far = pymunk.Body(body_type=pymunk.Body.KINEMATIC), pymunk.Body(1.0, 1.0), pymunk.Body(3.0, 1.0)
+    cart.velocity, near.velocity, far.velocity, far.position = (-5.0, 0.0), (-5.0, 0.0), (-5.0, 0.0), (2.0, 0.0)
+    limit = pymunk.SlideJoint(near, far, (0.0, 0.0), (0.0, 0.0), 0.0, 2.0 + slack)
+    space.add(cart, near, far, *(pymunk.Circle(one, RADIUS) for one in (cart, near, far)))
+    space.add(pymunk.PivotJoint(cart, near, (0.0, 0.0), (0.0, 0.0)), limit)
+    stepper = ep.EECA(space)
+    stepper.step(1e-9)
+    assert stepper.event_loop is not None
+    A, J = stepper.event_loop.scene, stepper.event_loop.joints
+    carry(A, J, next(i for i in range(3) if A.STATE[i].island == i and A.MEMBER[i].jointed > 0), 0.02)
+    left, right = sorted(float(A.BODY[i].x) for i in range(3) if A.BODY[i].inv_mass > 0.0)
+    assert left == pytest.approx(-0.1, abs=1e-8)
+    assert right == pytest.approx(min(2.0, 1.9 + slack), abs=1e-7)
+    assert right - left <= 2.0 + slack + 1e-12
+
+
 def test_the_path_is_looked_at_once_however_many_instants_are_tried(monkeypatch: pytest.MonkeyPatch) -> None:
     """Instants before the impact are tried, from which the disk is seen to meet the floor."""
     A, J = falling(0.1, 1.0)
