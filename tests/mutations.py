@@ -79,6 +79,10 @@ MUTATIONS = (
              "= False, rules", "islands/test_at_rest.py", "handler"),
     Mutation("jointed: walls turn in one interval", "jointed/solve.py", "if shorter < h and not last:", "if False:",
              "contacts/test_turning.py", "joints_connect and 0.4"),
+    Mutation("jointed: what joints do not allow opens a gap", "jointed/meet.py", "            rate, t = allowed, least\n",
+             "            pass\n", "jointed/test_meet.py", "do_not_allow"),
+    Mutation("jointed: what is carried along passes limits", "joints/closing.py",
+             "limit_gap(W, k, side) < -JOINT_TOUCH", "limit_gap(W, k, side) < -1e9", "jointed/test_meet.py", "carries_along"),
     Mutation("columns fit round-off", "jointed/secant.py", "    clear_round_off(interval, ERROR)\n", "",
              "jointed/test_convergence.py", "columns_answer"),
     # Loop.

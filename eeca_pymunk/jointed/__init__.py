@@ -5,9 +5,10 @@ until the interval ends, joints and contacts with their impulses.
 
 Open first `solve.py`, the interval of an island, with `lengths.py`, how long it may be, `press.py`, its contacts,
 `advance.py`, the motion under their impulses, and `bounded_rows.py`, bounded impulses of joints (`motors.py`);
-`alone.py` is the interval of a component that is near no other shape. `meet.py` ends intervals where islands meet,
-`ledger.py` accounts for joints, `losses.py` has what contacts lose. `component.py` steps one component (`gathered.py`)
-and finds its response to impulses, which `groups.py` and `columns.py` store (laws of contacts with it: `..rows.laws`).
+`alone.py` is the interval of a component that is near no other shape. `meet.py` ends intervals where islands meet, by
+velocities that joints allow (`allowed.py`), `ledger.py` accounts for joints, `losses.py` has what contacts lose.
+`component.py` steps one component (`gathered.py`) and finds its response to impulses, which `groups.py` and
+`columns.py` store (laws of contacts with it: `..rows.laws`).
 `lifting.py` corrects penetration, `rest.py` puts islands to rest. `..model.joints` names the arrays. A *free* island
 has no contact or joint with a body that impulses do not move. A scene without joints calls nothing of this room.
 """

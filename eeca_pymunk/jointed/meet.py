@@ -11,6 +11,7 @@ from ..islands.membership import in_large_island, members_of
 from ..islands.rest import speed
 from ..model.joint_steps import LINEAR
 from ..model.joints import Joints
+from ..model.parameters.intervals import TOUCH
 from ..model.parameters.joints import (
     CLOSES,
     COLUMN_CONTACTS,
@@ -23,6 +24,7 @@ from ..model.parameters.joints import (
     MEET_SECANTS_LOADED,
 )
 from ..model.scene import Scene
+from .allowed import allowed_rate
 from .ends import end_here, left_apart, shorten, under_way
 from .ledger import work_left
 from .partners import carry
@@ -93,7 +95,8 @@ def locate_impact(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float,
     intervals. The gap is no continuous function of their length: stiff springs swing more than once in a coarse
     interval. If shapes are on the far side of each other, their paths cross before the end, or it is `too_late`, t is
     halved towards the last instant at which they were apart. If no interval ends at contact, both end where they are
-    apart; an island for which no interval fits stays where it is until then.
+    apart; an island for which no interval fits stays where it is until then. Shapes that touch at the start, and close
+    by velocities that joints allow (`allowed`), meet there.
     """
     i, j = A.LINK[a].owner, A.LINK[b].owner
     roots = (A.STATE[i].island, A.STATE[j].island if A.BODY[j].inv_mass > 0.0 else -1)
@@ -120,6 +123,10 @@ def locate_impact(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float,
     start, rate = gap_and_rate(A, a, b, least)
     # Closing by round-off, as after an impact, does not count: an impact would not change it.
     rate = 0.0 if abs(rate) <= CLOSES * max(speed(A, i), speed(A, j)) else rate
+    if rate >= 0.0 and start <= TOUCH * small:
+        allowed = allowed_rate(A, J, a, b, least)
+        if allowed < -CLOSES * max(speed(A, i), speed(A, j)):
+            rate, t = allowed, least
     level = min(start, 0.0) if rate >= 0.0 else 0.0
     before, gap_before, g, touch, loaded = -1.0, 0.0, 0.0, 0.0, 0
     apart, crossed, crosses = least, False, False

@@ -118,6 +118,35 @@ def test_what_hangs_on_a_moving_body_is_where_that_has_it_as_a_step_is_cut(t: fl
     assert abs(A.PAR.external - external) > 1e-3
 
 
+@pytest.mark.parametrize("sunk", [0.0, 1e-3])
+@pytest.mark.parametrize("down", [3.0, 1.0, 0.5])
+def test_shapes_that_open_only_by_what_joints_do_not_allow_meet_at_once(sunk: float, down: float) -> None:
+    """Joints allow the mean velocity of both disks, which a step and an elastic impact keep apart; the rest is reversed
+    within any interval, so that no search finds one at whose end they are apart (random scene 27000144)."""
+    space = pymunk.Space()
+    low, high = pymunk.Body(1.0, 1.0), pymunk.Body(1.0, 1.0)
+    low.position, high.position = (0.0, RADIUS - sunk), (0.0, 3.0 - sunk)
+    disks, floor = (
+        [pymunk.Circle(one, RADIUS) for one in (low, high)],
+        pymunk.Segment(space.static_body, (-9, 0), (9, 0), 0),
+    )
+    for shape in (*disks, floor):
+        shape.elasticity = 1.0
+    space.add(low, high, *disks, floor, pymunk.PinJoint(low, high))
+    stepper = ep.EECA(space)
+    stepper.step(1e-9)
+    assert stepper.event_loop is not None
+    A, J = stepper.event_loop.scene, stepper.event_loop.joints
+    A.PAR.dt = A.PAR.planned = 0.01
+    for i in range(2):
+        A.BODY[i].since, A.BODY[i].vy = 0.0, -down if A.BODY[i].y > 1.0 else 1.0
+    root = A.STATE[0].island
+    J.PROGRESS.effort = 0.0
+    assert try_jointed(A, J, root, 0.0, 0.01, True)[0] == 0
+    one = 0 if A.BODY[0].y < 1.0 else 1
+    assert (locate_impact(A, J, one, 2, 0.005) == (0.0, False)) == (down > 1.0)
+
+
 @pytest.mark.parametrize("slack", [0.0, 0.01, 0.5])
 def test_limits_hold_on_what_a_moving_body_carries_along_as_a_step_is_cut(slack: float) -> None:
     """The limit is reached on the way; other joints alone would take the bodies beyond it (random scene 27000144)."""

@@ -1,0 +1,48 @@
+"""How fast shapes close at the start of an interval by velocities that joints allow.
+
+The mean velocity over any interval, however short, satisfies the joints, so the part of a velocity that they do not
+allow (an error of a step, which elastic impacts keep) is reversed within it. Shapes that touch and open by that part
+alone close from the start on.
+"""
+
+from __future__ import annotations
+
+from ..compiled import nonallocating
+from ..geometry.flight import pose, rate
+from ..geometry.gap import gap
+from ..joints.start import mark_bounded
+from ..joints.workspace import workspace
+from ..model.joints import Joints
+from ..model.scene import Scene
+from .component import fit_speeds
+from .gathered import gather_alone
+
+
+@nonallocating
+def allowed_velocity(A: Scene, J: Joints, i: int, t: float) -> tuple[float, float, float]:
+    """The velocity of body i at instant t; where its path begins at t, the part of it that its joints allow."""
+    s = J.OF[i]
+    if s >= 0 and A.BODY[i].since == t:
+        W, first = workspace(J, s), J.COMPONENT[s].first_body
+        length = gather_alone(A, J, s, t, 0.0)
+        mark_bounded(W)
+        for k in range(W.joints):
+            W.link[k].side = W.link[k].let_go = 0
+        fit_speeds(J, s, length)
+        for w in range(W.bodies):
+            if J.JOINED[first + w].body == i:
+                return J.LOCAL[w].v0[0], J.LOCAL[w].v0[1], J.LOCAL[w].v0[2]
+    return rate(A.BODY, i, t)
+
+
+@nonallocating
+def allowed_rate(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
+    """The rate of the gap of shapes a and b at instant t by velocities that joints allow, negative if it closes."""
+    i, j, total = A.LINK[a].owner, A.LINK[b].owner, 0.0
+    _, nx, ny, px, py = gap(A, a, b, t)
+    for end in range(2):
+        body = j if end == 1 else i
+        vx, vy, spin = allowed_velocity(A, J, body, t)
+        x, y, _ = pose(A.BODY, body, t)
+        total += (2.0 * end - 1.0) * (nx * vx + ny * vy + ((px - x) * ny - (py - y) * nx) * spin)
+    return total
