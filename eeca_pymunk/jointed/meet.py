@@ -179,7 +179,8 @@ def locate_impact(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float,
         crossed, t = True, 0.5 * (apart + t)
         shorten_both(A, J, roots[0], roots[1], t)
         g = gap(A, a, b, t)[0] - level
-        crosses = g < -touch * small or (g + level > touch * small and crossing_of_paths(A, a, b, t)[1])
+        # Where a limit drives them together, the instant after it counts: before it they are as at the start.
+        crosses = g < -TOUCH * small or (g + level > touch * small and crossing_of_paths(A, a, b, t)[1])
     if rate >= 0.0 and t - least <= A.PAR.instant:
         # Shapes only close once joints act, for instance at a limit that directs velocities into the other shape. The
         # interval doubles with each impact of the bodies, so that the step ends.
