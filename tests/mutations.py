@@ -84,6 +84,10 @@ MUTATIONS = (
     Mutation("jointed: what is carried along passes limits", "joints/closing.py",
              "limit_gap(W, k, side) < -JOINT_TOUCH", "limit_gap(W, k, side) < -1e9",
              "jointed/test_meet.py", "carries_along"),
+    Mutation("work: the search for an impact goes on", "jointed/meet.py", "        if spent:\n            break\n", "",
+             "jointed/test_work.py", "search_for_an_impact"),
+    Mutation("work: gaps of pairs that are left out", "islands/candidates.py", "max(gaps - p, 0)", "0",
+             "jointed/test_work.py", "leaves_out"),
     Mutation("columns fit round-off", "jointed/secant.py", "    clear_round_off(interval, ERROR)\n", "",
              "jointed/test_convergence.py", "columns_answer"),
     # Loop.

@@ -13,7 +13,7 @@ from ..geometry.flight import norm
 from ..geometry.sides import smaller
 from ..model.contacts import Row
 from ..model.parameters import intervals
-from ..model.parameters.events import RESOLUTION
+from ..model.parameters.events import PAIR_LOOKS, RESOLUTION
 from ..model.scene import Scene
 from ..pairs.lists import far_apart
 from ..pairs.rules import barred, law
@@ -38,7 +38,7 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
     Args:
         lossy: whether any shape of the island has an elasticity below 1.  MINE: its bodies.
     """
-    n, p = len(MINE), 0
+    n, p, gaps = len(MINE), 0, 0
     found = np.empty((4 * n + 8, 2), np.int64)
     BODY, LINK, STATE = A.BODY, A.LINK, A.STATE
     together, since = A.COUNT.together > 0, A.PAR.stamp - 1.0
@@ -67,6 +67,7 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                 may_be_loaded = lossy and not together
                 if not (n >= intervals.LARGE_ISLAND and may_be_loaded and remembered_force(A, s, o, since)[0] > 0.0):
                     g, u, closing, _, mass = approach(A, s, o, t)
+                    gaps += 1
                     if not together:
                         if not busy:
                             reach = (
@@ -91,6 +92,7 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                     found = more
                 found[p, 0], found[p, 1] = s, o
                 p += 1
+    A.COUNT.work += int(PAIR_LOOKS * max(gaps - p, 0))  # that of the others is part of their solve
     return found[:p]
 
 

@@ -96,7 +96,8 @@ def locate_impact(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float,
     interval. If shapes are on the far side of each other, their paths cross before the end, or it is `too_late`, t is
     halved towards the last instant at which they were apart. If no interval ends at contact, both end where they are
     apart; an island for which no interval fits stays where it is until then. Shapes that touch at the start, and close
-    by velocities that joints allow (`allowed`), meet there.
+    by velocities that joints allow (`allowed`), meet there. Once the work of the step is spent, t is the last instant
+    at which they were apart.
     """
     i, j = A.LINK[a].owner, A.LINK[b].owner
     roots = (A.STATE[i].island, A.STATE[j].island if A.BODY[j].inv_mass > 0.0 else -1)
@@ -176,11 +177,14 @@ def locate_impact(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float,
             break
         if late <= apart:  # shapes were too far at `apart` already
             apart = least
-        crossed, t = True, 0.5 * (apart + t)
+        spent = work_left(A, J) < 0.0
+        crossed, t = True, apart if spent else 0.5 * (apart + t)
         shorten_both(A, J, roots[0], roots[1], t)
         g = gap(A, a, b, t)[0] - level
         # Where a limit drives them together, the instant after it counts: before it they are as at the start.
         crosses = g < -TOUCH * small or (g + level > touch * small and crossing_of_paths(A, a, b, t)[1])
+        if spent:
+            break
     if rate >= 0.0 and t - least <= A.PAR.instant:
         # Shapes only close once joints act, for instance at a limit that directs velocities into the other shape. The
         # interval doubles with each impact of the bodies, so that the step ends.
@@ -188,7 +192,7 @@ def locate_impact(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float,
         t = min(least + 2.0 ** (met + 1) * A.PAR.instant, latest)
         shorten_both(A, J, roots[0], roots[1], t)
         fits = too_late(A, J, roots, t) == math.inf
-        while not fits and t - least > A.PAR.instant:
+        while not fits and t - least > A.PAR.instant and work_left(A, J) >= 0.0:
             t = 0.5 * (least + t)
             shorten_both(A, J, roots[0], roots[1], t)
             fits = too_late(A, J, roots, t) == math.inf
