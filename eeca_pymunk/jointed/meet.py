@@ -162,7 +162,9 @@ def locate_impact(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float,
             break
         before, gap_before = t, g
         then = max(min(t - g / slope, latest), least)
-        if (then == least and level < 0.0) or (then <= apart and loaded > 0 and deep):
+        # A flat secant leads back to the start, where shapes that were apart do not meet.
+        away = level < 0.0 or start > touch * small
+        if (then == least and away) or (then <= apart and loaded > 0 and deep):
             then = 0.5 * (apart + t)
         if then == t:
             break
