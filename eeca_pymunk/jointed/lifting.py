@@ -109,8 +109,9 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget
     D = np.zeros_like(V)
     raise_gaps(JointedProblem(KEEP, C, room_for_rows(0, 0), m), n, GAPS, D, 1e-3 * -deepest)
     cost, part = -against(isle.ACC, isle.IM, isle.II, n, D), admissible(D, isle.EXTENT, n, size)
+    # Contacts that contradict one another give displacements without bound, of which only a part is taken.
     round_off = CORRECTION_ROUND_OFF * against(np.abs(isle.ACC), isle.IM, isle.II, n, np.abs(D))
-    if cost * part > max(0.5 * budget, round_off):  # the other half is for what closing joints costs
+    if cost * part > max(0.5 * budget, round_off * part):  # the other half is for what closing joints costs
         part = 0.5 * budget / cost
     STORED = np.zeros(len(groups.COMPONENT))
     # In an island that is not free no body is rotated.
@@ -130,7 +131,7 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget
         spent -= against(isle.ACC, isle.IM, isle.II, n, NEW - END)
         turn, x, y, spin, inertia = unturn(NEW, NEW - END, V, isle.IM, isle.II, ALL, 0.0)
         spent += turn * spin + 0.5 * inertia * turn * turn
-        if spent <= budget + round_off and math.isfinite(spent):
+        if spent <= budget + round_off * part and math.isfinite(spent):
             turn_by(NEW, ALL, turn, x, y, V, 0)
             for g in range(len(groups.COMPONENT)):
                 s = groups.COMPONENT[g]
