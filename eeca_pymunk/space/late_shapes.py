@@ -3,7 +3,7 @@
 pymunk's shapes have a pose of their own, which queries, bounding boxes and pictures read, and which costs as much to
 update as a step of a few bodies takes. A step of EECA therefore only says that the shapes are late (`Late`), and the
 methods of pymunk that read them, replaced here, first move them to the present poses of their bodies. pymunk's own step
-does that anyway. Shapes that leave a space keep the pose of their body at that time.
+does that anyway. What leaves a space is moved before.
 """
 
 from __future__ import annotations
@@ -38,10 +38,15 @@ class Late:
         self._movers: list[Any] = []
         self._contents: tuple[int, ...] = ()
 
+    def is_late(self, space: pymunk.Space) -> bool:
+        """Whether shapes are behind their bodies: pymunk has not begun a step since, in which nothing can be reindexed
+        and which moves them."""
+        return self.late and private.timestamp(space)() == self.stamp
+
     def move(self, space: pymunk.Space) -> None:
-        """Move the shapes to their bodies, unless pymunk has done so, in a step that it has begun since."""
-        self.late = False
-        if private.timestamp(space)() == self.stamp:
+        """Move the shapes to their bodies if they are late."""
+        late, self.late = self.is_late(space), False
+        if late:
             self.reindexings -= 1
             contents = *private.contents(space), clock()
             if contents != self._contents:
@@ -51,13 +56,16 @@ class Late:
 
 
 _known: WeakKeyDictionary[pymunk.Space, Late] = WeakKeyDictionary()
+_replaced = False  # whether pymunk's methods were
 _OF_SPACE = "point_query", "point_query_nearest", "segment_query", "segment_query_first", "bb_query", "shape_query"
 _OF_SHAPE = "point_query", "segment_query", "shapes_collide"
 
 
 def late_shapes(space: pymunk.Space) -> Late:
     """What is known of the shapes of a space, to be changed by who moves its bodies."""
-    if not hasattr(pymunk.Space.bb_query, "native"):
+    global _replaced
+    if not _replaced:
+        _replaced = True
         _replace_readers()
     return _known.setdefault(space, Late())
 
@@ -92,7 +100,6 @@ def _reader(native: Callable[..., Any], space_of: Callable[[Any], pymunk.Space |
                 move_late(other.space)
         return native(self, *args, **more)
 
-    read.native = native  # type: ignore[attr-defined]
     return read
 
 
@@ -100,10 +107,10 @@ def _remove(native: Callable[..., Any]) -> Callable[..., Any]:
     @wraps(native)
     def remove(self: pymunk.Space, *objects: Any) -> None:
         known = _known.get(self)
-        if known is not None and known.late:
-            for item in objects:
-                if isinstance(item, pymunk.Shape) and item.space is self:
-                    item.cache_bb()
+        if known is not None and known.is_late(self):
+            moved = (item.body if isinstance(item, pymunk.Shape) else item for item in objects)
+            bodies = [body for body in moved if isinstance(body, pymunk.Body) and body.space is self]
+            private_shapes.reindex(self, private.pointers(bodies))
         native(self, *objects)
 
     return remove

@@ -94,6 +94,15 @@ def test_shapes_that_leave_the_space_were_moved_before() -> None:
     assert is_late(space)  # the others are moved when they are read
 
 
+def test_shapes_that_a_body_leaves_behind_are_where_it_was() -> None:
+    space = moved()
+    shape = list(space.shapes)[1]
+    body, at = shape.body, shape.body.position
+    space.remove(body)
+    assert [info.shape for info in space.point_query(at, 0.0, ALL)] == [shape]
+    assert body.space is None
+
+
 def test_added_and_removed_bodies_do_not_hinder() -> None:
     space = moved()
     gone = next(iter(space.shapes))
@@ -150,3 +159,24 @@ def test_what_is_never_read_costs_no_step_of_pymunk() -> None:
         stepper.step(DT)
         _ = next(iter(space.shapes)).bb
     assert taken() == first + 9
+
+
+def test_handlers_may_read_and_remove_within_a_step() -> None:
+    """There pymunk has moved the shapes, and cannot reindex any."""
+    space, seen = moved(), []
+    stepper = ep.EECA(space)
+    body = list(space.bodies)[1]
+    shape = next(iter(body.shapes))
+    wall = pymunk.Segment(space.static_body, (body.position.x + 1.0, -50.0), (body.position.x + 1.0, 50.0), 0.0)
+    shape.collision_type, wall.collision_type = 1, 2
+    space.add(wall)
+
+    def begin(arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:
+        seen.append(shape.bb.left + 0.4)
+        space.remove(shape, body)
+
+    space.on_collision(1, 2, begin=begin)
+    for _ in range(20):
+        stepper.step(DT)
+    assert seen == [pytest.approx(wall.a.x - 0.4, abs=2.0 * DT)]
+    assert body.space is None
