@@ -2,7 +2,8 @@
 
 Each program runs as it is, with keys and mouse by script (`play`), in a process of its own: as it is and with
 `Space.step` replaced by ours, default settings, five times in turn, and once with clocks around the parts of a step.
-Of each step counts the least processor time; the first one, in which steppers are made, is left out.
+Of each step counts the least processor time, with that of moving shapes which the program reads after it; the first
+one, in which steppers are made, is left out.
 """
 
 from __future__ import annotations

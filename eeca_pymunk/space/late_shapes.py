@@ -38,15 +38,11 @@ class Late:
         self._movers: list[Any] = []
         self._contents: tuple[int, ...] = ()
 
-    def is_late(self, space: pymunk.Space) -> bool:
-        """Whether shapes are behind their bodies: pymunk has not begun a step since, in which nothing can be reindexed
-        and which moves them."""
-        return self.late and private.timestamp(space)() == self.stamp
-
     def move(self, space: pymunk.Space) -> None:
-        """Move the shapes to their bodies if they are late."""
-        late, self.late = self.is_late(space), False
-        if late:
+        """Move the shapes to their bodies, unless pymunk has done so, in a step that it has begun since. Within such a
+        step nothing can be reindexed."""
+        self.late = False
+        if private.timestamp(space)() == self.stamp:
             self.reindexings -= 1
             contents = *private.contents(space), clock()
             if contents != self._contents:
@@ -106,11 +102,9 @@ def _reader(native: Callable[..., Any], space_of: Callable[[Any], pymunk.Space |
 def _remove(native: Callable[..., Any]) -> Callable[..., Any]:
     @wraps(native)
     def remove(self: pymunk.Space, *objects: Any) -> None:
-        known = _known.get(self)
-        if known is not None and known.is_late(self):
-            moved = (item.body if isinstance(item, pymunk.Shape) else item for item in objects)
-            bodies = [body for body in moved if isinstance(body, pymunk.Body) and body.space is self]
-            private_shapes.reindex(self, private.pointers(bodies))
+        # All shapes are moved: within `native` handlers of `separate` may be called, and nothing can be reindexed.
+        if any(not isinstance(item, pymunk.Constraint) for item in objects):
+            move_late(self)
         native(self, *objects)
 
     return remove

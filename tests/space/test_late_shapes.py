@@ -91,7 +91,6 @@ def test_shapes_that_leave_the_space_were_moved_before() -> None:
     shape = list(space.shapes)[1]
     space.remove(shape)
     assert shape.bb.left == pytest.approx(shape.body.position.x - 0.4)
-    assert is_late(space)  # the others are moved when they are read
 
 
 def test_shapes_that_a_body_leaves_behind_are_where_it_was() -> None:
