@@ -6,23 +6,16 @@ its own 2 x 2 matrix ((A_nn, A_nt), (A_nt, A_tt)) included: sticking, else slipp
 friction; so it is where several contacts together have no solution (`slip_freely`). Newton's law with friction creates
 energy where the slip reverses; therefore each contact's loss D_n + D_t = -lam (u_n- + b)/2 - beta (u_t- + u_t+)/2 is
 kept non-negative, by less friction where it would be negative.
-
-Where friction alone could separate the surfaces, a_nn < mu |a_nt|, the law has several solutions: a contact may stick
-although it would open without its impulses. `law`, which sweeps use, then keeps a sticking contact.
 """
 
 from __future__ import annotations
 
 import math
 
-import numpy as np
-
-from ..arrays import FloatArray
 from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Row
 from ..model.parameters.impulses import JAMMED, SINGULAR
-from .build import normal_rate, tangent_rate
 
 
 @nonallocating
@@ -99,38 +92,3 @@ def lossless_slip(row: Row, lam: float, beta: float) -> float:
 def limited_slip(row: Row, lam: float, beta: float) -> float:
     """`lossless_slip` where a contact with these impulses would give energy if it stuck; else 0: it may stick."""
     return lossless_slip(row, lam, beta) if beta * row.ut > -lam * min(row.un + row.target, 0.0) else 0.0
-
-
-@inlined
-def law(row: Row, V: FloatArray, lam0: float, beta0: float) -> tuple[float, float, bool]:
-    """The impulses (lam, beta) of a contact by its law, all others being given, and whether `coulomb` found them: it
-    slips, or energy limits its friction. The velocities V (k, 3) contain its present impulses, lam0 and beta0. A
-    contact that closes becomes active."""
-    short = normal_rate(row, V) - row.target  # u_n - b
-    if row.wake < np.inf:
-        if short + row.target - lam0 * row.a_nn < row.wake:
-            row.wake = np.inf
-        else:
-            short = np.inf
-    if row.friction <= 0.0:
-        return max(lam0 - row.k_n * short, 0.0), 0.0, False
-    qn = short - lam0 * row.a_nn - beta0 * row.a_nt
-    if not (qn < 0.0 or lam0 > 0.0):
-        return 0.0, 0.0, False
-    ut = tangent_rate(row, V)
-    # Most contacts stick.
-    lam = lam0 - (row.w_nn * short + row.w_nt * ut)
-    beta = beta0 - (row.w_nt * short + row.w_tt * ut)
-    if abs(beta) <= row.friction * lam and beta * row.ut + lam * min(row.un + row.target, 0.0) <= 0.0:
-        return lam, beta, False
-    if not qn < 0.0:
-        # A contact that only friction closes stays closed as well if energy limits its friction.
-        off = ut - limited_slip(row, lam0, beta0)
-        lam = lam0 - (row.w_nn * short + row.w_nt * off)
-        beta = beta0 - (row.w_nt * short + row.w_tt * off)
-        if beta * row.ut > 0.0 and abs(beta) <= row.friction * lam:
-            return lam, beta, False
-        return 0.0, 0.0, False
-    qt = ut - beta0 * row.a_tt - lam0 * row.a_nt
-    lam, beta = coulomb(qn, qt, row.a_nn, row.a_nt, row.a_tt, row.friction, row.un, row.ut, row.target)
-    return lam, beta, True

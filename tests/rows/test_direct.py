@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eeca_pymunk.compiled.records import rows
-from eeca_pymunk.model.contacts import Problem, Row
-from eeca_pymunk.rows.build import invert, normal_rate, rates, tangent_rate
+from eeca_pymunk.model.contacts import Problem
+from eeca_pymunk.rows.build import normal_rate, rates, tangent_rate
 from eeca_pymunk.rows.cholesky import assemble_blocks, factor_blocks, make_factor, solve_blocks
-from eeca_pymunk.rows.coulomb import coulomb, law
+from eeca_pymunk.rows.coulomb import coulomb
 from eeca_pymunk.rows.dense import newton
 from eeca_pymunk.rows.polish import divide_friction, polish_free
 from eeca_pymunk.rows.sweeps import sweep, velocities
@@ -50,17 +49,6 @@ def test_jammed_contact_sticks() -> None:
         lam, beta = coulomb(-1.0, qt, 1.0, ant, 4.0, 8.0, -1.0, qt, 0.0)
         assert -1.0 + lam + ant * beta == pytest.approx(0.0, abs=1e-14)
         assert qt + ant * lam + 4.0 * beta == pytest.approx(0.0, abs=1e-14)
-
-
-def test_sticking_contact_that_would_open_without_friction_stays() -> None:
-    """a_nn < mu |a_nt|: u_n and u_t are 0 with impulses without which the contact opens."""
-    row, V = rows(Row, 1)[0], np.zeros((2, 3))
-    row.b, row.nx, row.wake, row.friction, row.un, row.ut = 1, 1.0, np.inf, 8.0, -1.0, 1.0
-    row.a_nn, row.a_nt, row.a_tt = 1.0, 0.9, 1.0
-    invert(row, 1.0, 0.9, 1.0)
-    assert law(row, V, 1.0, -2.0)[:2] == (1.0, -2.0)
-    V[1, :2] = 0.8, 1.1  # without these impulses
-    assert law(row, V, 0.0, 0.0)[:2] == (0.0, 0.0)
 
 
 def crowd(seed: int, count: int) -> Block:
