@@ -70,18 +70,14 @@ class Sync:
         # reading; new bodies and joints may have corrections and impulses.
         self._rested, self._dt, self._touched, self._first = -1, 0.0, False, True
         if past is not None and not (self._asleep or past._asleep):
-            self._rested, self._dt, self._touched, self.were_read = (
-                past._rested,
-                past._dt,
-                past._touched,
-                past.were_read,
-            )
+            self._rested, self._dt = past._rested, past._dt
+            self._touched, self.were_read = past._touched, past.were_read
         self._past_stamp = past.stamp if past is not None and world.undecided else -1
 
     def reindexes(self, dt: float, status: int) -> bool:
         """Whether reindexing is enough for this step. Conditions:
 
-        * pymunk has taken no step since the last rest step, which had this dt and was at most `REINDEXINGS` ago;
+        * pymunk has taken no step since the last rest step, which had this dt and was at most `REINDEXINGS` of them ago;
         * arbiters were not read after the last step, other than for a picture;
         * nothing touched in this step and the last one, or `renews`;
         * the number of moving shapes is at most MOST_TOUCHING; with neither contacts nor joints at most MOST_FREE. With
