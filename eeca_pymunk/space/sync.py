@@ -77,7 +77,7 @@ class Sync:
     def reindexes(self, dt: float, status: int) -> bool:
         """Whether reindexing is enough for this step. Conditions:
 
-        * pymunk has taken no step since the last rest step, which had this dt and was at most `REINDEXINGS` of them ago;
+        * pymunk has taken no step since the last rest step, which had this dt, and at most `REINDEXINGS` followed it;
         * arbiters were not read after the last step, other than for a picture;
         * nothing touched in this step and the last one, or `renews`;
         * the number of moving shapes is at most MOST_TOUCHING; with neither contacts nor joints at most MOST_FREE. With
