@@ -295,6 +295,8 @@ MUTATIONS = (
              "islands/test_at_rest.py", "wakes"),
     Mutation("shapes: late ones stay where they were", "space/late_shapes.py", "    if known.late:\n",
              "    if False:\n", "space/test_late_shapes.py", "whatever_reads"),
+    Mutation("partners: their centre of gravity is turned backwards", "joints/partners.py",
+             "known[1] + s * FIXED[i, 0]", "known[1] - s * FIXED[i, 0]", "space/test_joints.py", "centre_of_gravity"),
     Mutation("partners: one that moves marks no joint", "joints/partners.py", "JOINT[j].touched = EDITED",
              "JOINT[j].touched = JOINT[j].touched", "space/test_joints.py", "partners_that_move_are"),
     Mutation("driver: sweeps alone", "contacts/relaxation.py", "if rounds == 0 or STATE.wait > 0.0:", "if True:",

@@ -380,6 +380,33 @@ def test_a_mouse_drags(inside: bool) -> None:
     stepper.step(DT)
 
 
+@pytest.mark.parametrize("kind", [pymunk.Body.KINEMATIC, pymunk.Body.DYNAMIC, pymunk.Body.STATIC])
+def test_partners_have_the_pose_of_their_centre_of_gravity_and_velocities_if_kinematic(kind: int) -> None:
+    """At first, after a move, and after another centre of gravity is set."""
+    space = empty(0.0)
+    hand = pymunk.Body(1.0, 1.0) if kind == pymunk.Body.DYNAMIC else pymunk.Body(body_type=kind)
+    space.add(pymunk.PinJoint(hand, body(space, 1.0, 1.0, (4.0, -1.0))))
+    stepper = ep.EECA(space)
+    for place, angle, centre in (
+        ((1.0, 2.0), 0.5, (0.25, 1.5)),
+        ((3.0, 2.0), -2.0, (0.25, 1.5)),
+        ((3.0, 2.0), -2.0, (2, 1)),
+    ):
+        hand.center_of_gravity = centre
+        hand.position, hand.angle = place, angle
+        if kind != pymunk.Body.STATIC:
+            hand.velocity, hand.angular_velocity = (3.0, 4.0), 5.0
+        world = stepper._present()
+        world.gather()
+        assert world.joints is not None
+        world.joints.update(world.state, world.bodies.row, DT)
+        (found,) = world.joints.partners.PARTNER
+        where = hand.local_to_world(hand.center_of_gravity)
+        assert (found.x, found.y, found.angle) == pytest.approx((where.x, where.y, angle), rel=1e-14)
+        speeds = (3.0, 4.0, 5.0) if kind == pymunk.Body.KINEMATIC else (0.0, 0.0, 0.0)
+        assert (found.vx, found.vy, found.spin) == speeds
+
+
 def test_only_joints_of_partners_that_move_are_touched() -> None:
     space = empty(0.0)
     hand, post = (pymunk.Body(body_type=kind) for kind in (pymunk.Body.KINEMATIC, pymunk.Body.STATIC))
