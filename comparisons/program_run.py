@@ -60,6 +60,7 @@ class Run:
         self._first = 0  # objects that were read when steppers were made
         self._native = pymunk.Space.step
         self._within: list[float] = []
+        self._stepping = False
         if self.inspected:
             for part, methods in PARTS.items():
                 for owner, name in methods:
@@ -69,6 +70,7 @@ class Run:
     def step(self, space: pymunk.Space, dt: float) -> None:
         """In the place of `Space.step`."""
         gc.enable()
+        self._stepping = True
         begun = time.thread_time()
         if not self.ours:
             self._native(space, dt)
@@ -79,6 +81,7 @@ class Run:
                 self._first += stepper.objects_read
             stepper.step(dt)
         self.steps.append(time.thread_time() - begun)
+        self._stepping = False
         if len(self.steps) == 1:
             self.parts = dict.fromkeys(PARTS, 0.0)
         for body in space.bodies:
@@ -91,7 +94,7 @@ class Run:
         def counted(late: Late, space: pymunk.Space) -> None:
             begun = time.thread_time()
             move(late, space)
-            if self.steps:
+            if self.steps and not self._stepping:
                 self.steps[-1] += time.thread_time() - begun
 
         Late.move = counted  # type: ignore[method-assign, assignment]

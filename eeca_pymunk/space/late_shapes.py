@@ -18,6 +18,7 @@ import pymunk
 from .edits import clock
 from .private import shapes as private_shapes
 from .private import spaces as private
+from .private import versions as private_versions
 
 
 class Late:
@@ -82,7 +83,8 @@ def _replace_readers() -> None:
         setattr(pymunk.Shape, name, _reader(getattr(pymunk.Shape, name), lambda shape: shape.space))
     native: Any = pymunk.Shape.bb
     pymunk.Shape.bb = property(_reader(native.fget, lambda shape: shape.space), doc=native.__doc__)  # type: ignore
-    pymunk.Space.remove = _remove(pymunk.Space.remove)  # type: ignore[method-assign]
+    remove = private_versions.REMOVE
+    setattr(pymunk.Space, remove, _remove(getattr(pymunk.Space, remove)))
 
 
 def _reader(native: Callable[..., Any], space_of: Callable[[Any], pymunk.Space | None]) -> Callable[..., Any]:

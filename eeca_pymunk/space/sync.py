@@ -121,8 +121,6 @@ class Sync:
 
     def call_back(self) -> None:
         """Do waiting additions and removals, and call post-step callbacks."""
-        if self._shapes.late and self.waits():
-            self._shapes.move(self.space)  # removals call `separate`, within which nothing can be reindexed
         private.finish_step(self.space)
 
     def accept(self) -> None:

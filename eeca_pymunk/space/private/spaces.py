@@ -167,7 +167,7 @@ def finish_step(space: pymunk.Space) -> None:
     space._add_later.clear()
     space.add(*added)
     # Removing a touching shape calls `separate`, which may remove further objects, also the same ones.
-    remove, gone = private_versions.remover(space), set()
+    remove, gone = getattr(space, private_versions.REMOVE), set()
     while space._remove_later:
         things = list(space._remove_later)
         space._remove_later.clear()

@@ -123,7 +123,5 @@ def forget_function(body: pymunk.Body, name: str, function: Callable[..., None])
         setattr(body, f"_{name}", None)
 
 
-def remover(space: pymunk.Space) -> Callable[..., None]:
-    """The function that removes one object from a space. What `separate` removes meanwhile is left to the caller."""
-    remove: Callable[..., None] = getattr(space, "_remove", space.remove)
-    return remove
+# The method by which a space removes objects at once; what `separate` removes meanwhile is left to its caller.
+REMOVE = "_remove" if hasattr(pymunk.Space, "_remove") else "remove"
