@@ -43,18 +43,20 @@ def to_centre(EXTRA: FloatArray, i: int, angle: float) -> tuple[float, float]:
 
 
 @nonallocating
+def forget_acceleration(EXTRA: FloatArray, i: int) -> None:
+    """Body i has no acceleration by a velocity function."""
+    EXTRA[i, layout.ACCELERATION_X] = EXTRA[i, layout.ACCELERATION_Y] = EXTRA[i, layout.ANGULAR_ACCELERATION] = 0.0
+
+
+@nonallocating
 def acceleration(
     now: FloatArray, i: int, body: Body, special: int, EXTRA: FloatArray, gx: float, gy: float, half_damping: float
 ) -> tuple[float, float, float, float]:
     """Acceleration (2) and angular acceleration of body i without contacts, by its force and torque in `now` (N, 9) and
     gravity, or those that its velocity function has set; and the factor of half a step's damping on its velocities."""
     if special & layout.STEERED:
-        return (
-            EXTRA[i, layout.ACCELERATION_X],
-            EXTRA[i, layout.ACCELERATION_Y],
-            EXTRA[i, layout.ANGULAR_ACCELERATION],
-            1.0,
-        )
+        twist = EXTRA[i, layout.ANGULAR_ACCELERATION]
+        return EXTRA[i, layout.ACCELERATION_X], EXTRA[i, layout.ACCELERATION_Y], twist, 1.0
     im = body.inv_mass
     if im > 0.0:
         return now[i, 6] * im + gx, now[i, 7] * im + gy, now[i, 8] * body.inv_inertia, half_damping
@@ -128,11 +130,7 @@ def forget_last_end(table: Table) -> None:
     for i in range(IDS.shape[1]):
         for c in range(9):
             STATES[layout.WRITTEN, i, c] = STATES[layout.READ, i, c] if IDS[layout.BODY_ROW, i] < 0 else math.nan
-        EXTRA[i, layout.ACCELERATION_X], EXTRA[i, layout.ACCELERATION_Y], EXTRA[i, layout.ANGULAR_ACCELERATION] = (
-            0.0,
-            0.0,
-            0.0,
-        )
+        forget_acceleration(EXTRA, i)
 
 
 @kernel

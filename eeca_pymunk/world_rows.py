@@ -24,7 +24,7 @@ from .model.values import (
     ShapeValues,
     reading_of,
 )
-from .transfer import NOT_FINITE, read_states
+from .transfer import NOT_FINITE, forget_acceleration, read_states
 
 
 @nonallocating
@@ -122,13 +122,9 @@ def write_rows(table: Table) -> None:
     """Write the rows of bodies and of their shapes, without velocities, for the present poses of static bodies. BODY
     and VERTEX must contain zeros."""
     R = reading_of(table)
-    BODIES, SHAPES, BODY, LINK, ORDER = R.BODIES, R.SHAPES, R.BODY, R.LINK, R.ORDER
+    BODIES, SHAPES, BODY, LINK, ORDER, now = R.BODIES, R.SHAPES, R.BODY, R.LINK, R.ORDER, R.STATES[layout.READ]
     for i in range(BODIES.shape[0]):
-        BODIES[i].x, BODIES[i].y, BODIES[i].angle = (
-            R.STATES[layout.READ, i, 0],
-            R.STATES[layout.READ, i, 1],
-            R.STATES[layout.READ, i, 2],
-        )
+        BODIES[i].x, BODIES[i].y, BODIES[i].angle = now[i, 0], now[i, 1], now[i, 2]
     for s in range(SHAPES.shape[0]):
         SHAPES[s].owner = R.OWNER[s]
     place_points(BODIES, SHAPES, R.POINT)
@@ -169,11 +165,7 @@ def clear_exchange(R: Reading) -> None:
         R.IDS[layout.BODY_ROW, i] = body.row
         R.IDS[layout.FLAGS, i] = layout.ECCENTRIC * eccentric + layout.STEERED * body.steered
         R.EXTRA[i, layout.COG_X], R.EXTRA[i, layout.COG_Y] = body.centre_x, body.centre_y
-        (
-            R.EXTRA[i, layout.ACCELERATION_X],
-            R.EXTRA[i, layout.ACCELERATION_Y],
-            R.EXTRA[i, layout.ANGULAR_ACCELERATION],
-        ) = 0.0, 0.0, 0.0
+        forget_acceleration(R.EXTRA, i)
         for c in range(layout.STATE_COLUMNS):
             R.HOOKED[layout.CHANGES_BEFORE, i, c], R.HOOKED[layout.CHANGES_AFTER, i, c] = 0.0, 0.0
             R.STATES[layout.WRITTEN, i, c] = R.STATES[layout.READ, i, c] if body.kind == STATIC else math.nan

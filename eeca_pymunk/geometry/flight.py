@@ -38,3 +38,10 @@ def rate(BODY: Rows[Body], i: int, t: float) -> tuple[float, float, float]:
     """Velocity (length/time) and spin (rad/time) of body i at instant t; at t = SINCE the stored ones exactly."""
     s = t - BODY[i].since
     return BODY[i].vx + s * BODY[i].ax, BODY[i].vy + s * BODY[i].ay, BODY[i].spin + s * BODY[i].angular
+
+
+@nonallocating
+def speed_along(velocity: tuple[float, float, float], nx: float, ny: float, x: float, y: float) -> float:
+    """Velocity along n of the point at (x, y) from a body with this velocity and spin."""
+    vx, vy, spin = velocity
+    return float(nx * vx + ny * vy + (x * ny - y * nx) * spin)

@@ -8,7 +8,7 @@ alone close from the start on.
 from __future__ import annotations
 
 from ..compiled import nonallocating
-from ..geometry.flight import pose, rate
+from ..geometry.flight import pose, rate, speed_along
 from ..geometry.gap import gap
 from ..joints.start import mark_bounded
 from ..joints.workspace import workspace
@@ -38,11 +38,9 @@ def allowed_velocity(A: Scene, J: Joints, i: int, t: float) -> tuple[float, floa
 @nonallocating
 def allowed_rate(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
     """The rate of the gap of shapes a and b at instant t by velocities that joints allow, negative if it closes."""
-    i, j, total = A.LINK[a].owner, A.LINK[b].owner, 0.0
+    i, j = A.LINK[a].owner, A.LINK[b].owner
     _, nx, ny, px, py = gap(A, a, b, t)
-    for end in range(2):
-        body = j if end == 1 else i
-        vx, vy, spin = allowed_velocity(A, J, body, t)
-        x, y, _ = pose(A.BODY, body, t)
-        total += (2.0 * end - 1.0) * (nx * vx + ny * vy + ((px - x) * ny - (py - y) * nx) * spin)
-    return total
+    xi, yi, _ = pose(A.BODY, i, t)
+    xj, yj, _ = pose(A.BODY, j, t)
+    one = speed_along(allowed_velocity(A, J, i, t), nx, ny, px - xi, py - yi)
+    return speed_along(allowed_velocity(A, J, j, t), nx, ny, px - xj, py - yj) - one

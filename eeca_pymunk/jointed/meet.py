@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from ..compiled import kernel, nonallocating
-from ..geometry.flight import pose
+from ..geometry.flight import pose, rate, speed_along
 from ..geometry.gap import gap
 from ..islands.membership import in_large_island, members_of
 from ..islands.rest import speed
@@ -212,14 +212,5 @@ def gap_and_rate(A: Scene, a: int, b: int, t: float) -> tuple[float, float]:
     g, nx, ny, px, py = gap(A, a, b, t)
     xi, yi, _ = pose(A.BODY, i, t)
     xj, yj, _ = pose(A.BODY, j, t)
-    rate = path_rate(A, j, t, nx, ny, px - xj, py - yj) - path_rate(A, i, t, nx, ny, px - xi, py - yi)
-    return g, rate
-
-
-@nonallocating
-def path_rate(A: Scene, i: int, t: float, nx: float, ny: float, x: float, y: float) -> float:
-    """Velocity along n of the point at (x, y) from body i on its path."""
-    BODY, s = A.BODY, t - A.BODY[i].since
-    vx, vy = BODY[i].vx + s * BODY[i].ax, BODY[i].vy + s * BODY[i].ay
-    spin = BODY[i].spin + s * BODY[i].angular
-    return float(nx * vx + ny * vy + (x * ny - y * nx) * spin)
+    one = speed_along(rate(A.BODY, i, t), nx, ny, px - xi, py - yi)
+    return g, speed_along(rate(A.BODY, j, t), nx, ny, px - xj, py - yj) - one

@@ -130,12 +130,8 @@ def solve_block(problem: AnyProblem, L: FloatArray, V: FloatArray, owed: float, 
     tolerance = max(speed * (impulses.BLOCK_RESIDUAL_FRICTION if rough else impulses.BLOCK_RESIDUAL), floor)
     exact = conserves(ROWS, m)
     # Direct solves help where contacts stick; where many slip only sweeps converge, so there are more of them.
-    first, rounds, last, drifts = (
-        impulses.BLOCK_SWEEPS_FRICTION,
-        impulses.BLOCK_DIRECT_FRICTION,
-        impulses.BLOCK_LAST_SWEEPS_FRICTION,
-        impulses.DRIFTS,
-    )
+    first, rounds = impulses.BLOCK_SWEEPS_FRICTION, impulses.BLOCK_DIRECT_FRICTION
+    last, drifts = impulses.BLOCK_LAST_SWEEPS_FRICTION, impulses.DRIFTS
     if hasty and m > impulses.DENSE_CONTACTS and not exact:
         # A hit on a lossy pile is solved as accurately as the intervals before and after it.
         tolerance = max(INTERVAL_RESIDUAL_SPEED * speed, floor)
