@@ -88,7 +88,7 @@ class EECA(RunningStepper):
         """Let pymunk's arbiters have the contacts of steps, in a space that was just read."""
         reference = ref(self)  # weak, see `show_contacts`
         show_contacts(self.space, lambda drawn: None if (stepper := reference()) is None else stepper._touches(drawn))
-        self._sync.renews = self._sleep is None  # `wake_neighbours` finds by arbiters what touches
+        self._sync.renews = True
 
     def _touches(self, drawn: bool) -> Touches | None:
         """Pairs that touched in the last step, for pymunk's arbiters; None if pymunk has taken a step since."""

@@ -156,7 +156,7 @@ class PackedSpace(Stepper):
             warnings.warn(f"{type(self).__name__} steps on without the friction of this space", stacklevel=4)
         self.reads += 1
         self._sync = Sync(world, None if past is None else self._sync)
-        self._sleep = Sleep(world, self._sleep) if world.sleeps else None
+        self._sleep = Sleep(world, self._sleep, self._sync) if world.sleeps else None
         slept, self._slept = self._slept, None
         if self._sleep is not None and slept is not None:
             self._sleep.recall(dict(zip(slept[0], slept[1].tolist(), strict=True)), slept[3])
@@ -179,8 +179,7 @@ class PackedSpace(Stepper):
         joints = world.joints
         world.read_settings()
         if self._sleep is None and self.space.sleep_time_threshold < math.inf:
-            self._sleep = Sleep(world, None)
-            self._sync.renews = False  # see `EECA._show_contacts`
+            self._sleep = Sleep(world, None, self._sync)
         if world.joints is not joints:
             self.patches += 1
             if (loop := self.event_loop) is None:

@@ -4,8 +4,7 @@ pymunk's setters write into Chipmunk at once without notification, and reading a
 steps. So the setters of properties that a `World` reads once are wrapped when the first space is watched. Each acts as
 before, and then adds one to the count of its space, or that of its shape or body, if that is watched and the value has
 changed. Getters, and properties that a `World` does not read (positions, velocities, forces, colours), are not changed.
-`Body.sleep` and `sleep_with_group` are wrapped when this module is imported: their calls are counted, and groups of
-sleeping bodies are recorded, because Chipmunk does not show them.
+Calls of `Body.sleep` and `sleep_with_group`, which `sleep_groups.py` wraps, are counted.
 """
 
 from __future__ import annotations
@@ -34,8 +33,7 @@ _METHODS: tuple[tuple[type, tuple[str, ...]], ...] = (
     (pymunk.Poly, ("unsafe_set_radius", "unsafe_set_vertices")),
 )
 _OF_SURFACE = ("filter", "elasticity", "friction", "surface_velocity")  # these change neither masses nor outlines
-_SLEEP = ("sleep", "sleep_with_group")
-_leaders: WeakKeyDictionary[pymunk.Body, weakref.ref[pymunk.Body]] = WeakKeyDictionary()
+SLEEP = ("sleep", "sleep_with_group")
 _KEPT = 4096  # number of edits that are kept, the last ones
 _wrapped = False
 _clock = _type_changes = 0
@@ -100,7 +98,7 @@ def edited_since(time: int) -> tuple[set[Any], set[Any]] | None:
     return reshaped.union([thing for thing, _ in edited]), reshaped
 
 
-def _record(thing: Any, name: str) -> None:
+def record(thing: Any, name: str) -> None:
     """Count an edit of a shape, body or space by the property or method `name`."""
     global _clock, _type_changes
     if name == "collision_type":
@@ -117,26 +115,7 @@ def _record(thing: Any, name: str) -> None:
     if count is None:
         return
     count[0] += 1
-    count[1] += name in _SLEEP
-
-
-def leader(body: pymunk.Body) -> pymunk.Body:
-    """The body by whose call of `sleep` the group of this sleeping body was made; `body` itself if that one is unknown,
-    awake or in another space."""
-    reference = _leaders.get(body)
-    found = None if reference is None else reference()
-    return found if found is not None and found.space is body.space and found.is_sleeping else body
-
-
-def _sleep(native: Callable[..., None]) -> Callable[..., None]:
-    @wraps(native)
-    def sleep_and_record(self: pymunk.Body, *group: pymunk.Body) -> None:
-        lead = leader(group[0]) if group else self
-        native(self, *group)
-        _leaders[self] = weakref.ref(lead)
-        _record(self, native.__name__)
-
-    return sleep_and_record
+    count[1] += name in SLEEP
 
 
 def _property(name: str, native: Any) -> property:
@@ -148,7 +127,7 @@ def _property(name: str, native: Any) -> property:
         if name in private_versions.DEFAULTS:
             private_versions.forget_function(self, name, value)
         if read is None or read(self) != before:
-            _record(self, name)
+            record(self, name)
 
     return property(read, set_and_record, native.fdel, native.__doc__)
 
@@ -159,10 +138,6 @@ def _method(native: Callable[..., Any]) -> Callable[..., Any]:
         try:
             return native(self, *args, **kwargs)
         finally:
-            _record(self, native.__name__)
+            record(self, native.__name__)
 
     return call_and_record
-
-
-for _name in _SLEEP:
-    setattr(pymunk.Body, _name, _sleep(vars(pymunk.Body)[_name]))

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
-from typing import Any
-from weakref import WeakKeyDictionary
+from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary, ref
 
 import pymunk
 
@@ -19,6 +19,9 @@ from .edits import clock
 from .private import shapes as private_shapes
 from .private import spaces as private
 from .private import versions as private_versions
+
+if TYPE_CHECKING:
+    from .sync import Sync
 
 
 class Late:
@@ -28,12 +31,14 @@ class Late:
         late: whether they are behind their bodies, unless pymunk has taken a step since its step number `stamp`.
         read: whether something has read them since this was last set to False.
         reindexings: how many may still follow, until the next rest step (`sync.py`), see `REINDEXINGS`.
+        sync: of the last step that has not made pymunk's arbiters.
     """
 
-    __slots__ = ("_bodies", "_contents", "_movers", "late", "read", "reindexings", "stamp")
+    __slots__ = ("_bodies", "_contents", "_movers", "late", "read", "reindexings", "stamp", "sync")
 
     def __init__(self) -> None:
         self.late, self.read, self.stamp, self.reindexings = False, False, -1, 0
+        self.sync: ref[Sync] | None = None  # weak: it refers to the space, which is a key of `_known`
         # Bodies with shapes that are not static, their pointers, and the contents of the space when they were found.
         self._bodies: list[pymunk.Body] = []
         self._movers: list[Any] = []
@@ -74,6 +79,14 @@ def move_late(space: pymunk.Space | None) -> None:
     known.read = True
     if known.late:
         known.move(space)
+
+
+def make_arbiters(space: pymunk.Space) -> None:
+    """Let pymunk's arbiters be those of the last step, as `Sync.renew` does for pictures."""
+    known = _known.get(space)
+    sync = None if known is None or known.sync is None else known.sync()
+    if sync is not None:
+        sync.renew(drawn=True)
 
 
 def _replace_readers() -> None:

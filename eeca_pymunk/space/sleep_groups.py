@@ -1,8 +1,15 @@
-"""Groups of bodies that sleep together, by contacts and joints."""
+"""Groups of bodies that sleep together, by contacts and joints.
+
+`Body.sleep` and `sleep_with_group` are wrapped when this module is imported: their calls are counted, and groups of
+sleeping bodies are recorded, because Chipmunk does not show them. Before a body falls asleep arbiters are made, as it
+keeps its own until it wakes.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import weakref
+from collections.abc import Callable, Iterable, Sequence
+from functools import wraps
 
 import numpy as np
 import pymunk
@@ -10,9 +17,18 @@ import pymunk
 from ..arrays import BoolArray, IntArray
 from ..report import Contacts
 from .bodies import Bodies
-from .edits import leader
+from .edits import SLEEP, record
+from .late_shapes import make_arbiters
 from .private import sleep as private_sleep
 from .private import spaces as private
+
+_leaders: weakref.WeakKeyDictionary[pymunk.Body, weakref.ref[pymunk.Body]] = weakref.WeakKeyDictionary()
+
+
+def touching(space: pymunk.Space) -> list[tuple[pymunk.Body, pymunk.Body]]:
+    """Pairs of bodies that touch according to pymunk."""
+    make_arbiters(space)
+    return private.touching(space)
 
 
 def resting_groups(
@@ -36,7 +52,7 @@ def resting_groups(
     awake: BoolArray = bodies.dynamic & ~ready
     pairs = list(zip(contacts.body_a.tolist(), contacts.body_b.tolist(), strict=True))
     # pymunk's contacts count too: it keeps one with a sleeping body forever, so that both bodies must sleep or neither.
-    for one, two in (*jointed, *private.touching(space)):
+    for one, two in (*jointed, *touching(space)):
         if one in bodies.row and two in bodies.row:
             pairs.append((bodies.row[one], bodies.row[two]))
     for a, b in pairs:
@@ -53,8 +69,16 @@ def resting_groups(
     return list(resting.values())
 
 
+def leader(body: pymunk.Body) -> pymunk.Body:
+    """The body by whose call of `sleep` the group of this sleeping body was made; `body` itself if that one is unknown,
+    awake or in another space."""
+    reference = _leaders.get(body)
+    found = None if reference is None else reference()
+    return found if found is not None and found.space is body.space and found.is_sleeping else body
+
+
 def sleeping_groups(bodies: Sequence[pymunk.Body]) -> IntArray:
-    """(N,) for each body the index of the first body of its sleeping group (`edits.leader`), -1 if it is awake."""
+    """(N,) for each body the index of the first body of its sleeping group (`leader`), -1 if it is awake."""
     place = {body: i for i, body in enumerate(bodies)}
     asleep = private_sleep.sleeping(bodies)
     groups = [place.get(leader(body), i) if asleep[i] else -1 for body, i in place.items()]
@@ -80,7 +104,7 @@ def wake_neighbours(space: pymunk.Space) -> None:
     pymunk; then the neighbours of these, and so on."""
     if not any(private_sleep.sleeping(space.bodies)):
         return
-    pairs = [*((c.a, c.b) for c in space.constraints), *private.touching(space)]
+    pairs = [*((c.a, c.b) for c in space.constraints), *touching(space)]
     bodies = {body for pair in pairs for body in pair}
     again = True
     while again:
@@ -93,3 +117,20 @@ def wake_neighbours(space: pymunk.Space) -> None:
             if other.body_type != pymunk.Body.STATIC and other.space is space:
                 one.activate()
                 again = True
+
+
+def _sleep(native: Callable[..., None]) -> Callable[..., None]:
+    @wraps(native)
+    def sleep_and_record(self: pymunk.Body, *group: pymunk.Body) -> None:
+        lead = leader(group[0]) if group else self
+        if self.space is not None:
+            make_arbiters(self.space)
+        native(self, *group)
+        _leaders[self] = weakref.ref(lead)
+        record(self, native.__name__)
+
+    return sleep_and_record
+
+
+for _name in SLEEP:
+    setattr(pymunk.Body, _name, _sleep(vars(pymunk.Body)[_name]))

@@ -37,6 +37,7 @@ from .private import spaces as private
 from .sleep_groups import resting_groups
 
 if TYPE_CHECKING:
+    from .sync import Sync
     from .world import World
 
 REST_RATIO = 1e-6  # in the criterion above
@@ -49,13 +50,13 @@ class Sleep:
     """The sleeping bodies of a world, and the times for which others have been at rest.
 
     Args:
-        world: of a space whose `sleep_time_threshold` is finite.  past: the `Sleep` of the last world of this space.
+        world: of a space whose `sleep_time_threshold` is finite.  past: that of its last world.  sync: of the world.
 
     Attributes:
         any_asleep, all_asleep: whether any body sleeps; whether all dynamic bodies do, and there is one.
     """
 
-    def __init__(self, world: World, past: Sleep | None) -> None:
+    def __init__(self, world: World, past: Sleep | None, sync: Sync) -> None:
         self.world, self.space, bodies = world, world.space, world.bodies
         self._sleepers = [body for body, asleep in zip(bodies.items, bodies.asleep, strict=True) if asleep]
         self.any_asleep = bool(self._sleepers)
@@ -64,7 +65,7 @@ class Sleep:
             [self.space.static_body, *(b for b in bodies.items if not b.is_sleeping)] if self.all_asleep else []
         )
         self._timestamp = private.timestamp(self.space)
-        self._stamp = self._timestamp()
+        self._stamp, self._sync = self._timestamp(), sync
         self._wait, self._since = 0, _PATIENCE
         self._rested: FloatArray = np.zeros(len(bodies))  # time at rest
         if past is not None:
@@ -89,7 +90,7 @@ class Sleep:
 
     def changed(self) -> bool:
         """Whether other bodies may sleep now than when this was made, or pymunk has taken a step since."""
-        return self._timestamp() != self._stamp or self.woken()
+        return self._timestamp() not in (self._stamp, self._sync.stamp) or self.woken()
 
     def woken(self) -> bool:
         """Whether a body that slept when this was made may be awake: pymunk's order of bodies has changed."""
@@ -221,7 +222,6 @@ class Sleep:
 
     def rest(self, dt: float) -> bool:
         """Update the times at rest after a step; returns whether any body may fall asleep."""
-        self._stamp = self._timestamp()
         # The sum of dt may be less than the threshold by round-off.
         need = self.space.sleep_time_threshold * (1.0 - 1e-9)
         ready = self._rests(REST_RATIO * math.hypot(*self.world.gravity) * dt, dt, need)

@@ -21,6 +21,7 @@ from __future__ import annotations
 
 from functools import partial
 from typing import TYPE_CHECKING
+from weakref import ref
 
 from ..reentry import BUSY
 from ..transfer import EVENTS, TURNS
@@ -65,7 +66,7 @@ class Sync:
         self._world, self._timestamp = world, private.timestamp(self.space)
         self.waits = partial(private.waits, self.space)
         self.renews, self.were_read, self.state, self.stamp = False, False, MADE, -1
-        self._shapes = late_shapes(self.space)
+        self._shapes, self._reference = late_shapes(self.space), ref(self)
         # The last rest step: number of pymunk's steps after it, dt, and whether shapes touched. `_first`: none in this
         # reading; new bodies and joints may have corrections and impulses.
         self._rested, self._dt, self._touched, self._first = -1, 0.0, False, True
@@ -98,17 +99,16 @@ class Sync:
         self._move_shapes()
 
     def _move_shapes(self) -> None:
-        """Move the shapes to the poses of their bodies, or, with `renews`, let them be late: where bodies may sleep,
-        their shapes are read in most steps."""
+        """Move the shapes to the poses of their bodies, or, with `renews`, let them be late."""
         shapes = self._shapes
-        shapes.read, shapes.late, shapes.stamp = False, self.renews, self.stamp
+        shapes.read, shapes.late, shapes.stamp, shapes.sync = False, self.renews, self.stamp, self._reference
         if not self.renews:
             shapes.reindexings -= 1
             private_shapes.reindex(self.space, self._world.movers)
 
     def renew(self, drawn: bool = False) -> None:
-        """Make the arbiters of the last EECA step, before they are read. `drawn`: only for a picture. That costs more
-        than making them, so the next step need not make them, unless bodies may sleep."""
+        """Make the arbiters of the last EECA step, before they are read. `drawn`: only for a picture, or as bodies fall
+        asleep. That costs more than making them, so the next step need not make them."""
         if self.state != MADE and self.space not in BUSY and self.is_ours():
             if self.state == NO_REHEARSAL:
                 self._world.rehearsal.take_left_out_step()

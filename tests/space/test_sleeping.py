@@ -480,3 +480,19 @@ def test_movers_that_may_come_to_a_box(start: float, near: bool) -> None:
     SIZE, INVERSE, BOXES = np.array([9.0, 0.25]), np.array([1.0, 0.5]), np.array([[0.0, -1.0, 1.0, 1.0]])
     assert approaches(STATES, np.array([1]), SIZE, INVERSE, BOXES, NEAR, 0.5, 4.0) == near
     assert not near or NEAR[0] == 1
+
+
+def test_what_the_program_puts_to_sleep_is_not_woken_by_what_has_left_it() -> None:
+    """pymunk's arbiters of the first step, in which both touched, are made anew before the body falls asleep."""
+    space, (left, *_) = stack(1, threshold=50.0)
+    right, stepper = box(space, 1.0, 0.6), ep.EECA(space)
+    for shape in space.shapes:
+        shape.friction = 0.0
+    left.velocity = -3.0, 0.0
+    for _ in range(10):
+        stepper.step(DT)
+    assert left.position.x == pytest.approx(-0.5)
+    right.sleep()
+    for _ in range(3):
+        stepper.step(DT)
+    assert right.is_sleeping

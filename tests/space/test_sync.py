@@ -190,14 +190,18 @@ def test_drawing_the_points_of_contacts_renews_arbiters(monkeypatch: pytest.Monk
     assert ways == ["rest"]
 
 
-def test_where_bodies_may_sleep_each_step_that_touches_renews_arbiters(monkeypatch: pytest.MonkeyPatch) -> None:
-    space, _ = standing()
+def test_where_bodies_may_sleep_arbiters_are_renewed_when_somebody_asks_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    space, box = standing()
     space.sleep_time_threshold = 5.0
     stepper = ep.EECA(space)
     ways = counted(stepper, monkeypatch)
     for _ in range(3):
         stepper.step(DT)
-    assert ways == 3 * ["rest"]
+    assert heard(box) == [pytest.approx((0.0, 20.0 * DT))]
+    for _ in range(2):
+        stepper.step(DT)
+    assert ways == ["rest", "reindex", "reindex", "rest", "rest", "reindex"]
+    assert stepper.reads == 1  # pymunk's steps in between are not steps of the program
 
 
 def test_a_step_at_rest_leaves_settings_and_what_is_stopped_moves_on() -> None:

@@ -116,8 +116,9 @@ def raw_arbiters(space: pymunk.Space) -> list[Any]:
 
 
 def touching(space: pymunk.Space) -> list[tuple[pymunk.Body, pymunk.Body]]:
-    """Pairs of bodies that touched in pymunk's last steps, see `arbiters`."""
-    return [bodies(arbiter) for arbiter in arbiters(space)]
+    """Pairs of bodies that touched in pymunk's last step, or have woken since."""
+    now = lib.cpSpaceGetTimestamp(space._space)
+    return [bodies(pymunk.Arbiter(one, space)) for one in space._get_arbiters() if one.stamp == now]
 
 
 def velocity_function(body: pymunk.Body) -> Callable[..., None] | None:
