@@ -1,14 +1,18 @@
-"""Kernels of sleeping: which bodies were at rest in a step, whether a sleeping body was touched in it, or may be."""
+"""Kernels of sleeping: which bodies were at rest in a step, sleep together, were touched as they slept, or may be."""
 
 from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from .arrays import FloatArray, IntArray
 from .compiled import kernel
 from .compiled.records import Rows
+from .joints.plan import root
 from .layout import BODY_ROW, READ, WRITTEN
 from .model.contacts import Impulse
+from .model.values import DYNAMIC, KINEMATIC
 
 ROUND = 1e-14  # round-off, relative to coordinates and to the largest speed
 _LESS = 1e-9  # margin of the reach of a body, relative to its coordinates
@@ -53,6 +57,35 @@ def rests(
         READY[i] = 1 if still and RESTED[i] >= need else 0
         some = max(some, READY[i])
     return some
+
+
+@kernel
+def connect(PAIRS: IntArray, KIND: IntArray, READY: IntArray, GROUP: IntArray) -> None:
+    """The groups of dynamic bodies that contacts and joints connect, all of which may sleep. A body that touches a
+    kinematic one, or is jointed to it, may not.
+
+    Args:
+        PAIRS (m, 2): rows of bodies that touch or are jointed.  KIND (N,): of the bodies.
+        READY (N,): 1 for bodies that may sleep.
+        GROUP (N,): out, the number of its group; -1 for bodies that stay awake.
+    """
+    N = KIND.shape[0]
+    parent, awake = np.arange(N), np.zeros(N, np.int64)
+    for p in range(PAIRS.shape[0]):
+        a, b = root(parent, PAIRS[p, 0]), root(parent, PAIRS[p, 1])
+        if KIND[a] == DYNAMIC and KIND[b] == DYNAMIC:
+            parent[a] = b
+        elif KIND[a] == KINEMATIC:
+            awake[PAIRS[p, 1]] = 1
+        elif KIND[b] == KINEMATIC:
+            awake[PAIRS[p, 0]] = 1
+    for i in range(N):
+        if KIND[i] == DYNAMIC and (awake[i] == 1 or READY[i] == 0):
+            awake[root(parent, i)] = 1
+    for i in range(N):
+        GROUP[i] = root(parent, i)
+        if READY[i] == 0 or awake[GROUP[i]] == 1:
+            GROUP[i] = -1
 
 
 @kernel

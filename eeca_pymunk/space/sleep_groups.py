@@ -14,8 +14,9 @@ from functools import wraps
 import numpy as np
 import pymunk
 
-from ..arrays import BoolArray, IntArray
+from ..arrays import IntArray
 from ..report import Contacts
+from ..sleepers import connect
 from .bodies import Bodies
 from .edits import SLEEP, record
 from .late_shapes import make_arbiters
@@ -32,40 +33,27 @@ def touching(space: pymunk.Space) -> list[tuple[pymunk.Body, pymunk.Body]]:
 
 
 def resting_groups(
-    space: pymunk.Space, bodies: Bodies, ready: BoolArray, contacts: Contacts,
+    space: pymunk.Space, bodies: Bodies, ready: IntArray, contacts: Contacts,
     jointed: Iterable[tuple[pymunk.Body, pymunk.Body]],
 ) -> list[list[pymunk.Body]]:  # fmt: skip
     """The groups of bodies that touch or are jointed, all of which may fall asleep.
 
     Args:
-        ready: (N,) whether a body has been at rest for long enough.  contacts: of the last step.
+        ready: (N,) 1 for bodies that have been at rest for long enough.  contacts: of the last step.
         jointed: the bodies of each constraint.
     """
-    parents = list(range(len(bodies)))  # union-find: bodies of one group have one root
-
-    def root(i: int) -> int:
-        while parents[i] != i:
-            parents[i] = parents[parents[i]]
-            i = parents[i]
-        return i
-
-    awake: BoolArray = bodies.dynamic & ~ready
-    pairs = list(zip(contacts.body_a.tolist(), contacts.body_b.tolist(), strict=True))
+    row = bodies.row
     # pymunk's contacts count too: it keeps one with a sleeping body forever, so that both bodies must sleep or neither.
-    for one, two in (*jointed, *touching(space)):
-        if one in bodies.row and two in bodies.row:
-            pairs.append((bodies.row[one], bodies.row[two]))
-    for a, b in pairs:
-        if bodies.dynamic[a] and bodies.dynamic[b]:
-            parents[root(a)] = root(b)
-        for one, other in ((a, b), (b, a)):
-            # A body on a kinematic body, or jointed to it, stays awake.
-            awake[one] |= bodies.dynamic[one] and not (bodies.dynamic[other] or bodies.static[other])
-    awake_roots = {root(int(i)) for i in np.flatnonzero(awake)}
+    more = [(row[a], row[b]) for a, b in (*jointed, *touching(space)) if a in row and b in row]
+    pairs = np.concatenate(
+        (np.column_stack((contacts.body_a, contacts.body_b)), np.array(more, np.int64).reshape(-1, 2))
+    )
+    group = np.zeros(len(bodies), np.int64)
+    connect(pairs, bodies.VALUES["kind"].astype(np.int64), ready, group)
     resting: dict[int, list[pymunk.Body]] = {}
-    for i in np.flatnonzero(ready).tolist():
-        if (group := root(i)) not in awake_roots:
-            resting.setdefault(group, []).append(bodies.items[i])
+    for body, number in zip(bodies.items, group.tolist(), strict=True):
+        if number >= 0:
+            resting.setdefault(number, []).append(body)
     return list(resting.values())
 
 

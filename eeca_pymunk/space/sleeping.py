@@ -239,7 +239,7 @@ class Sleep:
         if np.count_nonzero(self._ready) < enough:
             return
         jointed = () if joints is None else joints.pairs.values()
-        islands = self._left_alone(resting_groups(self.space, bodies, self._ready != 0, contacts, jointed), dt)
+        islands = self._left_alone(resting_groups(self.space, bodies, self._ready, contacts, jointed), dt)
         if sum(map(len, islands)) < enough:
             return
         self._since = 0

@@ -132,7 +132,6 @@ def test_arbiters_tell_whether_a_handler_has_rejected_the_collision() -> None:
         space.step(DT)
         (arbiter,) = private.arbiters(space)
         assert private_versions.processed(arbiter) == (phase == "post_solve")
-        assert set(private_versions.bodies(arbiter)) == {disk, space.static_body}
         # A pair that touches no more is not rejected: nobody was asked.
         disk.position, disk.velocity = (-5.0, 0.0), (0.0, 0.0)
         space.step(DT)

@@ -22,7 +22,7 @@ from . import joints as private_joints
 from . import shapes as private_shapes
 from . import sleep as private_sleep
 from . import versions as private_versions
-from .versions import REQUIRED, bodies
+from .versions import REQUIRED
 
 try:
     from pymunk._chipmunk_cffi import ffi, lib
@@ -116,9 +116,10 @@ def raw_arbiters(space: pymunk.Space) -> list[Any]:
 
 
 def touching(space: pymunk.Space) -> list[tuple[pymunk.Body, pymunk.Body]]:
-    """Pairs of bodies that touched in pymunk's last step, or have woken since."""
-    now = lib.cpSpaceGetTimestamp(space._space)
-    return [bodies(pymunk.Arbiter(one, space)) for one in space._get_arbiters() if one.stamp == now]
+    """Pairs of bodies of the space that touched in pymunk's last step, or have woken since."""
+    now, known = lib.cpSpaceGetTimestamp(space._space), {body._body: body for body in space.bodies}
+    pairs = [(one.body_a, one.body_b) for one in space._get_arbiters() if one.stamp == now]
+    return [(known[a], known[b]) for a, b in pairs if a in known and b in known]
 
 
 def velocity_function(body: pymunk.Body) -> Callable[..., None] | None:

@@ -71,14 +71,6 @@ def may_differ(
     return not products or surface.x != 0.0 or surface.y != 0.0
 
 
-def bodies(arbiter: pymunk.Arbiter) -> tuple[pymunk.Body, pymunk.Body]:
-    """The two bodies of an arbiter."""
-    one, two = (shape.body for shape in arbiter.shapes)
-    assert one is not None
-    assert two is not None
-    return one, two
-
-
 def to_return(value: Any, function: Callable[..., Any], phase: str) -> bool | None:
     """What a wrapper of a handler's function returns to pymunk, if the function has returned `value`.
 
