@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import AnyArray, FloatArray, IntArray
-from ..compiled import Table, table_of
+from ..compiled import Table, replaced, table_of
 from ..compiled.records import Rows, as_integers, numbers, put
 from ..geometry.corners import find_corners
 from ..model.bodies import POSE, VELOCITY, Body
@@ -65,6 +65,13 @@ class Remembering:
         self._par: memoryview = numbers(arrays.PAR).data
         self._count: memoryview = numbers(arrays.COUNT).data
         self.log: memoryview = as_integers(arrays.LOG).data
+
+    def exchange(self, name: str, array: AnyArray) -> None:
+        """Use another array of this name, which steps only read."""
+        laid = self.table is self.__dict__.get("_laid")
+        self.table, self._bound = replaced(self.table, Scene, name, array), UNBOUND
+        if laid:
+            self._laid = self.table
 
     @property
     def sides(self) -> Rows[Side]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import Table, replaced
+from ..compiled import Table
 from ..compiled.library import result_of
 from ..compiled.records import R, Rows, columns, from_bytes, rows
 from ..contacts.memory import copy_recent
@@ -20,7 +20,6 @@ from ..model.bodies import CHECK, Body
 from ..model.contacts import Force, Impulse
 from ..model.joints import Joint, Pinned
 from ..model.parameters.events import MANY_BODIES, STEP_LOOKS, STEP_LOOKS_BODY
-from ..model.scene import Scene
 from ..model.shapes import Link, Shape
 from ..model.step import Missed
 from ..model.values import reading_of
@@ -123,7 +122,8 @@ class EventLoop(Remembering):
         self.joint, self.partner, self._still = linkage
         pinned = self._hold(BODY, SHAPE, LINK)
         if pinned.tobytes() != self.pinned.tobytes():
-            self.pinned, self.table, replan = pinned, replaced(self.table, Scene, "PINNED", pinned), True
+            self.pinned, replan = pinned, True
+            self.exchange("PINNED", pinned)
         if replan:
             self._plan(BODY)
             tie_components(self.table, self.ties)
@@ -202,7 +202,7 @@ class EventLoop(Remembering):
         if rules != self._rules:
             self._rules = dict(rules)
             table = np.array([(*pair, *what) for pair, what in rules.items()], float).reshape(-1, RULE_COLUMNS)
-            self.table, self._bound = replaced(self.table, Scene, "RULE", table), UNBOUND
+            self.exchange("RULE", table)
 
     @property
     def events(self) -> Rows[Impulse]:

@@ -168,13 +168,27 @@ def test_unmoved(change: tuple[str, object]) -> None:
     assert not still()
 
 
-def test_touching_are_the_pairs_of_the_last_steps() -> None:
-    space, bodies = resting()
-    assert {frozenset(pair) for pair in private.touching(space)} == {frozenset((space.static_body, b)) for b in bodies}
-    bodies[0].position = (-3.0, 5.0)
-    for _ in range(int(space.collision_persistence) + 1):
-        space.step(DT)
-    assert {frozenset(pair) for pair in private.touching(space)} == {frozenset((space.static_body, bodies[1]))}
+def test_touching_are_the_pairs_of_the_last_step_and_of_bodies_that_woke() -> None:
+    space = pymunk.Space()
+    space.sleep_time_threshold = 10.0
+    left, right = bodies = [pymunk.Body(1.0, 1.0), pymunk.Body(1.0, 1.0)]
+    right.position = 0.99, 0.0
+    space.add(*bodies, *(pymunk.Circle(body, 0.5) for body in bodies))
+
+    def touching() -> list[frozenset[pymunk.Body]]:
+        return [frozenset(pair) for pair in private.touching(space)]
+
+    assert touching() == []
+    space.step(DT)
+    assert touching() == [frozenset(bodies)]
+    left.sleep()
+    right.sleep_with_group(left)
+    assert touching() == []
+    right.activate()
+    assert touching() == [frozenset(bodies)]
+    left.position = -3.0, 0.0
+    space.step(DT)
+    assert touching() == []
 
 
 def test_while_locked_nothing_comes_or_goes() -> None:
