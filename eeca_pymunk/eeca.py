@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Protocol
-from weakref import ref
 
 from .closures.time_of_impact import TimeOfImpact
 from .runs import RunningStepper
 from .saved import Saved, sides_of
-from .space.arbiters import Touches, show_contacts, touches_of
 from .space.world import World
 from .stepper import Method
 
@@ -42,13 +40,10 @@ class EECA(RunningStepper):
     ) -> None:
         self.closure: Closure = TimeOfImpact() if closure is None else closure
         self._saved: Saved | None = None  # in a copy, until its first step
-        # The pairs that arbiters show: stamp of the step, world, pairs.
-        self._shown: tuple[float, World | None, Touches | None] = -1.0, None, None
         super().__init__(space, sync=sync, ignore=ignore)
 
     def __getstate__(self) -> dict[str, object]:
         state = super().__getstate__()
-        state["_shown"] = -1.0, None, None
         if self._world is not None and (loop := self.event_loop) is not None:
             state["_saved"] = Saved(self._world, loop, self.decisions)
         return state
@@ -67,8 +62,6 @@ class EECA(RunningStepper):
             if loop is not None:
                 loop.release(world.BODY)
             world.load()
-        else:
-            self._show_contacts()
         saved, self._saved = self._saved, None
         if past is None and saved is not None and saved.resume(world, self.decisions):
             self._use(saved.method)
@@ -83,20 +76,3 @@ class EECA(RunningStepper):
             world.joints.planned()
             world.find_parted()
             self._method.rule(world.laws())
-
-    def _show_contacts(self) -> None:
-        """Let pymunk's arbiters have the contacts of steps, in a space that was just read."""
-        reference = ref(self)  # weak, see `show_contacts`
-        show_contacts(self.space, lambda drawn: None if (stepper := reference()) is None else stepper._touches(drawn))
-        self._sync.renews = True
-
-    def _touches(self, drawn: bool) -> Touches | None:
-        """Pairs that touched in the last step, for pymunk's arbiters; None if pymunk has taken a step since."""
-        world, loop = self._world, self.event_loop
-        self._sync.renew(drawn)
-        if world is None or loop is None or not self._sync.is_ours():
-            return None
-        step = loop.stamp
-        if self._shown[0] != step or self._shown[1] is not world:
-            self._shown = step, world, Touches(touches_of(loop.events, world.shapes))
-        return self._shown[2]

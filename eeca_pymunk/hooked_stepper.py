@@ -176,7 +176,7 @@ class HookedStepper(PackedSpace):
             world.joints.write()
             world.hooks.after(dt)
             if self.sync and not world.collisions:
-                self._sync.update(dt, status)
+                self._sync.update(dt)
         elif world.collisions:
             world.scatter(status)
         else:

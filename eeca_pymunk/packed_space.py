@@ -15,6 +15,7 @@ from .energy.ledger import BOOK_AFTER
 from .errors import NotFiniteError
 from .impacts.run import ENERGY
 from .impacts.scene import EventLoop
+from .space.arbiters import Touches, show_contacts, touches_of
 from .space.checks import check_ignored
 from .space.decisions import Decisions, Rules
 from .space.describe import describe
@@ -29,7 +30,6 @@ if TYPE_CHECKING:
     import pymunk
 
 TOO_FAR = "the step would overflow; take a smaller dt, or stop this run"  # remedy, at the end of messages
-
 
 Own = TypeVar("Own", bound="PackedSpace")
 # Bodies, and the result of `PackedSpace.sleep_state` for these.
@@ -59,6 +59,8 @@ class PackedSpace(Stepper):
         self._slept: Slept | None = None  # in a copy, until its first step
         self._method: Method
         self._ruled: Rules | None = None  # the rules that the method has
+        # The pairs that arbiters show: stamp of the step, world, pairs.
+        self._shown: tuple[float, World | None, Touches | None] = -1.0, None, None
         self._idle_book: list[float] | None = None  # book of a step in which all dynamic bodies sleep: zeros
         self.reads = self.patches = self.objects_read = 0
         self.decisions = Decisions()
@@ -70,6 +72,7 @@ class PackedSpace(Stepper):
         for made in ("_sync", "_method"):
             state.pop(made, None)
         state["_world"] = state["_sleep"] = None
+        state["_shown"] = -1.0, None, None
         state["decisions"] = Decisions()
         if self.space.sleep_time_threshold < math.inf:
             bodies = list(self.space.bodies)
@@ -156,6 +159,7 @@ class PackedSpace(Stepper):
             warnings.warn(f"{type(self).__name__} steps on without the friction of this space", stacklevel=4)
         self.reads += 1
         self._sync = Sync(world, None if past is None else self._sync)
+        show_contacts(self.space, self._touches)
         self._sleep = Sleep(world, self._sleep, self._sync) if world.sleeps else None
         slept, self._slept = self._slept, None
         if self._sleep is not None and slept is not None:
@@ -189,6 +193,16 @@ class PackedSpace(Stepper):
                 world.find_parted()
                 loop.rule(world.laws())
         return self._adopt(world)
+
+    def _touches(self, drawn: bool) -> Touches | None:
+        """Pairs that touched in the last step, for pymunk's arbiters; None if pymunk has taken a step since."""
+        self._sync.renew(drawn)
+        world, loop = self._world, self.event_loop
+        if world is None or loop is None or not self._sync.is_ours():
+            return None
+        if self._shown[:2] != (loop.stamp, world):
+            self._shown = loop.stamp, world, Touches(touches_of(loop.events, world.shapes))
+        return self._shown[2]
 
     def _adopt(self, world: World) -> World:
         """Use this world, which is current, in the next steps."""

@@ -16,7 +16,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, NamedTuple
-from weakref import WeakKeyDictionary
+from weakref import WeakKeyDictionary, WeakMethod
 
 import pymunk
 from pymunk import batch
@@ -61,17 +61,16 @@ class Touches:
 
 
 ReadTouches = Callable[[bool], "Touches | None"]
-_readers: WeakKeyDictionary[pymunk.Space, ReadTouches] = WeakKeyDictionary()
+_readers: WeakKeyDictionary[pymunk.Space, WeakMethod[ReadTouches]] = WeakKeyDictionary()
 _native_each: Any = pymunk.Body.each_arbiter
 _native_batch: Any = batch.get_space_arbiters
 _native_draw: Any = pymunk.Space.debug_draw
 
 
 def show_contacts(space: pymunk.Space, read: ReadTouches) -> None:
-    """Let arbiters of a space have the contents that `read` returns; if it returns None, those of pymunk. The argument
-    of `read` is whether arbiters are read only for a picture. It must not refer to the space, which could otherwise not
-    be freed."""
-    _readers[space] = read
+    """Let arbiters of a space have the contents that the method `read` returns; if it returns None, those of pymunk.
+    The argument of `read` is whether arbiters are read only for a picture. It is kept as long as its object exists."""
+    _readers[space] = WeakMethod(read)
     if pymunk.Body.each_arbiter is not _each_arbiter:  # setting any attribute of a class clears Python's caches of it
         pymunk.Body.each_arbiter = _each_arbiter  # type: ignore[method-assign]
         pymunk.Space.debug_draw = _debug_draw  # type: ignore[method-assign]
@@ -96,7 +95,8 @@ def touches_of(EVENT: Rows[Impulse], shapes: Sequence[pymunk.Shape]) -> list[Tou
 
 
 def _touches_of(space: pymunk.Space | None, drawn: bool = False) -> Touches | None:
-    read = None if space is None else _readers.get(space)
+    reader = None if space is None else _readers.get(space)
+    read = None if reader is None else reader()
     return None if read is None else read(drawn)
 
 

@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING
 from weakref import ref
 
 from ..reentry import BUSY
-from ..transfer import EVENTS, TURNS
+from ..transfer import TURNS
 from .bodies import ANGULAR_VELOCITY, VELOCITY
 from .late_shapes import late_shapes
 from .private import arbiters as private_arbiters
@@ -38,10 +38,10 @@ from .rest_step import Awake, rest_step
 if TYPE_CHECKING:
     from .world import World
 
-# Numbers of moving shapes up to which reindexing is used: without contacts, and with; with joints for any number.
+# Number of moving shapes up to which those that are read after each step are reindexed; with joints any number.
 # Measured: reindexing costs less than a rest step up to 30 shapes in a tree and 6 in a spatial hash without contacts,
 # up to 70 and 8 with contacts. With joints it costs a fifth in a tree; in a hash less up to 16 shapes, twice for many.
-MOST_FREE, MOST_TOUCHING = 12, 32
+MOST_READ = 16
 
 MADE, NO_REST_STEP, NO_REHEARSAL = 0, 1, 2
 
@@ -50,7 +50,6 @@ class Sync:
     """Updates pymunk's shapes after each step, in one of the two ways.
 
     Attributes:
-        renews: whether reading arbiters calls `renew` first.
         waits: function that returns whether post-step callbacks, additions or removals wait for the end of a step.
         state: of pymunk after the last EECA step: `MADE`, `NO_REST_STEP` or `NO_REHEARSAL`.
         stamp: number of steps that pymunk had taken after the last EECA step, -1 before the first.
@@ -65,46 +64,35 @@ class Sync:
         self._stop_woken = private_sleep.stop_woken(sleepers)
         self._world, self._timestamp = world, private.timestamp(self.space)
         self.waits = partial(private.waits, self.space)
-        self.renews, self.were_read, self.state, self.stamp = False, False, MADE, -1
+        self.were_read, self.state, self.stamp = False, MADE, -1
         self._shapes, self._reference = late_shapes(self.space), ref(self)
-        # The last rest step: number of pymunk's steps after it, dt, and whether shapes touched. `_first`: none in this
-        # reading; new bodies and joints may have corrections and impulses.
-        self._rested, self._dt, self._touched, self._first = -1, 0.0, False, True
+        # The last rest step: number of pymunk's steps after it, and dt. `_first`: none in this reading; new bodies and
+        # joints may have corrections and impulses.
+        self._rested, self._dt, self._first = -1, 0.0, True
         if past is not None and not (self._asleep or past._asleep):
-            self._rested, self._dt = past._rested, past._dt
-            self._touched, self.were_read = past._touched, past.were_read
+            self._rested, self._dt, self.were_read = past._rested, past._dt, past.were_read
         self._past_stamp = past.stamp if past is not None and world.undecided else -1
 
-    def reindexes(self, dt: float, status: int) -> bool:
+    def reindexes(self, dt: float) -> bool:
         """Whether reindexing is enough for this step. Conditions:
 
         * pymunk has taken no step since the last rest step, which had this dt, and at most `REINDEXINGS` followed it;
         * arbiters were not read after the last step, other than for a picture;
-        * nothing touched in this step and the last one, or `renews`;
-        * the number of moving shapes is at most MOST_TOUCHING; with neither contacts nor joints at most MOST_FREE. With
-          `renews` there is no limit if there are joints, or shapes were not read after the last step.
+        * shapes were not read after the last step, or those of at most MOST_READ bodies move, or there are joints.
         """
-        shapes = self._shapes
-        if self.were_read or shapes.reindexings <= 0 or dt != self._dt:
+        shapes, world = self._shapes, self._world
+        if self.were_read or shapes.reindexings <= 0 or dt != self._dt or self._timestamp() != self._rested:
             return False
-        touches, jointed = status & EVENTS or self._touched, self._world.joints is not None
-        if touches and not self.renews:
-            return False
-        few = self._world.moving_shapes <= (MOST_TOUCHING if touches or jointed else MOST_FREE)
-        return (few or (self.renews and (jointed or not shapes.read))) and self._timestamp() == self._rested
+        return not shapes.read or world.moving_shapes <= MOST_READ or world.joints is not None
 
     def reindex(self) -> None:
-        """Move the shapes to the poses of their bodies, for a step that `reindexes`."""
+        """Let the shapes be late, and moved when they are read, for a step that `reindexes`."""
         self.state, self.stamp = NO_REST_STEP, self._rested
-        self._move_shapes()
+        self._be_late()
 
-    def _move_shapes(self) -> None:
-        """Move the shapes to the poses of their bodies, or, with `renews`, let them be late."""
+    def _be_late(self) -> None:
         shapes = self._shapes
-        shapes.read, shapes.late, shapes.stamp, shapes.sync = False, self.renews, self.stamp, self._reference
-        if not self.renews:
-            shapes.reindexings -= 1
-            private_shapes.reindex(self.space, self._world.movers)
+        shapes.read, shapes.late, shapes.stamp, shapes.sync = False, True, self.stamp, self._reference
 
     def renew(self, drawn: bool = False) -> None:
         """Make the arbiters of the last EECA step, before they are read. `drawn`: only for a picture, or as bodies fall
@@ -116,8 +104,7 @@ class Sync:
             else:
                 with private_rest.stopped(self.space):
                     self.rest(self._dt)
-        if not (drawn and self.renews):
-            self.were_read = True
+        self.were_read |= not drawn
 
     def call_back(self) -> None:
         """Do waiting additions and removals, and call post-step callbacks."""
@@ -128,8 +115,8 @@ class Sync:
         self.stamp = self._timestamp()
 
     def finish_rehearsal(self, left_out: int) -> None:
-        """The end of a step with handlers, whose rehearsal was taken or left out (`Rehearsal.left_out`): move shapes to
-        their bodies, then `call_back`."""
+        """The end of a step with handlers, whose rehearsal was taken or left out (`Rehearsal.left_out`): shapes are
+        late, then `call_back`."""
         self.stamp = self._timestamp()
         if left_out:
             self.state = NO_REHEARSAL
@@ -137,7 +124,7 @@ class Sync:
             self.state, self.were_read = MADE, False
             self._shapes.reindexings = private_shapes.REINDEXINGS
             private_shapes.forget_corrections(self._world.movers)
-        self._move_shapes()
+        self._be_late()
         self.call_back()
 
     def is_ours(self) -> bool:
@@ -168,8 +155,6 @@ class Sync:
         self._rested, self._dt = self._timestamp(), dt
         self._shapes.late, self._shapes.read, self._shapes.reindexings = False, False, private_shapes.REINDEXINGS
         self.state, self.stamp, self.were_read, self._first = MADE, self._rested, False, False
-        if not self.renews and self._world.moving_shapes <= MOST_FREE:
-            self._touched = bool(private.raw_arbiters(self.space))
 
     def _awake(self) -> Awake:
         """See `rest_step`. Which joints have sleeping bodies is known from the start of the step, unless functions of
@@ -183,7 +168,7 @@ class Sync:
         """Write the end of the step to the space, and update pymunk's shapes: by reindexing, or by a rest step between
         poses and velocities."""
         world = self._world
-        if self.reindexes(dt, status):
+        if self.reindexes(dt):
             world.scatter(status)
             self.reindex()
             return
@@ -194,10 +179,10 @@ class Sync:
         self.rest(dt)
         world.scatter_velocities(status)
 
-    def update(self, dt: float, status: int) -> None:
+    def update(self, dt: float) -> None:
         """Update pymunk's shapes to the present state of the bodies: the end of a step that is already written, with
         changes by functions."""
-        if self.reindexes(dt, status):
+        if self.reindexes(dt):
             self.reindex()
             return
         bodies = self._world.bodies

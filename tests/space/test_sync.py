@@ -38,7 +38,7 @@ def counted(stepper: ep.Stepper, monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 
 @pytest.mark.parametrize("hashed", [False, True])
-@pytest.mark.parametrize("count", [1, sync.MOST_FREE, sync.MOST_FREE + 1, 40])
+@pytest.mark.parametrize("count", [1, sync.MOST_READ, sync.MOST_READ + 1, 40])
 def test_queries_find_the_bodies_where_they_are(count: int, hashed: bool) -> None:
     space = crowd(count, hashed)
     stepper = FreeFlight(space)
@@ -56,20 +56,32 @@ def test_queries_find_the_bodies_where_they_are(count: int, hashed: bool) -> Non
 
 
 def test_few_shapes_are_reindexed_and_the_broad_phase_renewed_now_and_then(monkeypatch: pytest.MonkeyPatch) -> None:
-    stepper = FreeFlight(crowd(3))
+    space = crowd(3)
+    stepper = FreeFlight(space)
     ways = counted(stepper, monkeypatch)
     for _ in range(70):
         stepper.step(DT)
+        space.point_query((0.0, 0.0), 0.0, pymunk.ShapeFilter())
     assert ways == (["rest"] + 32 * ["reindex"]) * 2 + ["rest"] + 3 * ["reindex"]
-    stepper = FreeFlight(crowd(sync.MOST_FREE + 1))
-    ways.clear()
-    stepper.step(DT)
-    stepper.step(DT)
-    assert ways == ["rest", "rest"]
+
+
+def test_many_shapes_that_are_read_after_each_step_are_moved_by_rest_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    for count, expected in ((sync.MOST_READ, "reindex"), (sync.MOST_READ + 1, "rest")):
+        space = crowd(count)
+        stepper = FreeFlight(space)
+        ways = counted(stepper, monkeypatch)
+        for _ in range(3):
+            stepper.step(DT)
+        assert ways == ["rest", "reindex", "reindex"]
+        for _ in range(2):
+            space.point_query((0.0, 0.0), 0.0, pymunk.ShapeFilter())
+            stepper.step(DT)
+        assert ways[3:] == 2 * [expected]
+        monkeypatch.undo()
 
 
 def test_spaces_with_joints_are_reindexed_whatever_their_size(monkeypatch: pytest.MonkeyPatch) -> None:
-    space = crowd(2 * sync.MOST_TOUCHING)
+    space = crowd(4 * sync.MOST_READ)
     bodies = list(space.bodies)
     space.add(*[pymunk.PinJoint(a, b) for a, b in itertools.pairwise(bodies)])
     stepper = ep.EECA(space)
