@@ -2,7 +2,8 @@
 
 Between both ends of an interval paths are parabolas, which are searched for impacts; joints only hold at the ends.
 Therefore bodies that may meet others turn by no more than half a radian, and leave their free flight by no more than
-half their size; contacts close by no more than their depth limit.
+half their size; contacts close by no more than their depth limit, and their points part by no more than half the
+size of the smaller body.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from ..model.scene import Scene
 from ..pairs.lists import far_apart
 from ..pairs.rules import barred
 from ..rows.build import normal_rate
-from .advance import Interval
+from .advance import Interval, apart
 
 _CUBIC = 4.0 / 27.0  # largest value of s^2 (1 - s)
 
@@ -105,9 +106,24 @@ def within_sagitta(A: Scene, found: IntArray, t: float) -> float:
     return h if most * h * h <= 1.0 else max(1.0 / math.sqrt(most), A.PAR.dt / RESOLUTION)
 
 
+@nonallocating
+def points_part(interval: Interval, L: FloatArray) -> float:
+    """How many times too long an interval is as the points of a contact that pushes with impulses L (m, 2), on two
+    moving bodies, part by more than INTERVAL_WAY of the smaller body: the impulse would act at two places, and change
+    the angular momentum."""
+    isle, ROWS, MID, far = interval.isle, interval.ROWS, interval.motion.MID, 0.0
+    for z in range(interval.m):
+        a, b = ROWS[z].a, ROWS[z].b
+        if L[z, 0] != 0.0 and isle.IM[a] > 0.0 and isle.IM[b] > 0.0:
+            along, across = apart(ROWS[z], MID[b, 0] - MID[a, 0], MID[b, 1] - MID[a, 1])
+            far = max(far, (abs(along) + abs(across)) / (INTERVAL_WAY * min(isle.EXTENT[a], isle.EXTENT[b])))
+    return far
+
+
 @kernel
-def excess(A: Scene, interval: Interval) -> float:
-    """How many times too long an interval is for the motion of its bodies; 0 if it is not."""
+def excess(A: Scene, interval: Interval, L: FloatArray) -> float:
+    """How many times too long an interval is for the motion of its bodies under impulses L (m, 2) of its contacts; 0 if
+    it is not."""
     isle, _, ROWS, motion, _, m, n, t, h = interval
     far, KEY = 0.0, np.empty(m, np.int64)
     for z in range(m):
@@ -115,7 +131,7 @@ def excess(A: Scene, interval: Interval) -> float:
     for q in range(n):
         i, turned = int(isle.WHO[q]), motion.END[q, 2] - isle.POSE[q, 2]
         far = max(far, strays(A, i, motion.WAY[q, 0], motion.WAY[q, 1], turned, motion.V[q], isle.ACC[q], t, h, KEY, m))
-    far = max(far, closes_too_far(A, isle, ROWS, motion.MEAN, m, h))
+    far = max(far, closes_too_far(A, isle, ROWS, motion.MEAN, m, h), points_part(interval, L))
     return max(far, too_deep_on_way(A, interval))
 
 

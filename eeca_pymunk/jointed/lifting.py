@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import kernel
+from ..compiled import kernel, nonallocating
 from ..contacts.correction import admissible, least_of, turn_by, unturn
 from ..contacts.works import against
 from ..islands.depths import left_to_lift
@@ -76,14 +76,26 @@ def lift_at_cut(A: Scene, J: Joints, root: int, t: float) -> None:
     clear_places(A, MINE)
 
 
+@nonallocating
+def keep_centre(D: FloatArray, IM: FloatArray, n: int) -> None:
+    """Add a common displacement to D (k, 3) of n bodies, with which their centre of mass stays: columns that were
+    fitted to motions (`secant`) do not conserve momentum exactly."""
+    mass = x = y = 0.0
+    for i in range(n):
+        mass, x, y = mass + 1.0 / IM[i], x + D[i, 0] / IM[i], y + D[i, 1] / IM[i]
+    for i in range(n):
+        D[i, 0] -= x / mass
+        D[i, 1] -= y / mass
+
+
 @kernel
 def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget: float, build: bool) -> float:
     """Move the poses at the end of an island's motion out of each other, at a cost of at most `budget`, not at all if
     that is below 0; returns the cost.
 
     It is -m a.D for displacements D, rotations included, and the energy that springs gain. D is along the joints; their
-    errors of second order are then closed. A free island keeps its angular momentum: velocities at the end rotate by
-    what the displacements have changed of it.
+    errors of second order are then closed. A free island keeps its centre of mass and its angular momentum: velocities
+    at the end rotate by what the displacements have changed of it.
     """
     isle, groups, ROWS, motion, C, m, n, _, h = interval
     V, WAY, END = motion.V, motion.WAY, motion.END
@@ -108,14 +120,16 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget
     set_effective_masses(groups, C, KEEP, m)
     D = np.zeros_like(V)
     raise_gaps(JointedProblem(KEEP, C, room_for_rows(0, 0), m), n, GAPS, D, 1e-3 * -deepest)
+    free = len(isle.IM) == n and not has_partner(groups, J.COMPONENT, J.JOINED)
+    if free:
+        keep_centre(D, isle.IM, n)
     cost, part = -against(isle.ACC, isle.IM, isle.II, n, D), admissible(D, isle.EXTENT, n, size)
     # Contacts that contradict one another give displacements without bound, of which only a part is taken.
     round_off = CORRECTION_ROUND_OFF * against(np.abs(isle.ACC), isle.IM, isle.II, n, np.abs(D))
     if cost * part > max(0.5 * budget, round_off * part):  # the other half is for what closing joints costs
         part = 0.5 * budget / cost
     STORED = np.zeros(len(groups.COMPONENT))
-    # In an island that is not free no body is rotated.
-    ALL = np.ones(n if len(isle.IM) == n and not has_partner(groups, J.COMPONENT, J.JOINED) else 0, np.uint8)
+    ALL = np.ones(n if free else 0, np.uint8)  # in an island that is not free no body is rotated
     for _ in range(4):
         spent = 0.0
         NEW = END + part * D

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from ..arrays import FloatArray
 from ..compiled import kernel
 from ..contacts.counts import note_unmet, spend
 from ..contacts.geometry import gather_contacts
@@ -68,8 +69,11 @@ def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
 
 
 @kernel
-def excess_length(A: Scene, J: Joints, interval: Interval, root: int, effort: float, solved: bool, last: bool) -> float:
-    """How many times too long the interval of an island is, whose motion took so much effort; also sets its `strays`.
+def excess_length(
+    A: Scene, J: Joints, interval: Interval, L: FloatArray, root: int, effort: float, solved: bool, last: bool
+) -> float:
+    """How many times too long the interval of an island is, whose motion under impulses L of its contacts took so much
+    effort; also sets its `strays`.
 
     Args:
         solved: whether contacts are.  last: whether no other attempt follows, see `try_jointed`.
@@ -82,7 +86,7 @@ def excess_length(A: Scene, J: Joints, interval: Interval, root: int, effort: fl
     if last and solved:
         A.RESTING[root].strays = too_deep_on_way(A, interval)
         return far
-    strays = excess(A, interval)
+    strays = excess(A, interval, L)
     A.RESTING[root].strays, far = 0.0 if solved else strays, max(far, strays)
     if solved:
         return far
@@ -148,7 +152,7 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
         advance(A, J, interval, L, room_for_rows(0, 0), False, np.empty((0, 3)))
     COUNT.solves += 1
     COUNT.solved += n
-    far = excess_length(A, J, interval, root, J.PROGRESS.effort - before, solved, last)
+    far = excess_length(A, J, interval, L, root, J.PROGRESS.effort - before, solved, last)
     if far > INTERVAL_RETRY and not last:
         for s in groups.JOINTED:
             restore_joints(J, s)

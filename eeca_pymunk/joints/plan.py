@@ -94,7 +94,7 @@ def find_turning(bodies: Rows[Body], joint: Rows[Joint], joints: int, turns: Int
         changed = False
         for j in range(joints):
             a, b = joint[j].body[0], joint[j].body[1]
-            if joint[j].kind > GEAR and turns[a] == 1 and turns[b] == 1 and cayley[a] != cayley[b]:
+            if joint[j].kind >= GEAR and turns[a] == 1 and turns[b] == 1 and cayley[a] != cayley[b]:
                 cayley[a] = cayley[b] = 1
                 changed = True
 
