@@ -32,6 +32,6 @@ def refuse_within(space: pymunk.Space) -> None:
     """RuntimeError if the space is in BUSY."""
     if space in BUSY:
         raise RuntimeError(
-            f"step was called for {space} from within its own step, by a collision handler or a function of a "
-            "body or constraint: step it when that step has returned, or in space.add_post_step_callback"
+            f"step, run or set_state was called for {space} from within its own step, by a collision handler or a "
+            "function of a body or constraint: step it when that step has returned, or in space.add_post_step_callback"
         )

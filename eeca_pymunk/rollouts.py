@@ -22,6 +22,7 @@ from .reentry import refuse_within
 from .rolling import Copy, Job, Rolling, roll_in_python
 from .runs import RunningStepper
 from .space.bodies import moving
+from .space.constraints import ratchets_of
 from .stepper import check_dt, check_steps
 
 _PIECES_PER_THREAD = 8  # largest number of pieces of work for each thread, so that threads end at about the same time
@@ -68,7 +69,8 @@ def rollout(
         UnsupportedFeature: functions are called within steps, and the space cannot be copied, see below.
 
     If `stepper.run` is a Python loop, so is this, in one thread: on the space itself, whose state is restored
-    afterwards, or, if functions are called within steps, on a copy of it by pickle.
+    afterwards, or, if functions are called within steps, on a copy of it by pickle. So it is with ratchets, as each
+    state sets their notches.
     """
     if not isinstance(stepper, RunningStepper):
         raise TypeError(f"{type(stepper).__name__} has no rollouts: give an EECA")
@@ -98,7 +100,7 @@ def rollout(
         start, push, T * every, every, dt, np.zeros((K, T, b, 6)), np.zeros((K, T, 6)), np.zeros(K, np.int64), full
     )
     with tqdm(total=K, desc="rollout", unit="rollout", disable=not progress) as bar:
-        if stepper.compiles():
+        if stepper.compiles() and not ratchets_of(stepper.space):
             events = _on_threads(stepper, job, min(count, max(K, 1)), bar.update)
         else:
             events = _in_python(stepper, job, bar.update)

@@ -99,9 +99,11 @@ class RunningStepper(PackedStepper):
             state: the result of `get_state`: the space then follows the same path, bit by bit. Or (b, 6) position,
                 angle, velocity and spin of the b bodies that are not static, in the order of `space.bodies`; length,
                 rad, per time. This also clears forces and results of earlier steps, so that equal states give equal
-                paths, whatever was run before. Sleeping bodies wake.
+                paths, whatever was run before: ratchets stand on the last notch that their bodies have passed there.
+                Sleeping bodies wake.
 
         Raises:
+            RuntimeError: called by a function within a step.
             ValueError: it is neither, belongs to another space, or is not finite; nothing is changed.
         """
         set_state(self, np.asarray(state))

@@ -19,8 +19,10 @@ from .compiled.records import RECORD_TYPES, numbers
 from .impacts.scene import EventLoop
 from .layout import STATE_COLUMNS, WRITTEN
 from .model.joints import EDITED, OF_STEPS, RATCHET
+from .reentry import refuse_within
 from .saved import differences
 from .space.bodies import moving
+from .space.constraints import forget_notches
 from .space.decisions import DECISION_COLUMNS
 from .space.world import World
 
@@ -52,6 +54,7 @@ def get_state(stepper: RunningStepper) -> IntArray:
 
 def set_state(stepper: RunningStepper, state: AnyArray) -> None:
     """See `RunningStepper.set_state`."""
+    refuse_within(stepper.space)
     if state.ndim == 1 and state.dtype == np.int64:
         _recall(stepper, state)
     else:
@@ -79,6 +82,7 @@ def _place(stepper: RunningStepper, state: FloatArray) -> None:
     whole[:] = world.state
     whole[rows, :6], whole[rows, 6:] = state, 0.0
     world.bodies.scatter(whole, unchanged=True)
+    forget_notches(stepper.space)
     stepper.reset_to(world, whole)
 
 

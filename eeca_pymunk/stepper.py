@@ -89,8 +89,8 @@ class Stepper(ABC):
     def refresh(self) -> None:  # noqa: B027 - steppers that keep nothing have nothing to refresh
         """Read the whole space again at the next step, and forget results of earlier steps, such as contact forces.
 
-        Needed after edits that bypass pymunk's setters, and for a reset: from the same positions and velocities the
-        space then follows bitwise the same path, whatever was run before."""
+        Needed after edits that bypass pymunk's setters, and for a reset: from the same positions and velocities, and
+        the same `angle` of each ratchet, the space then follows bitwise the same path, whatever was run before."""
 
 
 class Method(Protocol):

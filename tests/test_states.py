@@ -283,3 +283,33 @@ def test_a_copy_that_has_taken_no_step_goes_to_a_state(name: str) -> None:
     wanted = run(stepper, dt)
     other.set_state(state)
     np.testing.assert_array_equal(run(other, dt), wanted)
+
+
+def test_notches_of_ratchets_are_those_of_the_state() -> None:
+    """A wheel on a spring and a ratchet is set back behind the notch that it has reached, and to the notch itself."""
+    space = pymunk.Space()
+    wheel = pymunk.Body(1.0, 0.125)
+    ratchet = pymunk.RatchetJoint(space.static_body, wheel, 0.0, 0.3)
+    space.add(
+        wheel, pymunk.Circle(wheel, 0.5), pymunk.PivotJoint(space.static_body, wheel, (0.0, 0.0)), ratchet,
+        pymunk.DampedRotarySpring(space.static_body, wheel, 0.0, 0.5, 0.0),
+    )  # fmt: skip
+    stepper = ep.EECA(space)
+    start = np.array([[0.0, 0.0, 0.0, 0.0, 0.0, 3.0]])
+    paths = []
+    for _ in range(3):
+        stepper.set_state(start)
+        assert ratchet.angle == 0.0
+        stepper.run(100, 0.02)
+        paths.append(poses(space))
+        assert ratchet.angle == pytest.approx(1.2)
+    np.testing.assert_array_equal(paths[0], paths[1])
+    np.testing.assert_array_equal(paths[0], paths[2])
+    frames = ep.rollout(stepper, np.array([start, paths[0], start]), 100, 0.02)
+    for k in (0, 2):
+        np.testing.assert_array_equal(frames[k, -1], paths[0])
+    assert frames[1, :, 0, 2] == pytest.approx(1.2)
+    assert ratchet.angle == pytest.approx(1.2)
+    stepper.set_state(paths[0])
+    stepper.run(100, 0.02)
+    assert wheel.angle == pytest.approx(1.2)

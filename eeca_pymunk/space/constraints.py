@@ -34,6 +34,7 @@ _FINITE = (
 )  # fmt: skip
 _POSITIVE = ("max_force", "max_bias", "error_bias", "damping")
 _NOT_ZERO = ("ratio", "ratchet")
+_NEAR_NOTCH = 1e-9  # of a tooth: a body that stands on a notch may be before it by round-off
 
 
 @cache
@@ -207,6 +208,19 @@ def _groove(c: pymunk.GrooveJoint, force: tuple[float, float, float], b: tuple[f
     normal = along.perpendicular()
     ends, offset = (along.dot(first), along.dot(last)), normal.dot(first)
     return ConstraintValues(joints.GROOVE, force, (0.0, 0.0), b, limits=ends, groove=(*normal, offset))
+
+
+def ratchets_of(space: pymunk.Space) -> list[pymunk.RatchetJoint]:
+    """The ratchets of a space."""
+    return [c for c in space.constraints if isinstance(c, pymunk.RatchetJoint)]
+
+
+def forget_notches(space: pymunk.Space) -> None:
+    """Let each ratchet stand on the last notch that its bodies have passed where they are now, whatever they passed
+    before."""
+    for c in ratchets_of(space):
+        teeth = (c.b.angle - c.a.angle - c.phase) / c.ratchet
+        c.angle = math.floor(teeth + _NEAR_NOTCH) * c.ratchet + c.phase
 
 
 def _notch(c: pymunk.RatchetJoint) -> float:

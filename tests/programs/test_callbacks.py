@@ -294,6 +294,26 @@ def test_a_step_within_a_step_is_refused_and_nothing_changed(function: str, with
     assert stepper.step(DT).time == DT
 
 
+@pytest.mark.parametrize("function", ["pre_solve", "velocity"])
+def test_no_state_is_set_within_a_step(function: str) -> None:
+    """pymunk would end the process."""
+    space, body = resting()
+    stepper = ep.EECA(space)
+    stepper.step(DT)
+    before, place = stepper.get_state(), (*body.position, body.angle, *body.velocity, body.angular_velocity)
+
+    def back(*_: object) -> None:
+        stepper.set_state(before)
+
+    if function == "velocity":
+        body.velocity_func = back
+    else:
+        space.on_collision(pre_solve=back)
+    with pytest.raises(RuntimeError, match="from within its own step"):
+        stepper.step(DT)
+    assert place == (*body.position, body.angle, *body.velocity, body.angular_velocity)
+
+
 def test_no_step_within_a_step_after_the_function_of_a_spring() -> None:
     space = pymunk.Space()
     a, b = pymunk.Body(1.0, 1.0), pymunk.Body(1.0, 1.0)
