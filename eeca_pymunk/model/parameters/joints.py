@@ -111,7 +111,7 @@ MEET_INSTANT = round_off(1e-9, "of the step",
     "Length below which an interval before an impact, or a part before a limit, is empty.")
 COLUMN_CONTACTS = work(40, "contacts",
     "Number up to which islands are solved by homotopies, with joints always: exactly; others roughly.")
-COLUMN_SWEEPS = work(12, "sweeps", "Sweeps over components before the first homotopy.")
+COLUMN_SWEEPS = work(3, "sweeps", "Sweeps over components before the first homotopy.")
 COLUMN_SWEEPS_AFTER = work(4, "sweeps", "Sweeps over components after each homotopy, at most.")
 COLUMN_HOMOTOPIES = work(8, "homotopies", "Homotopies to the solution, at most.")
 COLUMN_PROXIMAL = round_off(10000000000.0, "over the effective mass",
