@@ -194,9 +194,9 @@ class PackedSpace(Stepper):
                 loop.rule(world.laws())
         return self._adopt(world)
 
-    def _touches(self, drawn: bool) -> Touches | None:
+    def _touches(self) -> Touches | None:
         """Pairs that touched in the last step, for pymunk's arbiters; None if pymunk has taken a step since."""
-        self._sync.renew(drawn)
+        self._sync.renew()
         world, loop = self._world, self.event_loop
         if world is None or loop is None or not self._sync.is_ours():
             return None

@@ -34,6 +34,9 @@ class Mutation:
 
 
 MUTATIONS = (
+    # Sleeping.
+    Mutation("sleeping: what a kinematic body carries", "sleepers.py", "            awake[PAIRS[p, 1]] = 1",
+             "            awake[PAIRS[p, 0]] = 1", "space/test_sleeping.py", "groups_sleep"),
     # Flight and times of impact.
     Mutation("flight: a half is missing", "geometry/flight.py", "half = 0.5 * s", "half = s",
              "geometry/test_gap.py", "parabola"),

@@ -23,7 +23,7 @@ from pymunk import batch
 
 from ..compiled.records import Rows
 from ..model.contacts import Impulse
-from .late_shapes import move_late
+from .late_shapes import make_arbiters, move_late
 from .private import arbiters as private_arbiters
 from .private import spaces as private
 
@@ -60,7 +60,7 @@ class Touches:
         return self._of.get(body, {})
 
 
-ReadTouches = Callable[[bool], "Touches | None"]
+ReadTouches = Callable[[], "Touches | None"]
 _readers: WeakKeyDictionary[pymunk.Space, WeakMethod[ReadTouches]] = WeakKeyDictionary()
 _native_each: Any = pymunk.Body.each_arbiter
 _native_batch: Any = batch.get_space_arbiters
@@ -69,7 +69,7 @@ _native_draw: Any = pymunk.Space.debug_draw
 
 def show_contacts(space: pymunk.Space, read: ReadTouches) -> None:
     """Let arbiters of a space have the contents that the method `read` returns; if it returns None, those of pymunk.
-    The argument of `read` is whether arbiters are read only for a picture. It is kept as long as its object exists."""
+    It is kept as long as its object exists."""
     _readers[space] = WeakMethod(read)
     if pymunk.Body.each_arbiter is not _each_arbiter:  # setting any attribute of a class clears Python's caches of it
         pymunk.Body.each_arbiter = _each_arbiter  # type: ignore[method-assign]
@@ -94,10 +94,10 @@ def touches_of(EVENT: Rows[Impulse], shapes: Sequence[pymunk.Shape]) -> list[Tou
     return result
 
 
-def _touches_of(space: pymunk.Space | None, drawn: bool = False) -> Touches | None:
+def _touches_of(space: pymunk.Space | None) -> Touches | None:
     reader = None if space is None else _readers.get(space)
     read = None if reader is None else reader()
-    return None if read is None else read(drawn)
+    return None if read is None else read()
 
 
 @contextmanager
@@ -151,7 +151,7 @@ def _get_space_arbiters(space: pymunk.Space, fields: batch.ArbiterFields, buffer
 
 def _debug_draw(self: pymunk.Space, options: pymunk.SpaceDebugDrawOptions) -> None:
     if options.flags & pymunk.SpaceDebugDrawOptions.DRAW_COLLISION_POINTS:
-        _touches_of(self, drawn=True)  # for its effect: `Sync.renew` makes the arbiters that pymunk draws
+        make_arbiters(self)
     move_late(self)
     _native_draw(self, options)
 

@@ -219,8 +219,7 @@ def forget_notches(space: pymunk.Space) -> None:
     """Let each ratchet stand on the last notch that its bodies have passed where they are now, whatever they passed
     before."""
     for c in ratchets_of(space):
-        teeth = (c.b.angle - c.a.angle - c.phase) / c.ratchet
-        c.angle = math.floor(teeth + _NEAR_NOTCH) * c.ratchet + c.phase
+        c.angle = _last_notch(c, c.b.angle - c.a.angle, _NEAR_NOTCH)
 
 
 def _notch(c: pymunk.RatchetJoint) -> float:
@@ -229,4 +228,9 @@ def _notch(c: pymunk.RatchetJoint) -> float:
     relative = c.b.angle - c.a.angle
     if (c.angle - relative) * c.ratchet > 0.0:
         return float(c.angle)
-    return math.floor((relative - c.phase) / c.ratchet) * c.ratchet + c.phase
+    return _last_notch(c, relative, 0.0)
+
+
+def _last_notch(c: pymunk.RatchetJoint, relative: float, near: float) -> float:
+    """The last notch passed at the relative angle of both bodies, or to be passed within the part `near` of a tooth."""
+    return math.floor((relative - c.phase) / c.ratchet + near) * c.ratchet + c.phase

@@ -82,11 +82,11 @@ def move_late(space: pymunk.Space | None) -> None:
 
 
 def make_arbiters(space: pymunk.Space) -> None:
-    """Let pymunk's arbiters be those of the last step, as `Sync.renew` does for pictures."""
+    """Let pymunk's arbiters be those of the last step: for a picture, or before bodies fall asleep."""
     known = _known.get(space)
     sync = None if known is None or known.sync is None else known.sync()
     if sync is not None:
-        sync.renew(drawn=True)
+        sync.renew(read=False)
 
 
 def _replace_readers() -> None:

@@ -85,18 +85,19 @@ class Sync:
             return False
         return not shapes.read or world.moving_shapes <= MOST_READ or world.joints is not None
 
-    def reindex(self) -> None:
-        """Let the shapes be late, and moved when they are read, for a step that `reindexes`."""
+    def leave_late(self) -> None:
+        """End a step that `reindexes`: the shapes are late."""
         self.state, self.stamp = NO_REST_STEP, self._rested
         self._be_late()
 
     def _be_late(self) -> None:
+        """Let the shapes be moved to their bodies when they are read."""
         shapes = self._shapes
         shapes.read, shapes.late, shapes.stamp, shapes.sync = False, True, self.stamp, self._reference
 
-    def renew(self, drawn: bool = False) -> None:
-        """Make the arbiters of the last EECA step, before they are read. `drawn`: only for a picture, or as bodies fall
-        asleep. That costs more than making them, so the next step need not make them."""
+    def renew(self, read: bool = True) -> None:
+        """Make the arbiters of the last EECA step. `read`: whether the program reads them, so that the next step makes
+        them too; what else needs them, see `make_arbiters`, costs more than making them."""
         if self.state != MADE and self.space not in BUSY and self.is_ours():
             if self.state == NO_REHEARSAL:
                 self._world.rehearsal.take_left_out_step()
@@ -104,7 +105,7 @@ class Sync:
             else:
                 with private_rest.stopped(self.space):
                     self.rest(self._dt)
-        self.were_read |= not drawn
+        self.were_read |= read
 
     def call_back(self) -> None:
         """Do waiting additions and removals, and call post-step callbacks."""
@@ -170,7 +171,7 @@ class Sync:
         world = self._world
         if self.reindexes(dt):
             world.scatter(status)
-            self.reindex()
+            self.leave_late()
             return
         if not status & TURNS and (world.joints is not None or world.sleeps):
             # In the rest step joints change spins by round-off, gravity (if bodies may sleep) by more: ENDS needs them.
@@ -183,7 +184,7 @@ class Sync:
         """Update pymunk's shapes to the present state of the bodies: the end of a step that is already written, with
         changes by functions."""
         if self.reindexes(dt):
-            self.reindex()
+            self.leave_late()
             return
         bodies = self._world.bodies
         end = bodies.gather()

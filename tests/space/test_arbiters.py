@@ -147,7 +147,7 @@ def test_looking_changes_nothing_and_native_steps_have_their_own() -> None:
 
 
 def test_a_body_that_was_just_added_has_its_contacts() -> None:
-    """Also where the step after the addition only reindexes (`Sync.reindex`)."""
+    """Also where the step after the addition only leaves shapes late (`Sync.leave_late`)."""
     space, bodies = scene(e=0.0, height=0.5)
     stepper = ep.EECA(space)
     for _ in range(3):

@@ -13,7 +13,8 @@ import pymunk
 import pytest
 
 import eeca_pymunk as ep
-from eeca_pymunk.sleepers import approaches
+from eeca_pymunk.model.values import DYNAMIC, KINEMATIC, STATIC
+from eeca_pymunk.sleepers import approaches, connect
 
 DT = 1.0 / 60.0
 
@@ -480,6 +481,19 @@ def test_movers_that_may_come_to_a_box(start: float, near: bool) -> None:
     SIZE, INVERSE, BOXES = np.array([9.0, 0.25]), np.array([1.0, 0.5]), np.array([[0.0, -1.0, 1.0, 1.0]])
     assert approaches(STATES, np.array([1]), SIZE, INVERSE, BOXES, NEAR, 0.5, 4.0) == near
     assert not near or NEAR[0] == 1
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_groups_sleep_if_all_their_bodies_may_and_none_touches_a_kinematic_one(turned: bool) -> None:
+    """On the static body 0: a column of 2 and 3, and 4 alone. On the kinematic body 1: 5, which carries 6. The body 7
+    is not ready, and beside 8, which is."""
+    kind = np.array([STATIC, KINEMATIC, *(7 * [DYNAMIC])])
+    pairs = np.array([(0, 2), (2, 3), (0, 4), (1, 5), (5, 6), (7, 8), (0, 7), (0, 8), (0, 1)])
+    ready, group = np.array([0, 0, 1, 1, 1, 1, 1, 0, 1]), np.zeros(9, np.int64)
+    connect(np.ascontiguousarray(pairs[:, ::-1]) if turned else pairs, kind, ready, group)
+    assert (group >= 0).tolist() == [False, False, True, True, True, False, False, False, False]
+    assert group[2] == group[3]
+    assert group[2] != group[4]
 
 
 def test_what_the_program_puts_to_sleep_is_not_woken_by_what_has_left_it() -> None:

@@ -31,9 +31,9 @@ def crowd(count: int, hashed: bool = False) -> pymunk.Space:
 def counted(stepper: ep.Stepper, monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """The ways taken from now on."""
     ways: list[str] = []
-    rest, reindex = sync.rest_step, sync.Sync.reindex
+    rest, reindex = sync.rest_step, sync.Sync.leave_late
     monkeypatch.setattr(sync, "rest_step", lambda *how, **more: (ways.append("rest"), rest(*how, **more))[1])
-    monkeypatch.setattr(sync.Sync, "reindex", lambda self: (ways.append("reindex"), reindex(self))[1])
+    monkeypatch.setattr(sync.Sync, "leave_late", lambda self: (ways.append("reindex"), reindex(self))[1])
     return ways
 
 
