@@ -1,12 +1,11 @@
 """Sync: update pymunk's own shapes and broad phase for queries and drawing.
 
 There are two ways. A *rest step*, pymunk's own step with all velocities 0, moves nothing; it renews broad phase and
-arbiters, forgets old contacts, and stores dt. *Reindexing* moves the shapes of one body after the other and changes
-nothing else; it costs less for a few bodies, above all if they touch or are jointed, and can wait until shapes are read
-(`late_shapes.py`). In a spatial hash it leaves unused handles, which a rest step clears: there is one after
-`REINDEXINGS` of them. In spaces with collision handlers a rehearsal (`rehearsal.py`) is taken or left out instead.
-Post-step callbacks are called afterwards, when bodies have their velocities. After an EECA step pymunk is in one of
-these states:
+arbiters, and forgets old contacts and impulses. *Reindexing* moves the shapes of one body after the other and changes
+nothing else; it can wait until shapes are read (`late_shapes.py`), and costs less, but for many shapes in a spatial
+hash. There it leaves unused handles, which a rest step clears: there is one after `REINDEXINGS` of them. In spaces with
+collision handlers a rehearsal (`rehearsal.py`) is taken or left out instead. Post-step callbacks are called afterwards,
+when bodies have their velocities. After an EECA step pymunk is in one of these states:
 
 | state | entered by | arbiters are | before they are read |
 |---|---|---|---|
@@ -38,11 +37,6 @@ from .rest_step import Awake, rest_step
 if TYPE_CHECKING:
     from .world import World
 
-# Number of moving shapes up to which those that are read after each step are reindexed; with joints any number.
-# Measured: reindexing costs less than a rest step up to 30 shapes in a tree and 6 in a spatial hash without contacts,
-# up to 70 and 8 with contacts. With joints it costs a fifth in a tree; in a hash less up to 16 shapes, twice for many.
-MOST_READ = 16
-
 MADE, NO_REST_STEP, NO_REHEARSAL = 0, 1, 2
 
 
@@ -66,27 +60,26 @@ class Sync:
         self.waits = partial(private.waits, self.space)
         self.were_read, self.state, self.stamp = False, MADE, -1
         self._shapes, self._reference = late_shapes(self.space), ref(self)
-        # The last rest step: number of pymunk's steps after it, and dt. `_first`: none in this reading; new bodies and
-        # joints may have corrections and impulses.
+        # Number of pymunk's steps after the last rest step, and pymunk's dt. `_first`: no rest step in this reading;
+        # new bodies and joints may have corrections and impulses.
         self._rested, self._dt, self._first = -1, 0.0, True
         if past is not None and not (self._asleep or past._asleep):
             self._rested, self._dt, self.were_read = past._rested, past._dt, past.were_read
         self._past_stamp = past.stamp if past is not None and world.undecided else -1
 
-    def reindexes(self, dt: float) -> bool:
-        """Whether reindexing is enough for this step. Conditions:
-
-        * pymunk has taken no step since the last rest step, which had this dt, and at most `REINDEXINGS` followed it;
-        * arbiters were not read after the last step, other than for a picture;
-        * shapes were not read after the last step, or those of at most MOST_READ bodies move, or there are joints.
-        """
-        shapes, world = self._shapes, self._world
-        if self.were_read or shapes.reindexings <= 0 or dt != self._dt or self._timestamp() != self._rested:
+    def reindexes(self) -> bool:
+        """Whether this step may leave the shapes late, to be reindexed when they are read. Not if pymunk has taken a
+        step since the last rest step, nor if arbiters were read after the last step, other than for a picture, nor if
+        reindexing costs more than a rest step."""
+        if self.were_read or self._timestamp() != self._rested:
             return False
-        return not shapes.read or world.moving_shapes <= MOST_READ or world.joints is not None
+        return not self._shapes.cost_more(self._world.moving_shapes)
 
-    def leave_late(self) -> None:
+    def leave_late(self, dt: float) -> None:
         """End a step that `reindexes`: the shapes are late."""
+        if dt != self._dt:
+            self._dt = dt
+            private.set_time_step(self.space, dt)
         self.state, self.stamp = NO_REST_STEP, self._rested
         self._be_late()
 
@@ -169,9 +162,9 @@ class Sync:
         """Write the end of the step to the space, and update pymunk's shapes: by reindexing, or by a rest step between
         poses and velocities."""
         world = self._world
-        if self.reindexes(dt):
+        if self.reindexes():
             world.scatter(status)
-            self.leave_late()
+            self.leave_late(dt)
             return
         if not status & TURNS and (world.joints is not None or world.sleeps):
             # In the rest step joints change spins by round-off, gravity (if bodies may sleep) by more: ENDS needs them.
@@ -183,8 +176,8 @@ class Sync:
     def update(self, dt: float) -> None:
         """Update pymunk's shapes to the present state of the bodies: the end of a step that is already written, with
         changes by functions."""
-        if self.reindexes(dt):
-            self.leave_late()
+        if self.reindexes():
+            self.leave_late(dt)
             return
         bodies = self._world.bodies
         end = bodies.gather()

@@ -144,8 +144,10 @@ def test_functions_of_bodies_find_shapes_where_the_step_begins() -> None:
 
 
 def test_what_is_never_read_costs_no_step_of_pymunk() -> None:
-    """Whatever the number of shapes; if they are read after each step, it is pymunk's step that moves many."""
+    """Whatever the number of shapes; if they are read after each step, it is pymunk's step that moves many of a
+    spatial hash."""
     space = pymunk.Space()
+    space.use_spatial_hash(1.0, 100)
     for i in range(60):
         add_disk(space, (1.5 * i, 0.0), 0.4, velocity=(2.0, 1.0))
     stepper, taken = ep.EECA(space), ep.EECA(space)._sync._timestamp

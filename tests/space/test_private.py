@@ -214,6 +214,13 @@ def test_step_without_end_and_finish_step_are_a_step(threaded: bool) -> None:
     assert found[0] == found[1]
 
 
+def test_the_time_step_of_the_last_step_is_set() -> None:
+    space, _ = meeting()
+    space.step(0.001)
+    private.set_time_step(space, 0.002)
+    assert space.current_time_step == 0.002
+
+
 def test_watch_and_count_of_shapes() -> None:
     space, bodies = meeting()
     assert private.contents(space) == (2, 2, 2)

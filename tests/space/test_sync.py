@@ -9,6 +9,7 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk.space import sync
+from eeca_pymunk.space.late_shapes import MOST_READ
 from eeca_pymunk.space.private import rest as private_rest
 from scenes.scene import add_disk
 
@@ -33,12 +34,12 @@ def counted(stepper: ep.Stepper, monkeypatch: pytest.MonkeyPatch) -> list[str]:
     ways: list[str] = []
     rest, reindex = sync.rest_step, sync.Sync.leave_late
     monkeypatch.setattr(sync, "rest_step", lambda *how, **more: (ways.append("rest"), rest(*how, **more))[1])
-    monkeypatch.setattr(sync.Sync, "leave_late", lambda self: (ways.append("reindex"), reindex(self))[1])
+    monkeypatch.setattr(sync.Sync, "leave_late", lambda self, dt: (ways.append("reindex"), reindex(self, dt))[1])
     return ways
 
 
 @pytest.mark.parametrize("hashed", [False, True])
-@pytest.mark.parametrize("count", [1, sync.MOST_READ, sync.MOST_READ + 1, 40])
+@pytest.mark.parametrize("count", [1, MOST_READ, MOST_READ + 1, 40])
 def test_queries_find_the_bodies_where_they_are(count: int, hashed: bool) -> None:
     space = crowd(count, hashed)
     stepper = FreeFlight(space)
@@ -55,20 +56,34 @@ def test_queries_find_the_bodies_where_they_are(count: int, hashed: bool) -> Non
     assert space.iterations == pymunk.Space().iterations
 
 
-def test_few_shapes_are_reindexed_and_the_broad_phase_renewed_now_and_then(monkeypatch: pytest.MonkeyPatch) -> None:
-    space = crowd(3)
+@pytest.mark.parametrize("hashed", [False, True])
+def test_a_spatial_hash_that_is_reindexed_is_renewed_now_and_then(
+    hashed: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    space = crowd(3, hashed)
     stepper = FreeFlight(space)
     ways = counted(stepper, monkeypatch)
     for _ in range(70):
         stepper.step(DT)
         space.point_query((0.0, 0.0), 0.0, pymunk.ShapeFilter())
-    assert ways == (["rest"] + 32 * ["reindex"]) * 2 + ["rest"] + 3 * ["reindex"]
+    if hashed:
+        assert ways == (["rest"] + 32 * ["reindex"]) * 2 + ["rest"] + 3 * ["reindex"]
+    else:
+        assert ways == ["rest"] + 69 * ["reindex"]
 
 
-def test_many_shapes_that_are_read_after_each_step_are_moved_by_rest_steps(monkeypatch: pytest.MonkeyPatch) -> None:
-    for count, expected in ((sync.MOST_READ, "reindex"), (sync.MOST_READ + 1, "rest")):
-        space = crowd(count)
-        stepper = FreeFlight(space)
+@pytest.mark.parametrize(
+    ("count", "hashed", "expected"),
+    [(MOST_READ, True, "reindex"), (MOST_READ + 1, True, "rest"), (4 * MOST_READ, False, "reindex")],
+)
+def test_many_shapes_of_a_spatial_hash_that_are_read_after_each_step_are_moved_by_rest_steps(
+    count: int, hashed: bool, expected: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for jointed in (False, True):
+        space = crowd(count, hashed)
+        if jointed:
+            space.add(*[pymunk.PinJoint(a, b) for a, b in itertools.pairwise(space.bodies)])
+        stepper = ep.EECA(space) if jointed else FreeFlight(space)
         ways = counted(stepper, monkeypatch)
         for _ in range(3):
             stepper.step(DT)
@@ -80,30 +95,14 @@ def test_many_shapes_that_are_read_after_each_step_are_moved_by_rest_steps(monke
         monkeypatch.undo()
 
 
-def test_spaces_with_joints_are_reindexed_whatever_their_size(monkeypatch: pytest.MonkeyPatch) -> None:
-    space = crowd(4 * sync.MOST_READ)
-    bodies = list(space.bodies)
-    space.add(*[pymunk.PinJoint(a, b) for a, b in itertools.pairwise(bodies)])
-    stepper = ep.EECA(space)
-    ways = counted(stepper, monkeypatch)
-    for _ in range(5):
-        stepper.step(DT)
-    assert ways == ["rest"] + 4 * ["reindex"]
-    for body in bodies:
-        found = space.point_query_nearest(body.position, 0.0, pymunk.ShapeFilter())
-        assert found is not None
-        assert found.shape in body.shapes
-
-
 def test_what_only_a_step_of_pymunk_does_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
     space = crowd(1)
     stepper = FreeFlight(space)
     ways = counted(stepper, monkeypatch)
     stepper.step(DT)
     stepper.step(DT)
-    stepper.step(0.5 * DT)  # another dt is one to note
-    assert space.current_time_step == 0.5 * DT
     stepper.step(0.5 * DT)
+    assert space.current_time_step == 0.5 * DT
     space.step(0.5 * DT)  # old contacts of native steps are to be forgotten
     stepper.step(0.5 * DT)
     stepper.step(0.5 * DT)
@@ -111,7 +110,7 @@ def test_what_only_a_step_of_pymunk_does_is_done(monkeypatch: pytest.MonkeyPatch
     space.add_post_step_callback(lambda space, key: called.append(key), "key")
     stepper.step(0.5 * DT)
     assert called == ["key"]
-    assert ways == ["rest", "reindex", "rest", "reindex", "rest", "reindex", "reindex"]
+    assert ways == ["rest", "reindex", "reindex", "rest", "reindex", "reindex"]
 
 
 @pytest.mark.parametrize("count", [1, 30])
@@ -273,3 +272,25 @@ def test_pictures_cost_the_next_step_nothing(monkeypatch: pytest.MonkeyPatch) ->
         stepper.step(DT)
         space.debug_draw(Picture())
     assert stepper.reads <= 3
+
+
+@pytest.mark.parametrize("dt", [0.5 * DT, 2.0 * DT])
+def test_a_native_step_after_late_steps_of_another_dt_is_that_of_a_fresh_space(dt: float) -> None:
+    """pymunk scales what it has stored of impulses by the ratio of its last two dt: nothing is stored."""
+    ends = []
+    for late in (False, True):
+        space = pymunk.Space()
+        space.gravity = (0.0, -1.0)
+        add_disk(space, (0.0, 0.4), 0.4)
+        space.add(pymunk.Segment(space.static_body, (-5.0, 0.0), (5.0, 0.0), 0.0))
+        stepper = ep.EECA(space)
+        stepper.step(DT)
+        for _ in range(3):
+            if late:
+                stepper.step(dt)
+        (body,) = space.bodies
+        body.position, body.velocity = (0.0, 0.4), (0.0, 0.0)
+        space.reindex_shapes_for_body(body)
+        space.step(DT)
+        ends.append((*body.position, *body.velocity))
+    assert ends[0] == ends[1]

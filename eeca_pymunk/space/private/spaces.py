@@ -221,6 +221,12 @@ def timestamp(space: pymunk.Space) -> Callable[[], int]:
     return partial(lib.cpSpaceGetTimestamp, space._space)
 
 
+def set_time_step(space: pymunk.Space, dt: float) -> None:
+    """Set `space.current_time_step`, which is that of pymunk's last step, and with which its next one scales what it
+    has stored of impulses."""
+    lib.cpSpaceSetCurrentTimeStep(space._space, dt)
+
+
 def contents(space: pymunk.Space) -> tuple[int, int, int]:
     """Number of shapes ever added to the space; of shapes, and of bodies beside the static one, that are in it."""
     return lib.cpSpaceGetShapeIDCounter(space._space), len(space._shapes), len(space._bodies)
