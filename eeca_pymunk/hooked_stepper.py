@@ -127,13 +127,14 @@ class HookedStepper(PackedSpace):
                 self._raise_failure(world, dt, status)
             outcome = self._outcome(world, dt)
             hooks = world.hooks
-            alters = world.damping == 0.0 or hooks.moved > 0 or (world.collisions and world.rehearsal.after)
+            changed = hooks.moved > 0 or (world.collisions and world.rehearsal.after)
+            alters = changed or world.damping == 0.0
             bits, lost = self._alter_end(world, dt) if alters else (world.write_whole(), 0.0)
             if alters or status & FORCES or hooks.any_body or world.joints is not None:
                 world.reset_forces()
             status = status & EVENTS | bits
             self._write_hooked_end(world, dt, status)
-            if alters:
+            if changed:
                 # Changes by functions count as edits in the next step.
                 world.keep_unaltered()
         except BaseException:

@@ -8,9 +8,10 @@ import math
 from . import layout, transfer
 from .arrays import FloatArray, IntArray
 from .compiled import Table, kernel, nonallocating
+from .compiled.records import Rows
+from .model.shapes import HandledShape
 from .model.values import Reading, reading_of
 
-HANDLED_COLUMNS = 7
 NEAR_WAYS = 2.0  # pairs are near if they may meet within so many times their ways of this step
 SUPPORT_SHIFT = 1e-7  # part of its height by which a body is moved towards its support in a rehearsal
 
@@ -105,36 +106,52 @@ def accept_rounding(table: Table) -> None:
             end[i, 0], end[i, 1] = now[i, 0], now[i, 1]
 
 
-@kernel
-def any_near(STATES: FloatArray, ENDS: FloatArray, HANDLED: FloatArray, PAIRS: IntArray, dt: float, ways: float) -> int:
-    """Whether any of the PAIRS (p, 2) of rows of HANDLED comes near in a step of length dt, for which ENDS was written
-    by `place_for_rehearsal`: at the end of free flight, each body within `ways` times its way there.
-
-    HANDLED (m, HANDLED_COLUMNS): row of the body, -1 for static shapes; centre (2), half sides (2) and rounding of a
-    box that contains the shape; its radius at rest. Of shapes that move the box is a circle about the origin of the
-    body, whose centre and radius are written.
-    """
-    now, N = STATES[layout.READ], STATES.shape[1]
-    end = ENDS[layout.END * N :]
+@nonallocating
+def put_handled(R: Reading, HANDLED: Rows[HandledShape], dt: float) -> None:
+    """Put the boxes of shapes that move to the end of free flight after dt, which begins at the poses in ENDS."""
+    now, N = R.STATES[layout.READ], R.STATES.shape[1]
+    end = R.ENDS[layout.END * N :]
     for k in range(HANDLED.shape[0]):
-        i = int(HANDLED[k, 0])
-        if i >= 0:
-            x, y = end[6 * i] + dt * now[i, 3], end[6 * i + 1] + dt * now[i, 4]
-            way = math.hypot(x - now[i, 0], y - now[i, 1])
-            HANDLED[k, 1], HANDLED[k, 2], HANDLED[k, 5] = x, y, HANDLED[k, 6] + ways * way
+        box = HANDLED[k]
+        if box.body >= 0:
+            i = box.body
+            before, after = end[6 * i + 2], end[6 * i + 2] + dt * now[i, 5]
+            # Origin + R(before) cog: the centre of mass moves by dt v, and about it the box turns.
+            x, y = transfer.to_centre(R.EXTRA, i, before)
+            back_x, back_y = transfer.to_centre(R.EXTRA, i, after)
+            dx, dy = end[6 * i] + x - back_x + dt * now[i, 3], end[6 * i + 1] + y - back_y + dt * now[i, 4]
+            c, s = math.cos(after), math.sin(after)
+            box.at_x, box.at_y = dx + c * box.x - s * box.y, dy + s * box.x + c * box.y
+            box.cos, box.sin = math.cos(after + box.angle), math.sin(after + box.angle)
+            x, y = transfer.to_centre(R.EXTRA, i, now[i, 2])
+            way = math.hypot(dx + back_x - now[i, 0] - x, dy + back_y - now[i, 1] - y)
+            box.reach = box.rounding + NEAR_WAYS * (way + box.extent * abs(after - now[i, 2]))
+
+
+@nonallocating
+def box_distance(a: HandledShape, b: HandledShape) -> float:
+    """Distance of a box, without rounding, from the box with parallel sides that contains the other one; a bound of
+    their distance from below. Two boxes are apart if and only if this is > 0 in one of the two orders."""
+    dx, dy = b.at_x - a.at_x, b.at_y - a.at_y
+    c, s = abs(a.cos * b.cos + a.sin * b.sin), abs(a.cos * b.sin - a.sin * b.cos)
+    x = abs(a.cos * dx + a.sin * dy) - a.half_x - b.half_x * c - b.half_y * s
+    y = abs(a.cos * dy - a.sin * dx) - a.half_y - b.half_x * s - b.half_y * c
+    return math.hypot(max(x, 0.0), max(y, 0.0))
+
+
+@kernel
+def any_near(HANDLED: Rows[HandledShape], PAIRS: IntArray) -> int:
+    """Whether the boxes of any of the PAIRS (p, 2) of rows of HANDLED are within each other's reach."""
     for p in range(PAIRS.shape[0]):
-        a, b = PAIRS[p, 0], PAIRS[p, 1]
-        x = max(abs(HANDLED[a, 1] - HANDLED[b, 1]) - HANDLED[a, 3] - HANDLED[b, 3], 0.0)
-        y = max(abs(HANDLED[a, 2] - HANDLED[b, 2]) - HANDLED[a, 4] - HANDLED[b, 4], 0.0)
-        reach = HANDLED[a, 5] + HANDLED[b, 5]
-        if x * x + y * y <= reach * reach:
+        a, b = HANDLED[PAIRS[p, 0]], HANDLED[PAIRS[p, 1]]
+        if max(box_distance(a, b), box_distance(b, a)) <= a.reach + b.reach:
             return 1
     return 0
 
 
 @kernel
 def place_for_rehearsal(
-    table: Table, HANDLED: FloatArray, PAIRS: IntArray, dt: float, gx: float, gy: float, half_damping: float
+    table: Table, HANDLED: Rows[HandledShape], PAIRS: IntArray, dt: float, gx: float, gy: float, half_damping: float
 ) -> int:
     """`copy_read` to HOOKED[REHEARSAL_START]. Write to ENDS, to the table END with angles and spins, the poses from
     which a step of pymunk leads to the end of free flight. pymunk moves bodies before it accelerates them, so that they
@@ -149,8 +166,8 @@ def place_for_rehearsal(
     lowest one.
 
     Returns:
-        1 if one of PAIRS comes near (`any_near`), else 0; a negative code of `copy_read`, or OVERFLOW if a number at
-        the end is not finite.
+        1 if one of PAIRS is near at the end of free flight (`any_near`), else 0; a negative code of `copy_read`, or
+        OVERFLOW if a number at the end is not finite.
     """
     R = reading_of(table)
     status = copy_read(R, R.HOOKED[layout.REHEARSAL_START])
@@ -189,7 +206,8 @@ def place_for_rehearsal(
                 x, y = x - dx, y - dy
         end[6 * i], end[6 * i + 1], end[6 * i + 2] = x, y, angle
         end[6 * i + 3], end[6 * i + 4], end[6 * i + 5] = vx, vy, spin
-    return any_near(R.STATES, R.ENDS, HANDLED, PAIRS, dt, NEAR_WAYS)
+    put_handled(R, HANDLED, dt)
+    return any_near(HANDLED, PAIRS)
 
 
 @kernel

@@ -71,7 +71,7 @@ ENTRIES = {
     "transfer:forget_last_end": "{Reading}",
     "transfer:write_ends": "{Reading} i8",
     "transfer:write_stopped_ends": "{Reading} i8",
-    "rehearsing:place_for_rehearsal": "{Reading} f8[2] i8[2] f8 f8 f8 f8",
+    "rehearsing:place_for_rehearsal": "{Reading} HandledShape[1] i8[2] f8 f8 f8 f8",
     "rehearsing:copy_start": "{Reading}",
     "rehearsing:accept_rounding": "{Reading}",
     "rehearsing:alter_end": "{Reading} i8",

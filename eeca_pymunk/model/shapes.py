@@ -109,3 +109,21 @@ class Corner(Record):
     cosine: float  # of the angle to it
     sine: float
     thin: int  # of the first row of a shape: 1 if it is thin
+
+
+class HandledShape(Record):
+    """A box that contains a shape with collision handlers, where a rehearsal puts it. Lengths in those of the space."""
+
+    body: int  # row of STATES, -1 for static shapes, which have their place from the start
+    x: float  # its centre, in coordinates of the body
+    y: float
+    angle: float  # of its longer sides there
+    half_x: float  # half its sides
+    half_y: float
+    rounding: float  # radius of the shape, and a part of its size against round-off
+    extent: float  # largest distance of a point of the box from the centre of mass
+    at_x: float  # its centre, cosine and sine of its angle, in the space
+    at_y: float
+    cos: float
+    sin: float
+    reach: float  # `rounding`, and the ways within which it counts as near

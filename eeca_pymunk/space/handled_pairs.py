@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pymunk
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import IntArray
+from ..compiled.records import Rows, rows
 from ..layout import BODY_ROW
-from ..rehearsing import HANDLED_COLUMNS
+from ..model.shapes import HandledShape
 from .edits import type_changes
 from .private import arbiters as private_arbiters
 from .private import shapes as private_shapes
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from .world import World
 
 _MOST = 1024  # pairs; with more of them a test of all in each step saves no time
-_WIDER = 1.01  # factor on sizes of shapes, so that round-off hides no pair
+_WIDER = 0.01  # part of its size by which a box is wider than the shape, so that round-off hides no pair
 
 
 class HandledPairs:
@@ -34,7 +35,7 @@ class HandledPairs:
 
     Attributes:
         type_changes: `edits.type_changes` when the pairs were found.  handled: pairs of types with handlers then.
-        arrays: HANDLED (m, 7) and PAIRS (p, 2) of `rehearsing.any_near`; None if there are more than `_MOST` pairs, or
+        arrays: HANDLED (m,) and PAIRS (p, 2) of `rehearsing.any_near`; None if there are more than `_MOST` pairs, or
             a body is not in the space.
     """
 
@@ -43,12 +44,11 @@ class HandledPairs:
         self.handled = private_versions.handled(world.space)
         pairs = self._pairs(list(world.records))
         place = {shape: k for k, shape in enumerate(dict.fromkeys(shape for pair in pairs or () for shape in pair))}
-        rows = [_handled_row(world, shape) for shape in place]
-        self.arrays: tuple[FloatArray, IntArray] | None = None
-        if pairs is not None and None not in rows:
-            HANDLED: FloatArray = np.array(rows, float).reshape(-1, HANDLED_COLUMNS)
+        self.arrays: tuple[Rows[HandledShape], IntArray] | None = None
+        HANDLED = rows(HandledShape, len(place))
+        if pairs is not None and all(_put_box(HANDLED[k], world, shape) for shape, k in place.items()):
             # Static shapes do not meet each other, nor do those of one body.
-            body = [-1.0 if row is None else row[0] for row in rows]
+            body = HANDLED["body"].tolist()
             found = [(place[a], place[b]) for a, b in pairs if body[place[a]] != body[place[b]]]
             self.arrays = HANDLED, np.array(found, np.int64).reshape(-1, 2)
 
@@ -72,23 +72,29 @@ class HandledPairs:
         return any(one in (None, a) and two in (None, b) for a, b in found | swapped for one, two in self.handled)
 
 
-def _handled_row(world: World, shape: Any) -> tuple[float, ...] | None:
-    """The row of HANDLED of a shape, see `rehearsing.any_near`; None if its body is not in the space, or its kind is
-    unknown."""
+def _put_box(box: HandledShape, world: World, shape: Any) -> bool:
+    """Set the box of a shape; False if its body is not in the space, or its kind is unknown."""
     record = world.records[shape]
     if record is None or record.outside:
-        body, points, rounding = shape.body, private_shapes.outline(shape), shape.radius
+        body, points, radius = shape.body, private_shapes.outline(shape), shape.radius
     else:
-        body, points, rounding = record.body, record.vertices, record.numbers[0]
+        body, points, radius = record.body, record.vertices, record.numbers[0]
     row = world.bodies.row.get(body)
     if row is None or points is None:
-        return None
-    radius = _WIDER * rounding
+        return False
+    xs, ys = [x for x, _ in points], [y for _, y in points]
+    if len(points) == 2:
+        along = xs[1] - xs[0], ys[1] - ys[0]
+        box.angle, box.half_x = math.atan2(along[1], along[0]), 0.5 * math.hypot(*along)
+    else:
+        box.half_x, box.half_y = 0.5 * (max(xs) - min(xs)), 0.5 * (max(ys) - min(ys))
+    box.x, box.y = 0.5 * (max(xs) + min(xs)), 0.5 * (max(ys) + min(ys))
+    size, centre = math.hypot(box.half_x, box.half_y) + radius, body.center_of_gravity
+    box.rounding, box.extent = radius + _WIDER * size, math.hypot(box.x - centre.x, box.y - centre.y) + size
     if world.IDS[BODY_ROW, row] >= 0:
-        return row, 0.0, 0.0, 0.0, 0.0, 0.0, _WIDER * max([math.hypot(x, y) for x, y in points]) + radius
-    at, angle = body.position, body.angle
-    c, s = math.cos(angle), math.sin(angle)
-    xs, ys = [at.x + c * x - s * y for x, y in points], [at.y + s * x + c * y for x, y in points]
-    left, right, bottom, top = min(xs), max(xs), min(ys), max(ys)
-    middle = 0.5 * (left + right), 0.5 * (bottom + top)
-    return -1.0, *middle, 0.5 * (right - left), 0.5 * (top - bottom), radius, radius
+        box.body = row
+        return True
+    at, angle = body.local_to_world((box.x, box.y)), body.angle + box.angle
+    box.body, box.at_x, box.at_y, box.reach = -1, at.x, at.y, box.rounding
+    box.cos, box.sin = math.cos(angle), math.sin(angle)
+    return True

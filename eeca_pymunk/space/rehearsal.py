@@ -18,9 +18,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import IntArray
+from ..compiled.records import Rows, rows
 from ..layout import BEFORE_CALL, CHANGES_BEFORE, READ, REHEARSAL_START
-from ..rehearsing import HANDLED_COLUMNS, place_for_rehearsal, record_changes
+from ..model.shapes import HandledShape
+from ..rehearsing import place_for_rehearsal, record_changes
 from ..transfer import TURNS
 from .decisions import Decisions, Rules
 from .edits import type_changes
@@ -36,7 +38,7 @@ if TYPE_CHECKING:
 
 _MEMORY = 4  # steps for which pymunk may keep arbiters of pairs that have touched; silence is not tested before
 _SILENT = -1
-_NO_PAIRS: tuple[FloatArray, IntArray] = np.zeros((0, HANDLED_COLUMNS)), np.zeros((0, 2), np.int64)
+_NO_PAIRS: tuple[Rows[HandledShape], IntArray] = rows(HandledShape, 0), np.zeros((0, 2), np.int64)
 
 
 class Rehearsal:

@@ -7,13 +7,12 @@ import random
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
 import pymunk
 import pytest
 
 import eeca_pymunk as ep
-from eeca_pymunk.layout import END
-from eeca_pymunk.rehearsing import any_near
+from eeca_pymunk.rehearsing import place_for_rehearsal
+from eeca_pymunk.space.handled_pairs import HandledPairs
 from eeca_pymunk.space.rehearsal import Rehearsal
 from scenes.scene import add_disk
 
@@ -258,20 +257,63 @@ def test_what_may_be_heard_is_found_again_after_edits_of_sizes() -> None:
     assert told == ["0 1"]
 
 
-def test_pairs_are_near_within_twice_their_way() -> None:
-    """A disk of radius 1 on its way to a wall at x = 5, and to another disk."""
-    states, ends = np.zeros((2, 2, 9)), np.zeros(12 * 2)
-    heard = np.array([[-1, 5.0, 0.0, 0.0, 10.0, 0.5, 0.5], [0, 0, 0, 0, 0, 0, 1.0], [1, 0, 0, 0, 0, 0, 1.0]])
-    end = ends[END * 2 :]
-    for x, y, speed, pairs, near in (
-        (0.0, 0.0, 1.0, [[0, 1]], False),
-        (0.0, 0.0, 1.2, [[0, 1]], True),  # 1.2 + 2 * 1.2 > 5 - 1.5
-        (0.0, 30.0, 1.2, [[0, 1]], False),
-        (3.5, 0.0, 0.0, [[0, 1]], True),
-        (0.0, 0.0, 1.2, [], False),
-        (0.0, 0.0, 0.0, [[1, 2]], False),
-        (2.0, 1.0, 0.0, [[2, 1]], True),
-    ):
-        states[0, 0, :2], states[0, 0, 3], states[0, 1, :2] = (x, y), speed, (math.sqrt(4.5), math.sqrt(4.5))
-        end[:3], end[6:9] = (x, y, 0.0), (math.sqrt(4.5), math.sqrt(4.5), 0.0)
-        assert any_near(states, ends, heard.copy(), np.array(pairs, np.int64).reshape(-1, 2), 1.0, 2.0) == near
+def near_at_the_end(space: pymunk.Space, dt: float) -> bool:
+    """Whether a pair with handlers is near at the end of free flight over dt."""
+    world = ep.EECA(space)._world
+    assert world is not None
+    pairs = HandledPairs(world)
+    assert pairs.arrays is not None
+    place = place_for_rehearsal.bind(world.reading, *pairs.arrays)
+    world.gather()
+    return place(dt, 0.0, 0.0, 1.0) > 0
+
+
+def two_shapes(seed: int) -> tuple[pymunk.Space, list[str]]:
+    """Two shapes of random kinds on bodies that spin about centres of mass elsewhere, one of which may be static; and a
+    list that gets an item when they meet."""
+    chance, space, met = random.Random(seed), pymunk.Space(), []
+
+    def point(size: float) -> tuple[float, float]:
+        return chance.uniform(-size, size), chance.uniform(-size, size)
+
+    for k in range(2):
+        body = pymunk.Body(1.0, 1.0) if k == 0 or seed % 3 else pymunk.Body(body_type=pymunk.Body.STATIC)
+        body.center_of_gravity, body.angle, body.position = point(1.0), chance.uniform(-3.0, 3.0), point(4.0)
+        if body.body_type == pymunk.Body.DYNAMIC:
+            body.velocity, body.angular_velocity = point(1.0), chance.uniform(-1.0, 1.0)
+        kind, radius = chance.randrange(3), chance.choice((0.0, 0.3))
+        shape: pymunk.Shape = (
+            pymunk.Circle(body, 0.5 + radius, point(1.0)),
+            pymunk.Segment(body, point(2.0), point(2.0), radius),
+            pymunk.Poly(body, [(-1.0, -0.1), (1.5, -0.1), (1.5, 0.2), (-1.0, 0.2)], radius=radius),
+        )[kind]
+        space.add(body, shape)
+    space.on_collision(None, None, begin=lambda *_: met.append("begin"))
+    return space, met
+
+
+@pytest.mark.parametrize("dt", [0.01, 0.3, 1.0])
+def test_every_pair_that_overlaps_at_the_end_of_free_flight_is_near(dt: float) -> None:
+    overlapping = apart = 0
+    for seed in range(400):
+        space, met = two_shapes(seed)
+        near = near_at_the_end(space, dt)
+        space.step(dt)  # pymunk's, which moves the bodies, and then finds the pairs that overlap
+        overlapping, apart = overlapping + len(met), apart + (not near)
+        assert near or not met, seed
+    assert min(overlapping, apart) > 20
+
+
+@pytest.mark.parametrize(("gap", "near"), [(0.021, False), (0.019, True)])
+def test_pairs_are_near_within_twice_their_ways(gap: float, near: bool) -> None:
+    """A rod of length 10 that moves .01 along its normal towards another one at rest, both at 45 degrees: far within
+    the circles and the upright boxes around them."""
+    space = pymunk.Space()
+    for k in range(2):
+        body = pymunk.Body(1.0, 1.0)
+        body.angle = 0.25 * math.pi
+        body.position = k * pymunk.Vec2d(0.0, 0.2 + 0.01 + gap + 2.0 * 0.01 * 5.1).rotated(body.angle)
+        body.velocity = (1 - k) * pymunk.Vec2d(0.0, 1.0).rotated(body.angle)
+        space.add(body, pymunk.Segment(body, (-5.0, 0.0), (5.0, 0.0), 0.1))
+    space.on_collision(None, None, begin=lambda *_: None)
+    assert near_at_the_end(space, 0.01) is near
