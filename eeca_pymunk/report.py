@@ -56,7 +56,7 @@ class Details(NamedTuple):
     friction: FloatArray | None = None
 
 
-# How a step was solved: its seven ledger entries (`energy.ledger`; None if the stepper has none), the factor of the
+# How a step was solved: its book (`energy.ledger`; None if the stepper has none), the factor of the
 # energy lock farthest from 1, whether all budgets and tolerances were met, and the number of iterations of the solver.
 Outcome: TypeAlias = tuple[list[float] | None, float, bool, int]
 

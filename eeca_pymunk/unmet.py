@@ -25,7 +25,7 @@ class Unmet(NamedTuple):
         "impacts": number of impacts on a body in a step. Further ones are ignored and may penetrate.
         "hits": number of impacts on an island. Further ones are ignored until the next step and may penetrate.
         "impact": residual velocity of a simultaneous impact, length/time.
-        "solves": work of the step, as the number of bodies in all its solves. The step ends early.
+        "solves": work of the events of the step, in looks (see the glossary). The step ends early.
         "contacts": residual velocity of the persistent contacts of an island of up to 40 contacts, length/time; nan if
             bodies are jointed.
         "joints": status of the solve of jointed bodies.

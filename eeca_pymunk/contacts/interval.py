@@ -167,7 +167,7 @@ def step_island(
         SCENE: its shapes, vertices, rules, scratch of the geometry, memory of forces.  ISLE: its bodies and pairs.
         CONTACTS: out, its rows, impulses, velocities, report.
         n: number of bodies that impulses move; the others keep their velocities.
-        most: largest number of sweeps of a moving island.
+        most: largest number of sweeps of a large moving island, or while direct solves are suspended.
         least: length that each body's points may move at least; 0 to use their velocities alone.
         owed: energy >= 0 that the island has to lose at least.
         rest_speed: speed relative to |a| h below which the island is tested for static forces (`find_rest`); 0 for no

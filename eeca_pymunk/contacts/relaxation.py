@@ -1,4 +1,4 @@
-"""The bounded solve of an island: sweeps while it moves; sweeps and direct solves in turn while it is near rest.
+"""The bounded solve of an island: sweeps alone in large moving islands; else sweeps and direct solves in turn.
 
 Sweeps pass a stack's weight to its floor slowly; a direct solve does it at once, as soon as sweeps have found the
 active contacts. In disordered moving piles these change with every step, and sweeps alone cost less. Where neither
@@ -34,7 +34,7 @@ def relax(
 
     Args:
         FREE: (k, 3) velocities without impulses.
-        rounds: largest number of direct solves; 0 for a moving island.
+        rounds: largest number of direct solves; 0 for a large moving island.
         fine: change of velocity in a sweep at which the solve ends.
         coarse: that with which a moving island is content, or one near rest after a direct solve.
         STATE: of the island, changed.

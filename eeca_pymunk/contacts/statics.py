@@ -7,9 +7,10 @@ others hold it from then on,
 
     v / N + h a + M^-1 (G^T lam + T^T beta) = 0   and   h a + M^-1 (G^T lam + T^T beta) = 0.
 
-Bodies below REST_CANDIDATE |a| h are tested, and N of a body grows with its speed, so that it stops no farther than
-REST_CANDIDATE |a| h^2 / 2 from where it would be. Faster bodies, up to IMPACT_SPEED |a| h below which contacts persist,
-may only be frozen: the first equilibrium ends their motion, and the next solve shows whether they stay.
+Bodies below REST_CANDIDATE |a| h are tested, and N of a body is at most REST_CANDIDATE |a| h / |v|, so that it stops no
+farther than REST_CANDIDATE |a| h^2 / 2 from where it would be. Faster bodies, up to IMPACT_SPEED |a| h below which
+contacts persist, may only be frozen: the first equilibrium ends their motion, and the next solve shows whether they
+stay.
 """
 
 from __future__ import annotations

@@ -36,17 +36,14 @@ _ROOM = 64  # contacts that an impact on joints may add, at least
 
 
 @inlined
-def met_too_often(A: Scene, i: int, j: int) -> bool:
-    """Whether one of bodies i and j has had as many impacts as a step allows: COUNT.limit; or RESOLUTION if one of the
-    two is a body without mobility that is not the ground, and such bodies may squeeze others (`Count.closing`)."""
-    limit = A.COUNT.limit
-    if A.STATE[i].events >= limit or A.STATE[j].events >= limit:
-        return True
+def most_impacts(A: Scene, i: int, j: int) -> int:
+    """Number of impacts that a step allows bodies i and j each: COUNT.limit; or RESOLUTION if one of the two is a body
+    without mobility that is not the ground, and such bodies may squeeze others (`Count.closing`)."""
     if A.COUNT.closing == 0:
-        return False
+        return A.COUNT.limit
     ground = A.BODY.shape[0] - 1
     carried = (A.BODY[i].inv_mass == 0.0 and i != ground) or (A.BODY[j].inv_mass == 0.0 and j != ground)
-    return carried and max(A.STATE[i].events, A.STATE[j].events) >= RESOLUTION
+    return min(A.COUNT.limit, RESOLUTION) if carried else A.COUNT.limit
 
 
 @nonallocating
@@ -97,8 +94,9 @@ def run_events(A: Scene, may_persist: bool, most: float) -> int:
         if o < 0 or STATE[j].version != STATE[i].known:
             one = i
             continue
-        if met_too_often(A, i, j):
-            note_unmet(A, IMPACTS, s, o, float(max(STATE[i].events, STATE[j].events)), float(COUNT.limit))
+        impacts, allowed = max(STATE[i].events, STATE[j].events), most_impacts(A, i, j)
+        if impacts >= allowed:
+            note_unmet(A, IMPACTS, s, o, float(impacts), float(allowed))
             mark_pair(A, s, o, 1)
             one = i
             continue

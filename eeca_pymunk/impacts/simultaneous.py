@@ -194,7 +194,7 @@ def make_block(A: Scene, n: int, m: int, PAIRS: IntArray, hit: int, lasts: bool,
             place_row(row, found[c, 2], found[c, 3], POSE, IMS, IIS)
             u = normal_rate(row, V)
             if e < 1.0 and hardly_bounces(e, u, load * A.PAR.dt / row.k_n):
-                # The contact persists: its bounce would end within the step.
+                # The contact persists: its bounce would end within a time dt.
                 row.elasticity = 0.0
             POINTS[rows, 0], POINTS[rows, 1] = found[c, 2], found[c, 3]
             rows += 1

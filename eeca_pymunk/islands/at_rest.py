@@ -165,7 +165,7 @@ def wake_changed(A: Scene) -> None:
 
     part                    reads                              sets
     mark_changed_contacts   rest of kinematic bodies, rules    rest of roots: CHANGED
-    wake_supported          rest of roots                      rest of the roots below: CHANGED
+    wake_supported          rest of roots                      rest of the roots that these support: CHANGED
     renew_contacts          rest of roots                      which contacts remain, with their impulses of this step
     restart_paths           rest of roots and bodies           rest timers, accelerations, path versions
     dissolve_islands        rest of roots                      islands, rest of their bodies: AWAKE

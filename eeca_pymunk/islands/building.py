@@ -156,9 +156,10 @@ def build_islands(A: Scene) -> int:
 def persists_from(A: Scene, a: int, b: int, t: float) -> bool:
     """Whether the contact of shapes a and b, which meet at instant t, persists from then on.
 
-    e < 1: all bounces of e |u| under the closing acceleration a_n end within the step, 2 e |u| <= a_n (1 - e) (dt - t);
-    or a body had n >= RESOLUTION impacts in the step, or e^n <= 1/RESOLUTION if no force or gravity acts on any body.
-    e = 1: as `membership.persists`, if |a| > 0; or a body had n >= RESOLUTION impacts, and either a_n > 0 and |u| <
+    e < 1: all bounces of e |u| under the acceleration a_n of the gap end within the step, 2 e |u| <= -a_n (1 - e)
+    (dt - t); or a body had n >= RESOLUTION impacts in the step, or e^n <= 1/RESOLUTION if no force or gravity acts on
+    any body.
+    e = 1: as `membership.persists`, if |a| > 0; or a body had n >= RESOLUTION impacts, and either a_n < 0 and |u| <
     |a| dt / RESOLUTION, or a body is in an island with joints and n would exceed COUNT.limit at the end of the step.
     """
     i, j = A.LINK[a].owner, A.LINK[b].owner

@@ -144,41 +144,44 @@ def interval_length(A: Scene, found: IntArray, t: float) -> float:
 
 
 @nonallocating
+def way_rate(A: Scene, a: int, b: int, vx: float, vy: float, spin_a: float, spin_b: float) -> float:
+    """1/(time in which the bodies of shapes a and b, with relative velocity v and these spins, move relative to each
+    other by INTERVAL_WAY of the size of the smaller one, or one that is not a disk there rotates by that angle)."""
+    rate = norm(vx, vy) / smaller(A, a, b)
+    if A.LINK[a].vertices > 1:
+        rate = max(rate, abs(spin_a))
+    if A.LINK[b].vertices > 1:
+        rate = max(rate, abs(spin_b))
+    return rate / intervals.INTERVAL_WAY
+
+
+@nonallocating
 def interval_within_way(A: Scene, found: IntArray, h: float) -> float:
-    """The part of an interval h in which bodies of the pairs `found` move relative to each other by at most
-    INTERVAL_WAY of the size of the smaller one, and rotate by at most that angle, at their present velocities."""
-    BODY, LINK, rate = A.BODY, A.LINK, 0.0
+    """The part of an interval h in which bodies of the pairs `found` move by no more than `way_rate` allows, at their
+    present velocities."""
+    rate = 0.0
     for c in range(found.shape[0]):
-        i, j = LINK[found[c, 0]].owner, LINK[found[c, 1]].owner
-        small = smaller(A, found[c, 0], found[c, 1])
-        way = norm(BODY[j].vx - BODY[i].vx, BODY[j].vy - BODY[i].vy)
-        rate = max(rate, way / (intervals.INTERVAL_WAY * small))
-        for s in (found[c, 0], found[c, 1]):
-            if LINK[s].vertices > 1:
-                rate = max(rate, abs(BODY[LINK[s].owner].spin) / intervals.INTERVAL_WAY)
+        a, b = found[c, 0], found[c, 1]
+        one, two = A.BODY[A.LINK[a].owner], A.BODY[A.LINK[b].owner]
+        rate = max(rate, way_rate(A, a, b, two.vx - one.vx, two.vy - one.vy, one.spin, two.spin))
     return h if rate * h <= 1.0 else 1.0 / rate
 
 
 @nonallocating
 def excess_way(A: Scene, ROWS: Rows[Row], V: FloatArray, VN: FloatArray, m: int, h: float) -> float:
-    """How many times too long a solved interval h of m contacts is: the largest ratio of relative motion to the limit
-    of `interval_within_way`.
+    """How many times longer a solved interval h of m contacts is than `way_rate` allows at its mean velocities.
 
     Args:
         ROWS: of the contacts.  V, VN: (k, 3) velocities at the start and the end.
     """
-    far = 0.0
+    rate = 0.0
     for z in range(m):
         p, q = ROWS[z].a, ROWS[z].b
         a, b = shapes_of(A, ROWS[z])
-        small = smaller(A, a, b)
         x = V[q, 0] + VN[q, 0] - V[p, 0] - VN[p, 0]
         y = V[q, 1] + VN[q, 1] - V[p, 1] - VN[p, 1]
-        far = max(far, 0.5 * h * norm(x, y) / (intervals.INTERVAL_WAY * small))
-        if A.LINK[a].vertices > 1 or A.LINK[b].vertices > 1:
-            turn = max(abs(V[p, 2] + VN[p, 2]), abs(V[q, 2] + VN[q, 2]))
-            far = max(far, 0.5 * h * turn / intervals.INTERVAL_WAY)
-    return far
+        rate = max(rate, way_rate(A, a, b, x, y, V[p, 2] + VN[p, 2], V[q, 2] + VN[q, 2]))
+    return 0.5 * h * rate
 
 
 @kernel

@@ -131,6 +131,7 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
         if stuck < h:
             # The interval ends where slip ends, as the law of friction changes there.
             h = min(max(stuck, shortest), h)
+            count_solve(A, n, p, m, OUT[0])
             m = step_island(A, isle, contacts, n, h, sweeps, least, owed, 0.0)
         far = 0.0
         if not last and OUT[0].at_rest == 0:

@@ -181,7 +181,7 @@ def approach(A: Scene, a: int, b: int, t: float) -> tuple[float, float, float, f
 def persists(A: Scene, a: int, b: int, t: float, lossy: bool) -> bool:
     """Whether the contact of shapes a and b, whose bodies are at instant t, persists to the end of the step.
 
-    e < 1: its bounce e |u| is below half of P = max(a_n h, A_nn f h), with the load f that it carried; and it touches
+    e < 1: its bounce e |u| is below half of P = max(-a_n h, A_nn f h), with the load f that it carried; and it touches
     with u <= P, or carried a force and closes again. e = 1, unless the contact is `lossy`: it touches with almost no
     speed, and a contact with a body without mobility is pressed together, perhaps by joints or other contacts.
     """

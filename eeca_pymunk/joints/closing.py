@@ -131,7 +131,7 @@ def keep_closed(W: Workspace) -> None:
 @nonallocating
 def close_joints(W: Workspace, h: float, ledger: JointLedger) -> bool:
     """Close joints that are apart by the share of one step, and make velocities fit them after an edit. The costs enter
-    the ledger of the step. Returns whether only steps have left joints apart."""
+    the ledger of the step. Returns whether no edit has left joints apart."""
     local = W.J.LOCAL
     stored = springs_of(W)
     edited, apart, own = find_apart(W, h)

@@ -3,9 +3,10 @@
 The five parts of Suzuki's composition, of lengths s_k h at the instants t_k, repeat from step to step. With the
 midpoint rule the rates r_k = G v of the rows at the start of part k alternate, r_{k+1} = s_k^2 f(t_k) - r_k with a
 smooth f: positions satisfy the joints, velocities to second order. So accelerations by joints are smooth in t_k except
-for (r_{k+1} - r_k)/s_k and a term in s_k^2, and
+for (r_{k+1} - r_k)/s_k and a term in s_k^2. That difference is the one of p_k, the solution for f = 1/2, and a multiple
+of the homogeneous solution (-1)^k:
 
-    1, t, t^2, s^2, (-1)^k / s, (c_k - 2 r_k)/s_k with c_k = s_k^2/2, r_{k+1} = c_k - r_k
+    1, t, t^2, s^2, (-1)^k / s, (p_{k+1} - p_k)/s_k with p_{k+1} = s_k^2/2 - p_k
 
 are six functions that six parts determine. WEIGHTS[p] extrapolates each of them to part p exactly, from the last part
 to the sixth last; likewise impulses over the lengths of their parts. Newton's method then begins with errors smaller by

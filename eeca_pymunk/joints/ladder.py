@@ -108,7 +108,8 @@ def repaid(W: Workspace, own: bool) -> bool:
     steps.
     """
     part = W.J.PART
-    gain = part.closed - (0.0 if own else max(part.limited, 0.0))  # a limit in such a step loses as much more
+    # What limits lose pays for round-off of joints that hold.
+    gain = part.closed - (0.0 if own else max(part.limited, 0.0))
     if not gain > 0.0 or not supports_rest(W.J.LOCAL, W.bodies):
         return True
     had = kinetic_of_component(W.J.LOCAL, W.bodies, SAVED)

@@ -201,7 +201,7 @@ def step_with_limits(
 
     Args:
         linear: whether by linear systems, which pass limits.  length: size of the component.
-        loops: whether rows may be redundant.  give: compliance over h², see `..newton.systems`.
+        loops: whether rows are redundant and begin without impulses.  give: compliance over h², see `..newton.systems`.
         whole: whether the step must not meet any limit: False if it would.  ledger: energies are added to it.
     """
     S, component = W.J.PARTS, W.J.COMPONENT[W.s]

@@ -59,8 +59,8 @@ def take_gain(W: Workspace, h: float, status: int, before: float) -> int:
     """Close the ledger of an ELASTIC or LINEAR step, and take its gain from the motion; returns the status. If that is
     not enough, or joints are farther apart than `before`, all bodies move as one.
 
-    Joints that close within a short h make bodies fast. That gain, and what remains of it, the work on the way, are
-    compared with the kinetic energies before and after.
+    Joints that close within a short h make bodies fast, and the lock then takes most of this. Compared with the kinetic
+    energies before and after are both the gain, and what is left of it: the work done on the way.
     """
     local, part, stopped = W.J.LOCAL, W.J.PART, False
     close_ledger(local, W.bodies, part)

@@ -33,7 +33,7 @@ class BodyStep(Record):
     lever: float  # levers over r_m
     turned: float  # angle turned
     per: float  # turned/chi, its derivative by chi
-    bend: float
+    bend: float  # derivative of `per` by chi
     impulse: Annotated[FloatArray, 3]  # of the joints
     lead: Annotated[FloatArray, 3]  # acceleration by joints that Newton's method begins with
     inertia: Annotated[FloatArray, 3]  # diagonal of the bodies' part of a dual system, scaled; factored, the reciprocal
@@ -62,10 +62,10 @@ class JointStep(Record):
     ended: float  # and at the end
     lam: Annotated[FloatArray, 2]  # impulse along the rows, of springs their own
     target: Annotated[FloatArray, 2]  # what the functions g shall be at the end; of bounded joints: the speed
-    scale: Annotated[FloatArray, 2]  # 1/sqrt of the diagonal of G M^-1 G^T
-    bound: float  # max_force of a bounded joint
+    scale: Annotated[FloatArray, 2]  # 1/sqrt of the diagonal of J M^-1 J^T
+    bound: float  # largest force of a bounded joint: max_force, or that of a stalled motor (`..joints.start`)
     size: float  # unit of g: length of the component, or 1 for angles
-    measure: float  # what limits bound, at the end: length, angle, place along a groove
+    measure: float  # of limits what they bound, at the end: length, angle, place in a groove; of springs the mean force
     total: Annotated[FloatArray, 2]  # impulse over all parts of the step
     pushed: Annotated[FloatArray, 2]  # impulse of a correction
     value: Annotated[FloatArray, 2]  # g at the end of the present iterate

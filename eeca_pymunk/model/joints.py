@@ -91,7 +91,7 @@ class Component(Record):
     dual_band: int
     dual_rows: int  # of its rows those that act, in the last factors
     rigid: int  # what a dual system is taken for: 2 everything, 1 what happens at an instant, 0 nothing
-    taut: int  # 1 if its loops held by their pull in the last step (`..joints.taut`)
+    taut: int  # 1 if impulses of the last step pull so hard that this one begins with them (`..joints.taut`)
     boxes: int  # most rows of bounded impulses that may act, if few enough for `..newton.boxes`; else 0
     factored: int  # 1 if the matrix holds factors of an earlier part of the present step
     parts: int  # parts of the last solution from the present start that are known (`..joints.parts`)
@@ -192,7 +192,7 @@ class Joints(NamedTuple):
     TALLY: Tally
 
 
-# What steps change.
+# What a return to an earlier step restores; the rest is scratch that each step writes first.
 OF_JOINTS = ("JOINT", "HINGE", "LOCAL", "STIFF", "PROGRESS", "PARTS", "PART", "PIVOTS", "KEPT", "STEPPED", "TALLY")
 
 joints_of = Opener(Joints)

@@ -35,7 +35,7 @@ class Count(Record):
 
     heap: int  # rows of the heap in use
     logged: int  # rows of LOG in use
-    blocks: int  # number of simultaneous impacts of several contacts
+    blocks: int  # number of simultaneous impacts of several pairs of shapes
     predictions: int  # number of predictions in the step
     limit: int  # impacts that a body may have in a step
     unmet: int  # number of budgets and tolerances that the step has not met
@@ -75,8 +75,8 @@ KINDS = (
     "hits",  # on an island in a step: later ones are left for the next step
     "impact",  # velocity that the impulses of an impact leave
     "solves",  # work of all events and solves: the step ends before its time
-    "contacts",  # of joints: their solve
-    "joints",  # their iteration
+    "contacts",  # velocity that contacts of an interval leave; nan with joints
+    "joints",  # status of the solve of a component
 )
 IMPACTS, HITS, IMPACT, SOLVES, CONTACTS, JOINTS = 0, 1, 2, 3, 4, 5
 

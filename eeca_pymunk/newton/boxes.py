@@ -14,7 +14,7 @@ MORE has, with N unknowns of the component, one after the other:
 
     scratch of a dual system
     n columns and a right side (N each): the scaled changes of all unknowns by unit impulses
-    from number w:   w (n, n), factors (n, n)
+    from number w:   w (n, n), factors (n (2 n - 1),)
     from number u:   seven arrays (n,): u; the impulses; their least, their largest values; SINGLE or the place in a
                      disc (`..rows.bounded`); steps; 1 for impulses inside their bounds
 """

@@ -1,7 +1,7 @@
 """Entries of one joint in the linear system of its component: rows, columns, stiffness, all scaled (see `systems`).
 
 Entries are scaled by the `root` of a body's direction and by the `scale` of a row, so that the bodies' part of the
-matrix is 1 but for stiffness, and the diagonal of G M^-1 G^T is 1. `matrix` is banded: A[i, j] stands at i (3 band + 1)
+matrix is 1 but for stiffness, and the diagonal of J M^-1 J^T is 1. `matrix` is banded: A[i, j] stands at i (3 band + 1)
 + j - i + band in a whole system (`banded`), at i (2 band + 1) + j - i + band in the others (`condensed`).
 """
 

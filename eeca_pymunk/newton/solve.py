@@ -81,9 +81,9 @@ def iterate(W: Workspace, what: int, system: int, passes: int, boxes: int, h: fl
 def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bool:
     """Solve the implicit step h of a component of size `length` from the present `lam` and `lead`, for v1 and `lam`.
 
-    At convergence g is within 3e-16 of that size (or at round-off) of its targets, or within PROGRESS.near if that is
-    more, and the balance of momentum holds to round-off. False if there is none after 25 iterations, after more than 6
-    in which the error did not fall, or beyond PROGRESS.limit. The factors of an iteration:
+    At convergence g is within JOINT_TOLERANCE of that size (or at round-off) of its targets, or within PROGRESS.near if
+    that is more, and the balance of momentum holds to round-off. False if there is none after NEWTON_ITERATIONS, after
+    more than 6 in which the error did not fall, or beyond PROGRESS.limit. The factors of an iteration:
 
     | state | `lasting`, `ready` | factors | next |
     |---|---|---|---|

@@ -6,7 +6,7 @@ Unknowns: velocities v1 of the bodies and impulses lam of the rows, the way bein
     M (v1 - v0) = h M a + F(x) + J(x)^T lam,      g(x) = target,
 
 with a the accelerations without joints, F the impulses of springs. Newton's equations for the changes of v1 and lam are
-scaled by sqrt(M) and by the diagonal of G M^-1 G^T, and those of rows by 2/h, as g changes by (h/2) G per change of v1.
+scaled by sqrt(M) and by the diagonal of J M^-1 J^T, and those of rows by 2/h, as g changes by (h/2) G per change of v1.
 `give` > 0 makes rows elastic: g - target + (give h / 2 scale^2) lam = 0. Bounded rows follow Alart and Curnier: with
 p = lam - u/A, A = 1/scale^2, either |p| <= bound and u = 0, or lam = bound p/|p|.
 

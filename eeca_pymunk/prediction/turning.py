@@ -5,7 +5,7 @@ Shapes are apart if they are apart along some axis. Each axis gives an instant b
 with the vertices of both shapes; and the normals of the edges of a and of b along which they are farthest apart, which
 rotate with their bodies, with the vertices of the other shape.
 
-Shapes meet if, along every axis on which the gap is closed, a point approaches.
+Shapes meet if, along each of these axes some point touches and approaches.
 
 A look is one evaluation of the gap in a search.
 

@@ -78,7 +78,7 @@ def lawful(problem: JointedProblem, L: FloatArray, V: FloatArray, i: int) -> tup
     lam0, beta0, ann = L[i, 0], L[i, 1], ROWS[i].a_nn
     short = normal_rate(ROWS[i], V) - ROWS[i].target
     if ROWS[i].wake < np.inf:
-        if short + ROWS[i].target - lam0 * ann < ROWS[i].wake:
+        if short + ROWS[i].target - lam0 * ann - beta0 * ROWS[i].a_nt < ROWS[i].wake:
             ROWS[i].wake = np.inf
         else:
             short = np.inf
@@ -155,8 +155,9 @@ def work_of_sweep(problem: JointedProblem) -> float:
 
 @nonallocating
 def sweep_jointed(problem: JointedProblem, L: FloatArray, V: FloatArray) -> float:
-    """One sweep over the contacts as `sweeps.sweep_free`, and over the bounded rows, whose impulses are L[m:, 0];
-    returns the largest change of a velocity."""
+    """One sweep over the contacts as `sweeps.sweep_free`, but that a contact which sticks stays closed where friction
+    alone could open it; and over the bounded rows, whose impulses are L[m:, 0]. Returns the largest change of a
+    velocity."""
     ROWS, C, m = problem.ROWS, problem.C, problem.m
     C.WORK[0] += work_of_sweep(problem)
     worst = 0.0

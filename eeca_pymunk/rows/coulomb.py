@@ -72,12 +72,7 @@ def coulomb(
             root = math.sqrt(max(p * p - 4.0 * s * c, 0.0))
             most = -2.0 * c / (p + root) if p > 0.0 else (root - p) / (2.0 * s)
             beta = sign * min(T, max(most, 0.0))
-            lam = -(qn + ant * beta) / ann
-            if lam < 0.0:
-                return 0.0, 0.0
-            if abs(beta) > mu * lam:
-                lam = -qn / (ann + sign * mu * ant)
-                beta = sign * mu * lam
+            lam = max(-(qn + ant * beta) / ann, 0.0)  # linear in T between two values >= 0, as mu lam - T is
     return lam, beta
 
 

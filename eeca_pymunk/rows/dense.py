@@ -16,7 +16,7 @@ from ..model.contacts import AnyProblem, JointedProblem, Problem, Row
 from ..model.parameters.impulses import PROXIMAL_DENSE
 from ..model.parameters.joints import COLUMN_PROXIMAL, MATRIX_WORK
 from .bounded import bounded_rate
-from .build import normal_rate, tangent_rate
+from .build import normal_rate, slip_rate, tangent_rate
 from .coulomb import lossless_slip
 from .polish import clamp, classify
 from .sweeps import velocities
@@ -129,7 +129,7 @@ def matrix_jointed(
             elif kind[i] == 0:
                 W[i, j] = normal_rate(ROWS[z], V)
             else:
-                W[i, j] = tangent_rate(ROWS[z], V) - ROWS[z].surface
+                W[i, j] = slip_rate(ROWS[z], V)
         for w in range(first, last):
             for k in range(3):
                 V[BODY[w], k] = 0.0

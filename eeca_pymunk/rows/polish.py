@@ -16,7 +16,7 @@ from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import AnyProblem, Problem, Row
 from ..model.parameters.impulses import FACE_LINE
-from .build import normal_rate, push_contact, tangent_rate
+from .build import normal_rate, push_contact, slip_rate, tangent_rate
 from .cholesky import assemble_blocks, factor_blocks, make_factor, roots_of, solve_blocks
 from .coulomb import lossless_slip
 from .sweeps import velocities
@@ -147,7 +147,7 @@ def polish_free(
                 continue
             L[i, 0] += R * ROWS[i].k_n * (r[i, 0] - normal_rate(ROWS[i], dv))
             if stuck[i] != 0:
-                L[i, 1] += R * ROWS[i].k_t * (r[i, 1] - tangent_rate(ROWS[i], dv) + ROWS[i].surface)
+                L[i, 1] += R * ROWS[i].k_t * (r[i, 1] - slip_rate(ROWS[i], dv))
                 if stuck[i] == 2 and L[i, 1] != 0.0:
                     rest[i] = lossless_slip(ROWS[i], L[i, 0], L[i, 1])
             else:

@@ -28,7 +28,8 @@ def sweep_free(problem: Problem, L: FloatArray, V: FloatArray) -> float:
         dy = V[b, 1] - V[a, 1]
         short = nx * dx + ny * dy + (nb * V[b, 2] - na * V[a, 2]) - ROWS[i].target  # u_n - b
         if ROWS[i].wake < np.inf:
-            if short + ROWS[i].target - lam0 * ann < ROWS[i].wake:
+            # u_n without its own impulse
+            if short + ROWS[i].target - lam0 * ann - beta0 * ROWS[i].a_nt < ROWS[i].wake:
                 ROWS[i].wake = np.inf
             else:
                 short = np.inf

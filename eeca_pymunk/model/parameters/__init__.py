@@ -1,8 +1,8 @@
-"""All numbers that results or costs of a compiled step depend on, with kind, scale and effect (`record.Parameter`).
+"""The numbers chosen for results or costs of a compiled step, with kind, scale and effect (`record.Parameter`).
 
 In: nothing. Out: plain numbers, which kernels import by name and the compiler treats as constants; `table()` for docs
-and ablations. Open `rest.py` first. Sizes of memory and statuses are no parameters and are defined where they are used;
-`Dashpot` and the baselines have their parameters in their own files.
+and ablations. Open `rest.py` first. Guards against round-off, sizes of memory and statuses are no parameters and stand
+where they are used; `Dashpot` and the baselines have their parameters in their own files.
 """
 
 from __future__ import annotations

@@ -35,7 +35,8 @@ INTERVAL_DEPTH_LEAST = heuristic(0.0001, "of the smaller shape",
     "touch within it are on the side that they remember.")
 INTERVAL_RETRY = heuristic(1.5, "ratio",
     "Excess of a displacement, rotation or depth over its limit from which on an interval is solved again, shorter.")
-SMALL_SWEEPS = work(40, "sweeps", "Sweeps of a small island that moves, and of an impact on a large one.")
+SMALL_SWEEPS = work(40, "sweeps",
+    "Sweeps of an impact on a pile before its direct solves, and of a small island that waits for its next one.")
 UNSOLVED_PART = work(4.0, "ratio",
     "Factor by which an interval with joints becomes shorter, at most, where its contacts are not solved.")
 UNSOLVED_DEPTH = heuristic(0.1, "of what an interval allows",
@@ -55,7 +56,7 @@ INTERVAL_RESIDUAL_SPEED = accuracy(0.0001, "of its speed",
     "The same, relative to its speed; and of impacts on it, relative to the approach speed.")
 DIRECT = work(20, "direct solutions", "Direct solutions of an island near rest, or elastic, at most.")
 DIRECT_MOVING = work(6, "direct solutions",
-    "Direct solutions of a moving island of few contacts, or of a hit on a pile, at most.")
+    "Direct solutions of a moving island of few bodies, or of a hit on a pile, at most.")
 FIRST_SWEEPS = work(4, "sweeps", "Sweeps of an island before its first direct solution.")
 SWEEPS_AFTER = work(4, "sweeps", "Sweeps of an island after each direct solution.")
 BACKOFF_CONTACTS = work(40, "contacts",

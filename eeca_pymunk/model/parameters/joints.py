@@ -34,7 +34,7 @@ LIMIT_SECANTS_HASTE = work(2, "iterations", "Secant steps to that instant after 
 LIMIT_SOLVES = work(8, "number", "Linear solves that release limits which pull, at most.")
 LOCK_ITERATIONS = work(8, "iterations", "Fixed-point iterations of the mean arms in the energy lock.")
 CONDENSE_BAND = work(14, "half-width of the band",
-    "Half-width from which on the system of a component is condensed to its bodies.")
+    "Half-width above which the system of a component is condensed to its bodies.")
 RESPONSE_PASSES = work(2, "number", "Refinements of the response of a component.")
 JOINT_TOLERANCE = round_off(3e-16, "of the component", "Error of joints and momenta at which Newton iterations end.")
 JOINT_ROUND_OFF = round_off(3e-14, "of the component", "An error below it that no longer halves is round-off.")
@@ -51,14 +51,14 @@ REDUNDANT_MOST = work(0.01, "of the diagonal",
     "slow, as with a load on bodies thousands of times lighter, a step is tried again with REDUNDANT_EPSILON.")
 CLOSING_EPSILON = round_off(1e-05, "of the diagonal", "Term added to the diagonal while joints that are apart close.")
 CLOSINGS = work(8, "iterations", "Iterations to close joints that are apart, at most.")
-REDUNDANT_PASSES = work(12, "number", "Refinements that remove the effect of REDUNDANT_EPSILON.")
+REDUNDANT_PASSES = work(12, "number", "Passes of a projection of velocities, at most, beside three for each joint.")
 FACTOR_BAND = work(16, "rows", "Half-width of the band from which on factors are computed several numbers at a time.")
 ROW_WORK = work(250.0, "operations", "Work of the rows of a joint in an iteration, for the budget of a step.")
 FACTOR_WORK = work(215.0, "operations", "Work of the factors of a row besides that of its band.")
 BACK_WORK = work(3.0, "operations", "Work of a solution for each row and each number in its band.")
 JOINT_APART = accuracy(1e-10, "of the component", "Error of a joint above which it closes at pymunk's rate.")
 ELASTIC_PARTS = work(7, "number", "Parts of a step of elastic joints.")
-HASTE = work(0.25, "of the budget", "Work of a step after which limits are located roughly.")
+HASTE = work(0.25, "of what a component may take", "Work of its step after which limits are located roughly.")
 COMPONENT_BUDGET = work(0.5, "of what is left", "Work of one step of a component, at most.")
 NEARLY_HELD = accuracy(1e-08, "of the component", "Error of elastic joints up to which the step counts as converged.")
 REPAID = accuracy(1e-3, "of the kinetic energy",
@@ -68,8 +68,9 @@ JOINT_GAIN = round_off(1e-12, "of the kinetic energy before and after",
 STALLED = accuracy(100.0, "of all momenta, loads and forces of a component, as angular momentum",
     "Impulse that a motor of unlimited force may have in a step: what drives against a limit stalls.")
 TAUT = heuristic(0.5, "of a body's inertia",
-    "Stiffness of a joint's force, times h^2/4, from which contacts take it into account where it pulls, and up to "
-    "which where it presses: beyond twice that no inertia of the body would be left. A box stays on a tight bridge.")
+    "Stiffness of a joint's force, times h^2/4: from which redundant joints begin with their last impulses, as these "
+    "hold bodies; and, of joints that press, up to which contacts take it into account, as beyond twice that no "
+    "inertia of the body would be left. A box stays on a tight bridge.")
 ARM_ITERATIONS = work(30, "iterations",
     "Most iterations of the motion in which arms of contacts become those of its middle: each lowers their error by a "
     "factor of six where motors press hard.")
