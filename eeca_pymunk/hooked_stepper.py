@@ -176,8 +176,11 @@ class HookedStepper(PackedSpace):
             world.scatter(status)
             world.joints.write()
             world.hooks.after(dt)
-            if self.sync and not world.collisions:
-                self._sync.update(dt)
+            if not world.collisions:
+                if self.sync:
+                    self._sync.update(dt)
+                else:
+                    self._sync.accept()
         elif world.collisions:
             world.scatter(status)
         else:
@@ -189,8 +192,7 @@ class HookedStepper(PackedSpace):
             self._sync.write_end(dt, status)
         else:
             world.scatter(status)
-            if self._sync.stamp < 0:
-                self._sync.accept()
+            self._sync.accept()
 
     def _outcome(self, world: World, dt: float) -> Outcome:
         """The outcome of the step. NotFiniteError, before the space is changed, if the energy is not finite, though all

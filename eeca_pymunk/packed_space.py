@@ -7,6 +7,7 @@ import warnings
 from abc import abstractmethod
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
+from weakref import WeakMethod
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from .energy.ledger import BOOK_AFTER
 from .errors import NotFiniteError
 from .impacts.run import ENERGY
 from .impacts.scene import EventLoop
-from .space.arbiters import Touches, show_contacts, touches_of
+from .space.arbiters import Touches, touches_of
 from .space.checks import check_ignored
 from .space.decisions import Decisions, Rules
 from .space.describe import describe
@@ -158,8 +159,7 @@ class PackedSpace(Stepper):
             self._warned = True
             warnings.warn(f"{type(self).__name__} steps on without the friction of this space", stacklevel=4)
         self.reads += 1
-        self._sync = Sync(world, None if past is None else self._sync)
-        show_contacts(self.space, self._touches)
+        self._sync = Sync(world, WeakMethod(self._touches), None if past is None else self._sync)
         self._sleep = Sleep(world, self._sleep, self._sync) if world.sleeps else None
         slept, self._slept = self._slept, None
         if self._sleep is not None and slept is not None:

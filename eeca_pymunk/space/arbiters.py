@@ -16,14 +16,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, NamedTuple
-from weakref import WeakKeyDictionary, WeakMethod
 
 import pymunk
 from pymunk import batch
 
 from ..compiled.records import Rows
 from ..model.contacts import Impulse
-from .late_shapes import make_arbiters, move_late
+from .late_shapes import last_sync, make_arbiters, move_late
 from .private import arbiters as private_arbiters
 from .private import spaces as private
 
@@ -61,16 +60,14 @@ class Touches:
 
 
 ReadTouches = Callable[[], "Touches | None"]
-_readers: WeakKeyDictionary[pymunk.Space, WeakMethod[ReadTouches]] = WeakKeyDictionary()
 _native_each: Any = pymunk.Body.each_arbiter
 _native_batch: Any = batch.get_space_arbiters
 _native_draw: Any = pymunk.Space.debug_draw
 
 
-def show_contacts(space: pymunk.Space, read: ReadTouches) -> None:
-    """Let arbiters of a space have the contents that the method `read` returns; if it returns None, those of pymunk.
-    It is kept as long as its object exists."""
-    _readers[space] = WeakMethod(read)
+def show_contacts() -> None:
+    """Let arbiters of a space have the contents that `Sync.touches` of its last step returns; if it returns None, those
+    of pymunk."""
     if pymunk.Body.each_arbiter is not _each_arbiter:  # setting any attribute of a class clears Python's caches of it
         pymunk.Body.each_arbiter = _each_arbiter  # type: ignore[method-assign]
         pymunk.Space.debug_draw = _debug_draw  # type: ignore[method-assign]
@@ -95,8 +92,8 @@ def touches_of(EVENT: Rows[Impulse], shapes: Sequence[pymunk.Shape]) -> list[Tou
 
 
 def _touches_of(space: pymunk.Space | None) -> Touches | None:
-    reader = None if space is None else _readers.get(space)
-    read = None if reader is None else reader()
+    sync = None if space is None else last_sync(space)
+    read = None if sync is None else sync.touches()
     return None if read is None else read()
 
 

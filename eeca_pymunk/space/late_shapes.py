@@ -39,7 +39,7 @@ class Late:
         hashed: whether the space has a spatial hash. One that has got it before this package was imported is not known
             to have it, which costs time only.
         reindexings: of one with a hash: how many may still follow, until the next rest step, see `REINDEXINGS`.
-        sync: of the last step that has not made pymunk's arbiters.
+        sync: of the last EECA step, of whichever stepper.
     """
 
     __slots__ = ("_bodies", "_contents", "_movers", "hashed", "late", "read", "reindexings", "stamp", "sync")
@@ -93,11 +93,15 @@ def move_late(space: pymunk.Space | None) -> None:
         known.move(space)
 
 
+def last_sync(space: pymunk.Space) -> Sync | None:
+    """The `Sync` of the last EECA step of a space, None if its stepper is gone or has read the space anew."""
+    known = _known.get(space)
+    return None if known is None or known.sync is None else known.sync()
+
+
 def make_arbiters(space: pymunk.Space) -> None:
     """Let pymunk's arbiters be those of the last step: for a picture, or before bodies fall asleep."""
-    known = _known.get(space)
-    sync = None if known is None or known.sync is None else known.sync()
-    if sync is not None:
+    if (sync := last_sync(space)) is not None:
         sync.renew(read=False)
 
 

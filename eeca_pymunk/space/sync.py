@@ -20,10 +20,11 @@ from __future__ import annotations
 
 from functools import partial
 from typing import TYPE_CHECKING
-from weakref import ref
+from weakref import WeakMethod, ref
 
 from ..reentry import BUSY
 from ..transfer import TURNS
+from .arbiters import ReadTouches, show_contacts
 from .bodies import ANGULAR_VELOCITY, VELOCITY
 from .late_shapes import late_shapes
 from .private import arbiters as private_arbiters
@@ -48,11 +49,12 @@ class Sync:
         state: of pymunk after the last EECA step: `MADE`, `NO_REST_STEP` or `NO_REHEARSAL`.
         stamp: number of steps that pymunk had taken after the last EECA step, -1 before the first.
         were_read: whether arbiters were read since they were made; the next step then makes them, to be read again.
+        touches: a weak reference to the method that returns the pairs of the last step (`arbiters.py`).
     """
 
-    def __init__(self, world: World, past: Sync | None = None) -> None:
+    def __init__(self, world: World, touches: WeakMethod[ReadTouches], past: Sync | None = None) -> None:
         """`past`: the `Sync` of the last world of this space; pymunk itself indexes shapes that were added since."""
-        self.space, bodies = world.space, world.bodies
+        self.space, self.touches, bodies = world.space, touches, world.bodies
         self._asleep = bodies.reached is not None
         sleepers = [bodies.items[i] for i in bodies.asleep.nonzero()[0]] if self._asleep else []
         self._stop_woken = private_sleep.stop_woken(sleepers)
@@ -60,6 +62,7 @@ class Sync:
         self.waits = partial(private.waits, self.space)
         self.were_read, self.state, self.stamp = False, MADE, -1
         self._shapes, self._reference = late_shapes(self.space), ref(self)
+        show_contacts()
         # Number of pymunk's steps after the last rest step, and pymunk's dt. `_first`: no rest step in this reading;
         # new bodies and joints may have corrections and impulses.
         self._rested, self._dt, self._first = -1, 0.0, True
@@ -84,7 +87,7 @@ class Sync:
         self._be_late()
 
     def _be_late(self) -> None:
-        """Let the shapes be moved to their bodies when they are read."""
+        """Let the shapes be moved to their bodies when they are read, and arbiters be those of this step."""
         shapes = self._shapes
         shapes.read, shapes.late, shapes.stamp, shapes.sync = False, True, self.stamp, self._reference
 
@@ -106,7 +109,7 @@ class Sync:
 
     def accept(self) -> None:
         """Count the steps that pymunk has taken until now as parts of EECA steps."""
-        self.stamp = self._timestamp()
+        self.stamp, self._shapes.sync = self._timestamp(), self._reference
 
     def finish_rehearsal(self, left_out: int) -> None:
         """The end of a step with handlers, whose rehearsal was taken or left out (`Rehearsal.left_out`): shapes are
@@ -149,6 +152,7 @@ class Sync:
         self._rested, self._dt = self._timestamp(), dt
         self._shapes.late, self._shapes.read, self._shapes.reindexings = False, False, private_shapes.REINDEXINGS
         self.state, self.stamp, self.were_read, self._first = MADE, self._rested, False, False
+        self._shapes.sync = self._reference
 
     def _awake(self) -> Awake:
         """See `rest_step`. Which joints have sleeping bodies is known from the start of the step, unless functions of

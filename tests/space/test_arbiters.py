@@ -170,3 +170,22 @@ def test_a_body_that_has_become_kinematic_since_has_the_impulse_of_the_step() ->
     falling.body_type = pymunk.Body.KINEMATIC
     assert lost > 0.0
     assert [found[:2] for found in seen(falling)] == [(impulse, 0.0)]
+
+
+@pytest.mark.parametrize("sync", [(True, True), (True, False), (False, False)])
+@pytest.mark.parametrize("handler", [False, True])
+def test_arbiters_are_those_of_who_stepped_last(handler: bool, sync: tuple[bool, bool]) -> None:
+    """Of two steppers and pymunk itself, in any order: they hold the box at rest, and catch the one that falls. What
+    pymunk shows is its own."""
+    space, bodies = scene(handler=handler, e=0.0, height=0.53)
+    steppers = [ep.EECA(space, sync=each) for each in sync]
+    for who in (0, 1, 0, 0, 1, 1, 2, 1, 0, 2, 0, 2, 2, 0, 1, 0):
+        before = [b.velocity for b in bodies]
+        if who == 2:
+            space.step(DT)
+        else:
+            steppers[who].step(DT)
+        for body, velocity in zip(bodies, before, strict=True):
+            total = sum((impulse for impulse, *_ in seen(body)), pymunk.Vec2d(0.0, 0.0))
+            change = body.mass * (body.velocity - velocity) + pymunk.Vec2d(0.0, body.mass * G * DT)
+            assert abs(total) == pytest.approx(abs(change), abs=REST_SPEED * body.mass * G * DT), who
