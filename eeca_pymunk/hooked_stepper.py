@@ -68,7 +68,7 @@ class HookedStepper(PackedSpace):
             BUSY.discard(self.space)
         if world.collisions:
             self._sync.finish_rehearsal(world.rehearsal.left_out)
-        elif self.sync or (world.joints is not None and world.joints.calling):
+        elif self.sync or world.hooks.any_body or (world.joints is not None and world.joints.calls_any()):
             self._sync.call_back()
         sleep = self._sleep
         if sleep is not None and sleep.any_asleep and sleep.world is self._world and self.may_touch_sleepers(sleep):

@@ -189,6 +189,6 @@ class PackedStepper(HookedStepper):
             self._undo(world, world.state)
             raise
         report = self._finish(world, dt, status, outcome)
-        if self.sync:
+        if self.sync or (world.joints is not None and world.joints.calls_any()):
             self._sync.call_back()
         return report

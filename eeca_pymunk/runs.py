@@ -79,8 +79,7 @@ class RunningStepper(PackedStepper):
     def calls(self) -> bool:
         """Whether functions have to be called within the next step."""
         world = self._present()
-        joints = world.joints
-        functions = joints is not None and (joints.calls_back() or bool(joints.functions))
+        functions = world.joints is not None and world.joints.calls_any()
         return world.hooked or functions or (self.sync and self._sync.waits())
 
     def get_state(self) -> IntArray:

@@ -1,6 +1,7 @@
 """Hooks: functions that a program has set for bodies and constraints of a space, called once a step.
 
-Velocity and position functions are called with the dt of the step. The order of the others is
+Velocity and position functions are called with the dt of the step. What any of them adds or removes waits for the end
+of the step (`private.locked`). The order of the others is
 
 1. in the rehearsal (`rehearsal.py`), if there are collision handlers: `pre_solve` of constraints, and the handlers;
 2. without a rehearsal: `pre_solve` of constraints, before the step;
@@ -88,7 +89,7 @@ class Hooks:
     def velocity_changes(self, dt: float) -> list[tuple[float, float, float]]:
         """Changes of velocity (2) and spin by the velocity functions within dt; the bodies are restored."""
         gravity, damping = self._settings
-        with private_joints.TimeStep(self.space, dt):
+        with private.locked(self.space), private_joints.TimeStep(self.space, dt):
             return private_functions.velocity_changes(self._steered, gravity, damping**dt, dt)
 
     @cached_property
@@ -112,7 +113,7 @@ class Hooks:
                 # A rehearsal of collisions has moved the body as pymunk does.
                 body.angle = float(state[row, ANGLE])
                 body.position = tuple(state[row, POSITION])
-            with private_joints.TimeStep(self.space, dt):
+            with private.locked(self.space), private_joints.TimeStep(self.space, dt):
                 function(body, dt)
             end[row, POSITION], end[row, ANGLE] = body.position, body.angle
 

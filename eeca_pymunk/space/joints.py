@@ -160,6 +160,10 @@ class JointRows(Listing):
             self.refresh()
         return len(self.calling) > 0
 
+    def calls_any(self) -> bool:
+        """Whether a step calls a function of a constraint, once or more often."""
+        return self.calls_back() or len(self.functions) > 0
+
     @property
     def edited(self) -> bool:
         """Whether there are edited constraints that were not read since."""
@@ -183,7 +187,7 @@ class JointRows(Listing):
         if self.partners.outside and self.partners.read() > 0:
             self.ends_moved = True
         if self.functions:
-            with FunctionsCalled(self.space):
+            with FunctionsCalled(self.space), private.locked(self.space):
                 for j in self.functions:
                     item = self.items[j]
                     a, b = (self._motion(body, state, place) for body in (item.a, item.b))

@@ -417,3 +417,39 @@ def test_velocity_functions_get_the_gravity_that_pre_solve_has_set_in_this_step(
         return got
 
     assert gravities(True) == gravities(False) == [-2.0, -4.0, -8.0, -16.0]
+
+
+FUNCTIONS = ["velocity_func", "position_func", "force_func", "pre_solve", "post_solve"]
+
+
+@pytest.mark.parametrize("sync", [True, False])
+@pytest.mark.parametrize("handled", [False, True])
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_what_functions_add_and_remove_waits_for_the_end_of_the_step(name: str, handled: bool, sync: bool) -> None:
+    """Within the step the space keeps its bodies, so that no other body gets what belongs to one that is gone."""
+    space, a, b = meeting()
+    c, new = add_disk(space, (0.0, 3.0), 0.1, velocity=(1.0, 0.0)), pymunk.Body(1.0, 1.0)
+    new.velocity = (2.0, 0.0)
+    spring = pymunk.DampedSpring(a, c, (0.0, 0.0), (0.0, 0.0), 3.0, 0.0, 0.0)
+    space.add(spring)
+    if handled:
+        space.on_collision(begin=lambda *_: None)
+    seen = []
+
+    def change(*arguments: object) -> float:
+        if not seen:
+            space.remove(*b.shapes, b)
+            space.add(new)
+            seen.append((b in space.bodies, new in space.bodies))
+        if isinstance(arguments[0], pymunk.Body):
+            getattr(pymunk.Body, "update_" + name[:8])(*arguments)
+        return 0.0
+
+    setattr(a if name in FUNCTIONS[:2] else spring, name, change)
+    stepper = ep.EECA(space, sync=sync)
+    stepper.step(DT)
+    assert seen == [(True, False)]
+    assert set(space.bodies) == {a, c, new}
+    stepper.step(DT)
+    assert (space.static_body.position, space.static_body.velocity) == ((0.0, 0.0), (0.0, 0.0))
+    assert [body.position.x for body in (a, c, new)] == pytest.approx([10.0 * DT, 2.0 * DT, 2.0 * DT], rel=1e-12)
