@@ -12,7 +12,7 @@ from ..joints.pinned import mass_of
 from ..joints.welds import pass_on, pinned_row, push_weld
 from ..layout import BODY_ROW, READ, WRITTEN
 from ..model.joint_steps import ELASTIC
-from ..model.joints import EDITED, WELDED, Joints
+from ..model.joints import EDITED, TAKEN_OVER, WELDED, Joints
 from ..model.parameters.joints import STEP_WORK, STEP_WORK_BODY
 from ..model.scene import Scene
 from ..model.step import JOINTS as UNMET_JOINTS
@@ -21,25 +21,31 @@ from ..prediction.work import growth, most_work
 
 @nonallocating
 def mark_edited(A: Scene, J: Joints, STATES: FloatArray, IDS: IntArray) -> None:
-    """Mark the joints of bodies that were edited since the last step as EDITED: velocities may violate them. Earlier
-    lengths of intervals of these bodies do not count either."""
+    """Mark the joints of bodies that were edited since the last step as EDITED, and those of bodies whose last step is
+    not known as TAKEN_OVER: velocities may violate them. Earlier lengths of intervals of these bodies do not count
+    either."""
     now, before = STATES[READ], STATES[WRITTEN]
     for k in range(IDS.shape[1]):
         i = IDS[BODY_ROW, k]
         if i < 0:
             continue
-        same = True
+        same, known = True, False
         for c in range(6):
             same = same and now[k, c] == before[k, c]
-        A.PLACE[i] = -1 if same else 1
+            known = known or before[k, c] == before[k, c]  # NaN is unknown
+        A.PLACE[i] = -1 if same else 1 if known else 0
         if not same:
             A.RESTING[i].longest = math.inf
     n = A.PLACE.shape[0]
     for j in range(J.JOINT.shape[0]):
-        a, b = J.JOINT[j].body[0], J.JOINT[j].body[1]
-        if (a < n and A.PLACE[a] > 0) or (b < n and A.PLACE[b] > 0):
+        changed, known = False, False
+        for end in range(2):
+            i = J.JOINT[j].body[end]
+            if i < n:
+                changed, known = changed or A.PLACE[i] >= 0, known or A.PLACE[i] != 0
+        if changed:
             # Bodies that were put elsewhere start as new ones do, so that equal states give equal paths, bit by bit.
-            J.JOINT[j].touched = EDITED
+            J.JOINT[j].touched = EDITED if known else TAKEN_OVER
             J.JOINT[j].impulse[0] = J.JOINT[j].impulse[1] = 0.0
             for c in range(6):
                 J.JOINT[j].led[c // 3, c % 3] = 0.0

@@ -7,33 +7,32 @@ import numpy as np
 from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.joint_steps import POSES, SPEEDS, BodyStep, JointLedger
-from ..model.joints import APART, EDITED, GIVES_WAY, LEFT_APART, Workspace
+from ..model.joints import APART, EDITED, GIVES_WAY, LEFT_APART, TAKEN_OVER, Workspace
 from ..model.parameters.joints import JOINT_APART, JOINT_TOUCH
 from ..newton.entries import acts
 from ..newton.motion import go_back, save
 from ..newton.rows import joint_rows
 from .bounds import has_bound, limit_gap
-from .correct import fitting_loss, project, speeds_fit
+from .correct import fitting_loss, project, restore_speeds, speeds_fit, steps_left
 from .lock import lock_energy
 from .start import closing_share, compute_rows, springs_of
 
 
 @nonallocating
-def find_apart(W: Workspace, h: float) -> tuple[bool, bool, bool]:
+def find_apart(W: Workspace, h: float) -> tuple[bool, bool, bool, bool]:
     """Set the targets of joints that are apart to the part of their error that remains after this step, and set or
     release limits that are passed or left.
 
     Rows must be those of the present poses. Joints that will still be apart are marked APART, or LEFT_APART if a step
     has left them so; they keep the rest of their error over the step, so that it does no work. Elastic joints
-    (GIVES_WAY) stay as they are. Returns whether any was `edited` since the last step, whether any is to be closed
-    (`apart`), and whether only steps have left them apart (`own`).
+    (GIVES_WAY) stay as they are. Returns whether any was EDITED since the last step, whether any is TAKEN_OVER
+    (`unknown`), whether any is to be closed (`apart`), and whether only steps have left them apart (`own`).
     """
     joint, hinge, link = W.J.JOINT, W.J.HINGE, W.link
-    edited, apart, own = False, False, True
+    edited, unknown, apart, own = False, False, False, True
     for k in range(W.joints):
         j, rows = link[k].joint, link[k].rows
-        if joint[j].touched == EDITED:
-            edited = True
+        edited, unknown = edited or joint[j].touched == EDITED, unknown or joint[j].touched == TAKEN_OVER
         was = joint[j].touched
         joint[j].touched = 0
         if link[k].bounded != 0 or rows == 0:
@@ -60,7 +59,7 @@ def find_apart(W: Workspace, h: float) -> tuple[bool, bool, bool]:
                 hinge[k].target[r] = hinge[k].value[r] * left if acts(link, k, r) else 0.0
             joint[j].touched = 0 if not left > 0.0 else LEFT_APART if was == LEFT_APART else APART
             own = own and was == LEFT_APART
-    return edited, apart, own and not edited
+    return edited, unknown, apart, own and not (edited or unknown)
 
 
 @nonallocating
@@ -134,7 +133,7 @@ def close_joints(W: Workspace, h: float, ledger: JointLedger) -> bool:
     the ledger of the step. Returns whether no edit has left joints apart."""
     local = W.J.LOCAL
     stored = springs_of(W)
-    edited, apart, own = find_apart(W, h)
+    edited, unknown, apart, own = find_apart(W, h)
     if apart:
         before = farthest(W)
         project(W, POSES)
@@ -151,8 +150,10 @@ def close_joints(W: Workspace, h: float, ledger: JointLedger) -> bool:
         ledger.closed += cost - locked
         ledger.stored += taken
         save(local, W.bodies)
-    if edited and not speeds_fit(W):
+    if (edited or unknown) and not speeds_fit(W):
         project(W, SPEEDS)
+        if not edited and steps_left(local, W.bodies):
+            restore_speeds(W)
         ledger.projected += fitting_loss(local, W.bodies, ledger)
         save(local, W.bodies)
     return own

@@ -93,6 +93,18 @@ def fitting_loss(local: Rows[BodyStep], bodies: int, ledger: JointLedger) -> flo
 
 
 @nonallocating
+def steps_left(local: Rows[BodyStep], bodies: int) -> bool:
+    """Whether the projection of velocities from `v_kept` to `v0` has changed no more of the kinetic energy than steps
+    of another stepper may have left."""
+    lost = 0.0
+    for i in range(bodies):
+        for c in range(3):
+            if local[i].mobility[c] > 0.0:
+                lost += 0.5 * (local[i].v0[c] - local[i].v_kept[c]) ** 2 / local[i].mobility[c]
+    return lost <= joints.TAKEN_OVER_LEFT * kinetic_of_component(local, bodies, KEPT)
+
+
+@nonallocating
 def keep_speeds(W: Workspace) -> None:
     """Store the velocities before they are projected."""
     for i in range(W.bodies):

@@ -46,7 +46,7 @@ class Joint(Record):
     tooth_phase: float  # of a ratchet: angle of one notch
     notch: float  # of a ratchet: angle_b - angle_a does not go back beyond it, rad
     side: int  # of a limit that holds: -1 the lower, 1 the upper, lam side <= 0; 0 between them
-    touched: int  # 0, EDITED, APART, LEFT_APART or GIVES_WAY
+    touched: int  # 0, EDITED, APART, LEFT_APART, GIVES_WAY or TAKEN_OVER
     impulse: Annotated[FloatArray, 2]  # of the last step along the rows; of a spring along d, of a rotary one on b
     struck: Annotated[FloatArray, 2]  # impulses by which the joint has answered impacts of the last step
     last_step: float  # its dt; 0 if none
@@ -65,8 +65,8 @@ PIN, PIVOT, GROOVE, SLIDE, SPRING = 0, 1, 2, 3, 4
 GEAR, ROTARY_LIMIT, RATCHET, MOTOR, ROTARY_SPRING = 5, 6, 7, 8, 9
 
 # Why a joint is not taken to be closed. The user changed the joint or its bodies since the last step; it is still apart
-# from that; linear rows of a step left it so; it gives way elastically.
-EDITED, APART, LEFT_APART, GIVES_WAY = 1, 2, 3, 4
+# from that; linear rows of a step left it so; it gives way elastically; no step of any of its bodies is known.
+EDITED, APART, LEFT_APART, GIVES_WAY, TAKEN_OVER = 1, 2, 3, 4, 5
 
 # Fields that steps change.
 OF_STEPS = (
