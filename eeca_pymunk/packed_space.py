@@ -21,7 +21,7 @@ from .space.checks import check_ignored
 from .space.decisions import Decisions, Rules
 from .space.describe import describe
 from .space.sleep_groups import put_to_sleep, sleeping_groups, wake_neighbours
-from .space.sleeping import Sleep
+from .space.sleeping import AT_FIRST, Sleep
 from .space.sync import Sync
 from .space.world import World
 from .stepper import Method, Stepper
@@ -41,10 +41,8 @@ class PackedSpace(Stepper):
     """A stepper that keeps its space as the arrays of a `World`; arguments as of `PackedStepper`.
 
     Attributes:
-        reads: number of readings of the whole space: one at the start, and one after each change that cannot be
-            patched.
-        patches: number of updates without such a reading: after edits in place (`space/patching.py`), and after
-            constraints were added or removed.
+        reads: number of readings of the whole space: the first, and those after changes that cannot be patched.
+        patches: number of other updates: after edits in place (`space/patching.py`), and of constraints added, removed.
         objects_read: number of bodies, shapes and constraints that both have read from pymunk.
         decisions: of collision handlers in earlier steps.
     """
@@ -102,6 +100,8 @@ class PackedSpace(Stepper):
     def refresh(self) -> None:
         self._world = None
         self.decisions.forget(self.space)
+        if self._sleep is not None:
+            self._sleep.recall({}, AT_FIRST)
 
     @abstractmethod
     def make_method(self, world: World) -> Method:

@@ -44,6 +44,7 @@ REST_RATIO = 1e-6  # in the criterion above
 _AGAIN = 16  # steps from one search for groups that may fall asleep to the next
 # Groups fall asleep at once if they are at least 1/_SHARE of the bodies awake; else _PATIENCE steps after the last one.
 _SHARE, _PATIENCE = 8, 120
+AT_FIRST: IntArray = np.array([0, _PATIENCE])  # `timers` of a new Sleep
 
 
 class Sleep:
@@ -66,10 +67,9 @@ class Sleep:
         )
         self._timestamp = private.timestamp(self.space)
         self._stamp, self._sync = self._timestamp(), sync
-        self._wait, self._since = 0, _PATIENCE
+        self._wait, self._since = (AT_FIRST if past is None else past.timers).tolist()
         self._rested: FloatArray = np.zeros(len(bodies))  # time at rest
         if past is not None:
-            self._wait, self._since = past._wait, past._since
             before = past.world.bodies.row
             for i, body in enumerate(bodies.items):
                 if body in before and not past.world.bodies.asleep[before[body]]:

@@ -510,3 +510,31 @@ def test_what_the_program_puts_to_sleep_is_not_woken_by_what_has_left_it() -> No
     for _ in range(3):
         stepper.step(DT)
     assert right.is_sleeping
+
+
+@pytest.mark.parametrize("by_state", [False, True])
+def test_what_is_set_back_falls_asleep_when_it_did_before(by_state: bool) -> None:
+    """`refresh` and `set_state` from poses forget for how long bodies have been at rest, and when some fell asleep."""
+    space, bodies = stack(threshold=0.5)
+    far = box(space, 8.0, 0.6)
+    stepper = ep.EECA(space)
+    state = [(*body.position, body.angle, 0.0, 0.0, 0.0) for body in (*bodies, far)]
+    counts = []
+    for before in (20, 40, 5):
+        for _ in range(before):
+            stepper.step(DT)
+        if by_state:
+            stepper.set_state(state)
+        else:
+            for body in (*bodies, far):
+                body.activate()
+            stepper.refresh()
+        count = 0
+        while not far.is_sleeping:
+            stepper.step(DT)
+            count += 1
+        counts.append(count)
+        for body in (*bodies, far):
+            body.activate()
+    assert counts[0] == counts[1] == counts[2]
+    assert counts[0] >= 0.5 / DT - 1
