@@ -89,7 +89,8 @@ def put_to_sleep(bodies: Sequence[pymunk.Body], groups: IntArray) -> None:
 
 def wake_neighbours(space: pymunk.Space) -> None:
     """Wake sleeping bodies that are jointed to an awake body of the space that is not static, or touch one according to
-    pymunk; then the neighbours of these, and so on."""
+    pymunk; then the neighbours of these, and so on. Bodies outside the space that joints hold to it count as asleep
+    under pymunk, forever."""
     if not any(private_sleep.sleeping(space.bodies)):
         return
     pairs = [*((c.a, c.b) for c in space.constraints), *touching(space)]
@@ -97,7 +98,7 @@ def wake_neighbours(space: pymunk.Space) -> None:
     again = True
     while again:
         again = False
-        asleep = {body for body in bodies if body.is_sleeping}
+        asleep = {body for body in bodies if body.is_sleeping and body.space is space}
         for first, second in pairs:
             if (first in asleep) == (second in asleep):
                 continue

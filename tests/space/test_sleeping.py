@@ -538,3 +538,18 @@ def test_what_is_set_back_falls_asleep_when_it_did_before(by_state: bool) -> Non
             body.activate()
     assert counts[0] == counts[1] == counts[2]
     assert counts[0] >= 0.5 / DT - 1
+
+
+def test_a_body_outside_that_a_joint_holds_wakes_nobody() -> None:
+    """Under pymunk it sleeps as soon as a space with sleeping bodies is stepped, and nothing wakes it."""
+    space, _, stepper = asleep()
+    inside, outside = box(space, 8.0, 0.6), pymunk.Body(1.0, 1.0)
+    motor = pymunk.SimpleMotor(outside, inside, 0.0)
+    motor.max_force = 0.1
+    space.add(motor)
+    for _ in range(3):
+        stepper.step(DT)
+    assert outside.is_sleeping
+    box(space, -8.0, 0.6)
+    stepper.step(DT)
+    assert [body.is_sleeping for body in space.bodies] == [True] * 3 + [False] * 2
