@@ -97,3 +97,20 @@ def test_a_step_without_work_left_ends_before_its_time() -> None:
     assert abs(report.ledger.residual) < 1e-12 * start
     assert ep.measure(space).energy <= start
     assert min(b.position.y for b in space.bodies) > 0.25
+
+
+def test_of_two_limits_the_one_that_was_exceeded_is_told() -> None:
+    """A ball between a wall and a kinematic one that comes closer may be hit 64 times a step."""
+    space = pymunk.Space()
+    press = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    press.velocity = -0.11, 0.0
+    ball = pymunk.Body(1.0, 1.0)
+    ball.velocity = 3.0, 0.0
+    still = pymunk.Segment(space.static_body, (-0.1, -9), (-0.1, 9), 0.0)
+    shapes = still, pymunk.Segment(press, (0.1, -9), (0.1, 9), 0.0), pymunk.Circle(ball, 0.05)
+    for shape in shapes:
+        shape.elasticity = 1.0
+    space.add(press, ball, *shapes)
+    (unmet,) = ep.EECA(space).step(1.0).unmet
+    assert (unmet.name, unmet.limit) == ("impacts", 64.0)
+    assert unmet.value >= unmet.limit

@@ -72,6 +72,40 @@ def test_sweeps_and_matrices_are_those_of_free_bodies() -> None:
         assert np.abs(one - other).max() <= 1e-7 * np.abs(one).max()
 
 
+def test_the_matrix_keeps_its_digits_on_fast_surfaces() -> None:
+    """Velocities of surfaces are no part of it, not even as terms that cancel."""
+    block, found = pyramid(5, 0.3, 0.4), []
+    m = len(block.rows)
+    for surface in (0.0, 1e9):
+        for problem in problems(block):
+            problem.ROWS["surface"] = surface
+            at, kind, W = np.repeat(np.arange(m), 2), np.tile([0, 1], m), np.zeros((2 * m, 2 * m))
+            matrix(problem, np.zeros(m), at, kind, 2 * m, W)
+            found.append(W)
+    assert (found[2] == found[0]).all()
+    assert (found[3] == found[1]).all()
+
+
+@pytest.mark.parametrize("beta", [0.0, -1.0, 1.0])
+def test_an_inactive_contact_stays_so_whatever_its_own_impulses_are(beta: float) -> None:
+    """It becomes active where the others let it close faster than `wake`; arms turn its own impulse along the tangent
+    into a velocity along the normal, too."""
+    block = Block(
+        np.zeros((2, 3)), np.array([[0.0, -0.9, 0.0], [0.0, 0.0, 0.0]]), np.array([1.0, 0.0]), np.array([2.0, 0.0]),
+        [(0, 1, 0.0, -1.0, -0.5, -0.5)],
+    )  # fmt: skip
+    block.solve(0.0, 1.0)
+    for problem in problems(block):
+        problem.ROWS[0].wake = -1.0
+        assert problem.ROWS[0].a_nt != 0.0
+        L, V = np.array([[1.0, beta]]), block.velocity.copy()
+        push(problem, L, 1.0, V)
+        sweep(problem, L, V)
+        assert problem.ROWS[0].wake == -1.0
+        assert (L == 0.0).all()
+        assert V == pytest.approx(block.velocity, abs=1e-15)
+
+
 def test_bodies_are_lifted_as_free_ones() -> None:
     block = pyramid(1, 0.0, 0.0)
     m, found = len(block.rows), []
