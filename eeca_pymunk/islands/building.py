@@ -102,7 +102,8 @@ def build_islands(A: Scene) -> int:
         a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
         if A.PUSHED_BY[c].root != LASTED or barred(A, a, b):
             continue
-        if c > 0 and a == A.PUSHED_BY[c - 1].a and b == A.PUSHED_BY[c - 1].b:
+        before = A.PUSHED_BY[max(c - 1, 0)]
+        if c > 0 and before.root == LASTED and a == before.a and b == before.b:
             continue  # the other end of a face
         i, j = A.LINK[a].owner, A.LINK[b].owner
         i, j = (j, j) if fixed_support(A, i) else (i, i if fixed_support(A, j) else j)
