@@ -160,8 +160,9 @@ def persists_from(A: Scene, a: int, b: int, t: float) -> bool:
     e < 1: all bounces of e |u| under the acceleration a_n of the gap end within the step, 2 e |u| <= -a_n (1 - e)
     (dt - t); or a body had n >= RESOLUTION impacts in the step, or e^n <= 1/RESOLUTION if no force or gravity acts on
     any body.
-    e = 1: as `membership.persists`, if |a| > 0; or a body had n >= RESOLUTION impacts, and either a_n < 0 and |u| <
-    |a| dt / RESOLUTION, or a body is in an island with joints and n would exceed COUNT.limit at the end of the step.
+    e = 1: as `membership.persists`, if |a| > 0; or a body had n >= RESOLUTION impacts, and either a_n < 0, without
+    contacts or on the present paths, and |u| < |a| dt / RESOLUTION, or a body is in an island with joints and n would
+    exceed COUNT.limit at the end of the step.
     """
     i, j = A.LINK[a].owner, A.LINK[b].owner
     if A.BODY[i].inv_mass > 0.0:
@@ -169,14 +170,14 @@ def persists_from(A: Scene, a: int, b: int, t: float) -> bool:
     if A.BODY[j].inv_mass > 0.0:
         move_to(A.BODY, j, t)
     e = law(A, a, b)[0]
-    _, u, closing, _, _ = approach(A, a, b, t)
+    _, u, closing, present, _ = approach(A, a, b, t)
     end = A.PAR.dt
     met = max(A.STATE[i].events, A.STATE[j].events)
     if e < 1.0:
         if A.PAR.pulled == 0.0 and e**met * RESOLUTION <= 1.0:
             return True
         return met >= RESOLUTION or (closing > 0.0 and 2.0 * e * max(-u, 0.0) <= closing * (1.0 - e) * (end - t))
-    if met >= RESOLUTION and closing > 0.0 and -u * RESOLUTION < A.PAR.pulled * end:
+    if met >= RESOLUTION and max(closing, present) > 0.0 and -u * RESOLUTION < A.PAR.pulled * end:
         return True
     if met >= RESOLUTION and t * A.COUNT.limit < met * end and (jointed(A, i) or jointed(A, j)):
         return True
@@ -207,12 +208,15 @@ def most_hits(A: Scene, a: int, b: int) -> int:
 @kernel
 def passed_over(A: Scene, a: int, b: int, t: float) -> bool:
     """Whether an impact of shapes a and b at instant t on an island is passed over, since the budget of the island is
-    spent and they would not get deep within the step. Bodies of a lossy one then are `busy`."""
+    spent and they would not get deep within the step. Bodies of a lossy one then are `busy`. One without losses whose
+    contact persists from then on is not: friction of other contacts makes such bounces ever shorter."""
     STATE = A.STATE
     i, j = A.LINK[a].owner, A.LINK[b].owner
     hits, most, lossy = hits_of(A, a, b), most_hits(A, a, b), law(A, a, b)[0] < 1.0
     spent = budget_spent(A, STATE[i].island) or budget_spent(A, STATE[j].island)
     if hits < most and not spent:
+        return False
+    if not lossy and not jointed(A, i) and not jointed(A, j) and persists_from(A, a, b, t):
         return False
     h = A.PAR.dt - t
     speed = norm(A.BODY[i].vx - A.BODY[j].vx, A.BODY[i].vy - A.BODY[j].vy)
