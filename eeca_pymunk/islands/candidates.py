@@ -185,8 +185,8 @@ def excess_way(A: Scene, ROWS: Rows[Row], V: FloatArray, VN: FloatArray, m: int,
 
 
 @kernel
-def stick_time(ROWS: Rows[Row], L: FloatArray, FREE: FloatArray, VN: FloatArray, m: int, h: float) -> float:
-    """Time after which slipping contacts stick, within an interval h of few contacts; h if none does.
+def slip_time(ROWS: Rows[Row], L: FloatArray, FREE: FloatArray, VN: FloatArray, m: int, h: float, turns: bool) -> float:
+    """Time after which slip ends within an interval h of few contacts, for `turns` where it turns round; else h.
 
     Let contacts slip with u_t at the start, and by the solve no longer at the end. Their frictions beta, which are
     below the limits mu lam, change u_t by F in h; other forces increase |u_t| by a_t h, so that |F| = |u_t| + a_t h.
@@ -194,12 +194,16 @@ def stick_time(ROWS: Rows[Row], L: FloatArray, FREE: FloatArray, VN: FloatArray,
     these contacts are taken, as the frictions of single contacts of a body are not unique. So the slip ends after h
     |u_t| / (|F| sum mu lam / sum |beta| - a_t h), with u_t and a_t of the contact that slips fastest.
 
+    Where slip has turned round by the end, to u_t+, friction has acted with it at first: it would have given energy if
+    the interval were cut. At its limit against u_t it would change that by |u_t - u_t+| + A_tt (mu lam - |beta|) if
+    beta is against u_t, too, else with + |beta|.
+
     Args:
         ROWS, L: the m contacts with their impulses.  FREE, VN: (k, 3) velocities at the end without and with them.
     """
     if m > intervals.EXACT_CONTACTS:
         return h
-    limit, beta, slip, others = 0.0, 0.0, 0.0, 0.0
+    limit, beta, slip, others, turned = 0.0, 0.0, 0.0, 0.0, 0.0
     for z in range(m):
         most = ROWS[z].friction * L[z, 0]
         before = abs(ROWS[z].ut)
@@ -207,14 +211,19 @@ def stick_time(ROWS: Rows[Row], L: FloatArray, FREE: FloatArray, VN: FloatArray,
         change = most / ROWS[z].k_t
         if most == 0.0 or before <= max(intervals.STICK_TOLERANCE * change, ROWS[z].unsure):
             continue
-        if abs(tangent_rate(ROWS[z], VN)) > intervals.STICK_TOLERANCE * before:
-            continue
         sign = 1.0 if ROWS[z].ut > 0.0 else -1.0
+        after = sign * tangent_rate(ROWS[z], VN)
+        if after > intervals.STICK_TOLERANCE * before:
+            continue
         limit += most
         beta -= sign * L[z, 1]
         if before > slip:
             slip, others = before, sign * (tangent_rate(ROWS[z], FREE) - ROWS[z].ut)
-    if beta <= intervals.STICK_TOLERANCE * limit or beta >= (1.0 - intervals.STICK_TOLERANCE) * limit:
+            back = after < -intervals.STICK_TOLERANCE * before
+            turned = before - after + change + sign * L[z, 1] / ROWS[z].k_t if back else 0.0
+    if turned > 0.0:
+        return h * slip / turned
+    if turns or beta <= intervals.STICK_TOLERANCE * limit or beta >= (1.0 - intervals.STICK_TOLERANCE) * limit:
         return h
     rate = (slip + others) * limit / beta - others
     return h * slip / rate if rate > slip else h

@@ -125,8 +125,8 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
         m = step_island(A, isle, contacts, n, h, sweeps, least, owed, quiet)
         stuck = (
             h
-            if candidates.in_haste(A) or OUT[0].at_rest > 0
-            else candidates.stick_time(ROWS, L, V + h * isle.ACC, VN, m, h)
+            if COUNT.together > 0 or OUT[0].at_rest > 0
+            else candidates.slip_time(ROWS, L, V + h * isle.ACC, VN, m, h, candidates.in_haste(A))
         )
         if stuck < h:
             # The interval ends where slip ends, as the law of friction changes there.
