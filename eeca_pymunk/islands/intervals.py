@@ -125,7 +125,7 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
         m = step_island(A, isle, contacts, n, h, sweeps, least, owed, quiet)
         stuck = (
             h
-            if COUNT.together > 0 or OUT[0].at_rest > 0
+            if COUNT.together > 0 or OUT[0].at_rest > 0 or (may_lose and candidates.in_haste(A))
             else candidates.slip_time(ROWS, L, V + h * isle.ACC, VN, m, h, candidates.in_haste(A))
         )
         if stuck < h:
