@@ -126,7 +126,7 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
         stuck = (
             h
             if COUNT.together > 0 or OUT[0].at_rest > 0 or (may_lose and candidates.in_haste(A))
-            else candidates.slip_time(ROWS, L, V + h * isle.ACC, VN, m, h, candidates.in_haste(A))
+            else candidates.slip_time(ROWS, L, V + h * isle.ACC, VN, m, h, may_lose, candidates.in_haste(A))
         )
         if stuck < h:
             # The interval ends where slip ends, as the law of friction changes there.
