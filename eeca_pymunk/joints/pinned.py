@@ -51,6 +51,8 @@ def find_pinned(
     bodies = together(BODY, PARTNER)
     still, spins = np.zeros(len(bodies), np.int64), np.zeros(len(bodies), np.int64)
     spins[: len(BODY)] = 1
+    for i in range(len(BODY)):
+        still[i] = 0 if BODY[i].inv_mass > 0.0 else -1  # joints hold no body whose motion they cannot change
     for i in range(len(PARTNER)):
         still[len(BODY) + i] = 1 if STILL[i] > 0 else -1
     for s in range(len(LINK)):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import itertools
 import math
 import pickle
 
@@ -202,6 +203,27 @@ def test_a_held_body_goes_back_and_what_it_loses_is_booked() -> None:
     assert deck[4].velocity == (0.0, 0.0)
     assert deck[7].position == (7.5 * LONG, 0.0)
     assert deck[7].angle == 0.0
+
+
+@pytest.mark.parametrize("speed", [0.0, 1.0])
+@pytest.mark.parametrize("weld", [False, True], ids=["in a chain", "on a weld"])
+def test_a_kinematic_body_goes_where_its_program_says(weld: bool, speed: float) -> None:
+    """Neither a straight chain nor a weld holds it. Joints cannot follow: steps end early, and say so."""
+    space, post = pymunk.Space(), pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    links = [pymunk.Body(1.0, 1.0), pymunk.Body(1.0, 1.0)]
+    links[0].position, links[1].position, post.velocity = (-1.0, 0.0), (1.0, 0.0), (0.0, speed)
+    chain = [space.static_body, links[0], post, links[1], space.static_body]
+    space.add(post, *links)
+    for k, (a, b) in enumerate(itertools.pairwise(chain[: 3 if weld else 5])):
+        space.add(pymunk.PivotJoint(a, b, (k - 1.5, 0.0)))
+        if weld:
+            space.add(pymunk.GearJoint(a, b, 0.0, 1.0))
+    stepper = ep.EECA(space)
+    reports = [stepper.step(DT) for _ in range(5)]
+    assert held(stepper) == 0
+    assert post.velocity == (0.0, speed)
+    assert (post.position.y > 0.0) == (speed > 0.0)
+    assert all(report.converged == (speed == 0.0) for report in reports)
 
 
 def test_copies_runs_and_rollouts_go_the_same_way() -> None:
