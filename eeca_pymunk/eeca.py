@@ -73,6 +73,7 @@ class EECA(RunningStepper):
         if sides is not None and loop is not None:
             sides.recall(world, loop)
         if world.joints is not None:
-            world.joints.planned()
+            assert loop is not None  # other methods refuse joints
+            world.joints.planned(loop.held)
             world.find_parted()
             self._method.rule(world.laws())

@@ -35,7 +35,7 @@ class HookedStepper(PackedSpace):
                 assert loop is not None  # other methods refuse joints
                 world.read_states(*world.gravity, world.half_damping(dt))
                 loop.rejoin(world.BODY, world.SHAPE, world.LINK, joints.linkage, joints.replan)
-                joints.planned()
+                joints.planned(loop.held)
             parted = world.find_parted()
         if parted or (world.collisions and world.rules is not self._ruled):
             self._ruled = world.rules

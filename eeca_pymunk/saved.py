@@ -105,7 +105,7 @@ class Saved:
             joints.joint[:] = self.method.joint
             joints.rates.update(self._rates)
             self.method.rebind(joints.joint, joints.partners.PARTNER)
-            joints.planned()
+            joints.planned(self.method.held)
             world.parted = self.parted
             world.find_parted()
         world.BODY[:], world.VERTEX[:] = scene.BODY, scene.VERTEX

@@ -97,6 +97,11 @@ class EventLoop(Remembering):
             hold(self.pinned, BODY, False)
 
     @property
+    def held(self) -> list[int]:
+        """The rows of the bodies that joints hold where they are."""
+        return self.pinned["body"].tolist() if len(self.pinned) else []
+
+    @property
     def mobility(self) -> FloatArray:
         """(n, 2) 1/mass and 1/moment of bodies, also of those that joints hold."""
         found = columns(self.scene.BODY, "inv_mass", "inv_inertia")

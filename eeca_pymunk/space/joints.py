@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -63,7 +63,7 @@ class JointRows(Listing):
         self._edits = Edits(self.row)
         self._timestamp = private.timestamp(space)
         self.rates: dict[pymunk.Constraint, Rate] = {} if past is None else past.rates
-        self.replan, self.ends_moved = True, False
+        self.replan, self.ends_moved, self._held = True, False, frozenset[int]()
         self._find_pushing()
 
     def _find_pushing(self) -> None:
@@ -102,7 +102,7 @@ class JointRows(Listing):
                 self.ends_moved |= before.reach != values.reach
                 if before.plan != values.plan:
                     self.replan = regroup = True
-            elif before.gear != values.gear and any(b.body_type == pymunk.Body.STATIC for b in self.pairs[item]):
+            elif before.gear != values.gear and any(self._is_fixed(body) for body in self.pairs[item]):
                 self.ends_moved = True
             calls = calls_of(item)
             regroup |= calls != self.calls[j]
@@ -150,9 +150,14 @@ class JointRows(Listing):
         self._edits.forget(j)
         self.joint[j].length = length
 
-    def planned(self) -> None:
-        """Record that the plan of the components fits the present joints."""
+    def planned(self, held: Iterable[int]) -> None:
+        """Record that the plan of the components fits the present joints, which hold these rows of BODY."""
         self.replan = self.ends_moved = False
+        self._held = frozenset(held)
+
+    def _is_fixed(self, body: pymunk.Body) -> bool:
+        """Whether gears can hold others on this body: it never moves, or joints hold it."""
+        return body.body_type == pymunk.Body.STATIC or self._row_of[body] in self._held
 
     def calls_back(self) -> bool:
         """Whether a constraint has a function that is called once a step."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import pickle
 
 import numpy as np
@@ -156,6 +157,28 @@ def test_what_may_move_is_not_welded(edit: str) -> None:
     # What closes on a fixed pose again, or keeps it, is where its joints say.
     if edit == "phase":
         assert planks[0].angle > 0.0
+
+
+@pytest.mark.parametrize("link", [0, 1, 2])
+@pytest.mark.parametrize("kind", ["gear", "limits"])
+def test_a_servo_turns_any_link_of_a_welded_arm(kind: str, link: int) -> None:
+    space, bodies = pymunk.Space(), [pymunk.Body(1.0, 1.0) for _ in range(3)]
+    servos = list[pymunk.Constraint]()
+    for k, (a, b) in enumerate(itertools.pairwise([space.static_body, *bodies])):
+        b.position = 2.0 * k, 0.0
+        servos += [pymunk.GearJoint(a, b, 0.0, 1.0) if kind == "gear" else pymunk.RotaryLimitJoint(a, b, 0.0, 0.0)]
+        space.add(b, pymunk.PivotJoint(a, b, (2.0 * k - 1.0, 0.0)), servos[k])
+    stepper, servo = ep.EECA(space), servos[link]
+    stepper.step(DT)
+    assert welded(stepper) == 3
+    if isinstance(servo, pymunk.GearJoint):
+        servo.phase = 0.5
+    elif isinstance(servo, pymunk.RotaryLimitJoint):
+        servo.max, servo.min = 0.5, 0.5
+    for _ in range(180):
+        assert stepper.step(DT).converged
+    assert [body.angle for body in bodies] == pytest.approx([0.5 * (k >= link) for k in range(3)], abs=1e-6)
+    assert stepper.reads == 1
 
 
 def test_joints_come_and_go_in_one_reading() -> None:
