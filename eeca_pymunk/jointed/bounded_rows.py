@@ -13,10 +13,10 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..model.contacts import Bounded
-from ..model.joints import GROOVE, PRESCRIBED, Joints
+from ..model.joints import PRESCRIBED, Joints
 from ..model.parameters.joints import BOUNDED_SWEEPS, MOTOR_OFF
 from ..model.scene import Scene
-from ..newton.entries import acts, interval_of
+from ..newton.entries import acting_rows, interval_of
 from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, bounded_rate, room_for_rows, sweep_bounded, weigh_rows
 from .component import answer
 from .groups import Groups
@@ -59,7 +59,7 @@ def note_row(A: Scene, J: Joints, B: Bounded, s: int, i: int, h: float, V: Float
                 B.ROWS[i].speed += B.ROW[i, 3 * end + c] * J.LOCAL[at].v0[c]
     rate = bounded_rate(B, i, V)
     off = B.ROWS[i].speed + rate
-    low, high = interval_of(J.COUPLING[k].kind, J.COUPLING[k].side, hinge.bound * h)
+    low, high = interval_of(J.COUPLING, k, r, hinge.bound * h)
     if limit:
         B.ROWS[i].speed = -rate
     elif B.ROWS[i].part == SINGLE and low < hinge.total[r] < high:
@@ -82,9 +82,7 @@ def list_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float, V: FloatArray) 
     """Append to B the rows of component s whose impulses count as given (`motors.let_slip`); the first of them."""
     first = B.USED[0]
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
-        if J.COUPLING[k].bounded != PRESCRIBED or not acts(J.COUPLING, k, 0):
-            continue
-        rows = 1 if J.COUPLING[k].kind == GROOVE and J.COUPLING[k].side == 0 else J.COUPLING[k].rows
+        rows = acting_rows(J.COUPLING, k) if J.COUPLING[k].bounded == PRESCRIBED else 0
         for r in range(rows):
             i = B.USED[0]
             B.OF[i, 0], B.OF[i, 1] = k, r

@@ -26,7 +26,7 @@ import math
 from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..compiled.records import Rows
-from ..model.joints import BOXED, GROOVE, Coupling, Workspace
+from ..model.joints import BOXED, Coupling, Workspace
 from ..model.parameters.joints import (
     BOX_COLUMN_WORK,
     BOX_REDUNDANT,
@@ -37,10 +37,10 @@ from ..model.parameters.joints import (
     DISC_WORK,
     MOTOR_OFF,
 )
-from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, on_disc
+from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, on_half_disc
 from .condensed import factor, substitute
 from .dual import STRIDE
-from .entries import acts, interval_of, put_free
+from .entries import acting_rows, interval_of, put_free
 
 ROW_ARRAYS = 8  # arrays of one number per row, beside the columns (and a right side) and a matrix with its factors
 
@@ -48,9 +48,7 @@ ROW_ARRAYS = 8  # arrays of one number per row, beside the columns (and a right 
 @nonallocating
 def rows_of(link: Rows[Coupling], k: int) -> int:
     """Number of rows of joint k that act, if it is boxed; else 0."""
-    if link[k].bounded != BOXED or not acts(link, k, 0):
-        return 0
-    return 1 if link[k].kind == GROOVE and link[k].side == 0 else int(link[k].rows)
+    return acting_rows(link, k) if link[k].bounded == BOXED else 0
 
 
 @nonallocating
@@ -94,7 +92,6 @@ def measure_boxes(W: Workspace, w: int, u: int, n: int, h: float, fresh: bool) -
     row = 0
     for k in range(W.joints):
         rows = rows_of(link, k)
-        low, bound = interval_of(link[k].kind, link[k].side, hinge[k].bound * abs(h))
         for r in range(rows):
             if fresh:
                 for c in range(n):
@@ -107,7 +104,7 @@ def measure_boxes(W: Workspace, w: int, u: int, n: int, h: float, fresh: bool) -
                 if abs(more[u + row]) <= MOTOR_OFF * speeds:
                     more[u + row] = 0.0  # no impulse changes round-off
             more[u + n + row] = hinge[k].lam[r]
-            more[u + 2 * n + row], more[u + 3 * n + row] = low, bound
+            more[u + 2 * n + row], more[u + 3 * n + row] = interval_of(link, k, r, hinge[k].bound * abs(h))
             more[u + 4 * n + row] = SINGLE if rows == 1 else FIRST_OF_DISC if r == 0 else SECOND_OF_DISC
             row += 1
 
@@ -139,7 +136,8 @@ def sweep_boxes(more: FloatArray, w: int, u: int, n: int) -> float:
             c, y = more[w + (i + 1) * n + i + 1], more[u + n + i + 1]
             ux, uy = more[u + i], more[u + i + 1]
             if a > 0.0 and c > 0.0:
-                to, other = on_disc(a, b, c, ux, uy, x, y, high)
+                half = more[u + 2 * n + i + 1], more[u + 3 * n + i + 1]
+                to, other = on_half_disc(a, b, c, ux, uy, x, y, high, half)
             else:
                 to, other = min(max(x, -high), high), 0.0
             worst = max(worst, change_box(more, w, u, n, i, to), change_box(more, w, u, n, i + 1, other))
@@ -150,11 +148,12 @@ def sweep_boxes(more: FloatArray, w: int, u: int, n: int) -> float:
 @nonallocating
 def free_of_bounds(more: FloatArray, u: int, n: int, i: int) -> bool:
     """Whether impulse i is inside of its bounds."""
-    x, high = more[u + n + i], more[u + 3 * n + i]
+    x, low, high = more[u + n + i], more[u + 2 * n + i], more[u + 3 * n + i]
     if more[u + 4 * n + i] == SINGLE:
-        return bool(more[u + 2 * n + i] < x < high)
+        return bool(low < x < high)
     y = more[u + n + i + 1] if more[u + 4 * n + i] == FIRST_OF_DISC else more[u + n + i - 1]
-    return bool(x * x + y * y < high * high * (1.0 - 1e-14))
+    bound = max(high, -low)
+    return bool(low < x < high and x * x + y * y < bound * bound * (1.0 - 1e-14))
 
 
 @nonallocating

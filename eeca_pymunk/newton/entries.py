@@ -32,6 +32,14 @@ def acts(link: Rows[Coupling], k: int, r: int) -> bool:
 
 
 @inlined
+def acting_rows(link: Rows[Coupling], k: int) -> int:
+    """How many rows of joint k act, the first ones."""
+    if not acts(link, k, 0):
+        return 0
+    return 1 if link[k].kind == GROOVE and link[k].side == 0 else int(link[k].rows)
+
+
+@inlined
 def idle(link: Rows[Coupling], k: int) -> bool:
     """Whether joint k is a limit on which it does not stand: it is left out of solves and tested afterwards
     (`..joints.bounds.first_bound`)."""
@@ -39,11 +47,11 @@ def idle(link: Rows[Coupling], k: int) -> bool:
 
 
 @inlined
-def interval_of(kind: int, side: int, bound: float) -> tuple[float, float]:
-    """Least and largest impulse of a row with |impulse| <= `bound`: (-bound, bound); of a limit at `side` the half of
-    it that pushes inwards."""
-    if is_limit(kind):
-        return (0.0, bound) if side < 0 else (-bound, 0.0)
+def interval_of(link: Rows[Coupling], k: int, r: int, bound: float) -> tuple[float, float]:
+    """Least and largest impulse of row r of joint k with |impulse| <= `bound`: (-bound, bound); of a limit, or the end
+    of a groove, the half of it that pushes inwards."""
+    if is_limit(link[k].kind) or (link[k].kind == GROOVE and r == 1):
+        return (0.0, bound) if link[k].side < 0 else (-bound, 0.0)
     return -bound, bound
 
 

@@ -10,10 +10,11 @@ import numpy as np
 
 from ..compiled import nonallocating
 from ..compiled.records import Rows
-from ..model.joints import CONDENSED, GROOVE, Coupling, Workspace
+from ..model.joints import CONDENSED, Coupling, Workspace
 from ..model.parameters.joints import STIFFEST
+from ..rows.bounded import pulls
 from .condensed import freeze_row, put_row
-from .entries import interval_of, put_free, put_rows
+from .entries import acting_rows, interval_of, put_free, put_rows
 
 
 @nonallocating
@@ -32,25 +33,26 @@ def put_bounded(W: Workspace, k: int, slopes: bool, h: float, system: int, build
     angle.
 
     With p = lam - rho u, u = 2 value/h, rho = scale^2 (the smaller one of two): u = 0 if p is within the bounds, else
-    lam is the nearest impulse within them. `turn` is the derivative of that of a disc, bound p/|p|, by p.
+    lam is the nearest impulse within them. `turn` is the derivative of that of a disc, bound p/|p|, by p. At the end of
+    a groove these are half of a disc: the nearest impulse to one that pulls has no part along the groove.
     """
     hinge, link, local, matrix, right, band = (
         W.J.HINGE, W.link, W.J.LOCAL, W.J.MATRIX, W.J.RIGHT, W.J.COMPONENT[W.s].band
     )  # fmt: skip
-    row, rows, bound = link[k].first_row, link[k].rows, hinge[k].bound * abs(h)
-    kind, side, width = link[k].kind, link[k].side, 3 * band + 1
-    if kind == GROOVE and side == 0:
-        rows = 1
-        put_free(W, k, rows, system, build)
-    low, high = interval_of(kind, side, bound)
+    row, rows, bound = link[k].first_row, acting_rows(link, k), hinge[k].bound * abs(h)
+    width, worst = 3 * band + 1, 0.0
+    low, high = interval_of(link, k, 0, bound)
     rho = hinge[k].scale[0] ** 2
     if rows == 2:
         rho = min(rho, hinge[k].scale[1] ** 2)
     p0 = hinge[k].lam[0] - rho * hinge[k].value[0] * 2.0 / h
     p1 = hinge[k].lam[1] - rho * hinge[k].value[1] * 2.0 / h if rows == 2 else 0.0
+    if rows == 2 and pulls(p1, interval_of(link, k, 1, bound)):
+        rows, worst = 1, abs(hinge[k].lam[1] * h) / hinge[k].scale[1] ** 2
+    for r in range(rows, link[k].rows):
+        put_free(W, k, r, system, build)
     size = np.sqrt(p0 * p0 + p1 * p1)
     sticks = low <= p0 <= high if rows == 1 else size <= bound
-    worst = 0.0
     for r in range(rows):
         scale = hinge[k].scale[r]
         if sticks:

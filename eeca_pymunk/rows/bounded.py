@@ -1,6 +1,7 @@
 """Rows of bounded impulses (motors, and joints with a finite max_force), as unknowns beside those of contacts.
 
-A row is bounded alone (low <= lambda <= high), or both rows of a pivot by a disc, x^2 + y^2 <= high^2. Inside the
+A row is bounded alone (low <= lambda <= high), or both rows of a pivot by a disc, x^2 + y^2 <= high^2; at the end of a
+groove by that half of it in which its second row pushes inwards. Inside the
 bounds the velocity along the row equals its target; at a bound its difference to the target has the opposite sign of
 the impulse.
 """
@@ -12,7 +13,7 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import kernel, nonallocating
+from ..compiled import inlined, kernel, nonallocating
 from ..compiled.records import zeros
 from ..model.contacts import BOUNDED_ROW, Bounded
 from ..model.parameters.joints import BOX_SECULAR
@@ -50,6 +51,25 @@ def on_disc(
         if length > bound:
             p1, p2 = p1 * bound / length, p2 * bound / length
     return p1 * co - p2 * si, p1 * si + p2 * co
+
+
+@inlined
+def pulls(y: float, half: tuple[float, float]) -> bool:
+    """Whether the second impulse of a disc is outside the `half` of it (low, high), one of which is 0; never if it is a
+    whole one."""
+    return (y < 0.0 and half[0] >= 0.0) or (y > 0.0 and half[1] <= 0.0)
+
+
+@nonallocating
+def on_half_disc(
+    a: float, b: float, c: float, ux: float, uy: float, x: float, y: float, bound: float, half: tuple[float, float]
+) -> tuple[float, float]:  # fmt: skip
+    """`on_disc`, of the half of a disc in which y' is in `half` (or of all of it): if the impulses on the disc are
+    outside, the nearest ones by W are on the edge, y' = 0."""
+    to, other = on_disc(a, b, c, ux, uy, x, y, bound)
+    if pulls(other, half):
+        return min(max(x - (ux - b * y) / a, -bound), bound), 0.0
+    return to, other
 
 
 @kernel
@@ -122,7 +142,8 @@ def sweep_bounded(B: Bounded, L: FloatArray, m: int, V: FloatArray) -> float:
             if not c > 0.0:
                 continue
             other = B.ROWS[i + 1].speed + bounded_rate(B, i + 1, V)
-            L[m + i, 0], L[m + i + 1, 0] = on_disc(a, b, c, u, other, x, y, high)
+            half = B.ROWS[i + 1].low, B.ROWS[i + 1].high
+            L[m + i, 0], L[m + i + 1, 0] = on_half_disc(a, b, c, u, other, x, y, high, half)
             push_row(B, i + 1, L[m + i + 1, 0] - y, V)
             worst = max(worst, abs(L[m + i + 1, 0] - y) * c)
         push_row(B, i, L[m + i, 0] - x, V)

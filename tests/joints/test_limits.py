@@ -219,6 +219,43 @@ def test_closing_a_groove_does_not_pass_its_end() -> None:
         apart = abs(at.y)
 
 
+@pytest.mark.parametrize("boxed", [True, False])
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_a_groove_of_bounded_force_does_not_hold_what_leaves_its_end(side: float, boxed: bool) -> None:
+    """A bead at the end of its groove is drawn away: it falls along it by g t^2/2, and the groove bears what draws
+    across, but no more than its largest force."""
+    for across, most in ((3.0, 1000.0), (3.0, 2.0)):
+        space = pymunk.Space()
+        space.gravity = -10.0 * side, -across
+        bead = pymunk.Body(1.0, 1.0)
+        bead.position = side, 0.0
+        groove = pymunk.GrooveJoint(space.static_body, bead, (-1.0, 0.0), (1.0, 0.0), (0.0, 0.0))
+        groove.max_force = most
+        space.add(bead, groove)
+        stepper = ep.EECA(space)
+        for _ in range(10):
+            stepper.event_loop.joints.COMPONENT["boxes"] *= boxed
+            assert stepper.step(0.02).converged
+        slip = max(across - most, 0.0)
+        assert bead.position == pytest.approx((side * (1.0 - 5.0 * 0.2**2), -0.5 * slip * 0.2**2), abs=1e-12)
+        assert groove.impulse == pytest.approx(0.02 * min(across, most))
+
+
+def test_a_groove_of_bounded_force_bears_at_its_end_what_it_can() -> None:
+    """Drawn against its end and across by more than its largest force, it bears that in the direction of the pull."""
+    space = pymunk.Space()
+    space.gravity = 6.0, -8.0
+    bead = pymunk.Body(1.0, 1.0)
+    bead.position = 1.0, 0.0
+    groove = pymunk.GrooveJoint(space.static_body, bead, (-1.0, 0.0), (1.0, 0.0), (0.0, 0.0))
+    space.add(bead, groove)
+    for most, rate in ((1000.0, 0.0), (5.0, 5.0)):
+        groove.max_force, bead.position, bead.velocity = most, (1.0, 0.0), (0.0, 0.0)
+        assert ep.EECA(space).step(0.02).converged
+        assert bead.velocity == pytest.approx((0.6 * rate * 0.02, -0.8 * rate * 0.02), abs=1e-12)
+        assert groove.impulse == pytest.approx(0.02 * min(10.0, most))
+
+
 def test_a_limit_that_would_pull_later_is_held_up_to_the_instant_of_another() -> None:
     """A spring turns a falling body onto its lower limit, and would turn it off later; before that a rope holds it."""
     space = pymunk.Space()
