@@ -48,7 +48,7 @@ def finish(A: Scene, J: Joints, R: Reading, status: int) -> int:
     account_joints(A, J)
     close(A, R.IDS)
     if len(A.PINNED) > 0:
-        load_welds(A, J, R.STATES, R.IDS)
+        load_welds(A, J, R)
     if A.COUNT.logged > 0 or A.COUNT.unmet > 0:
         status |= SOME
     return write_states(R.STATES, R.IDS, R.EXTRA, A.BODY, R.ENDS, A.PAR.dt, A.PAR.half_damping, status)

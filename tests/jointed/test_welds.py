@@ -181,6 +181,24 @@ def test_a_servo_turns_any_link_of_a_welded_arm(kind: str, link: int) -> None:
     assert stepper.reads == 1
 
 
+@pytest.mark.parametrize("twist", [0.0, 3.0])
+def test_welds_bear_what_velocity_functions_give(twist: float) -> None:
+    """In place of gravity and of the body's force: m a dt at an arm of 1/2, and I alpha dt."""
+    space, (plank,) = arm(1, ratio=1.0)
+
+    def steer(body: pymunk.Body, gravity: pymunk.Vec2d, damping: float, dt: float) -> None:
+        body.velocity -= 0.0, 20.0 * dt
+        body.angular_velocity += twist * dt
+
+    space.remove(*[shape for shape in space.shapes if shape.body is not plank])
+    plank.velocity_func, plank.force = steer, (5.0, 5.0)
+    stepper, (pivot, gear) = ep.EECA(space), list(space.constraints)
+    stepper.step(DT)
+    assert welded(stepper) == 1
+    assert pivot.impulse == pytest.approx(plank.mass * 20.0 * DT)
+    assert gear.impulse == pytest.approx(abs(plank.moment * twist - plank.mass * 20.0 * 0.4) * DT)
+
+
 def test_joints_come_and_go_in_one_reading() -> None:
     """A disk that falls from rest is welded to the ground at its place, and let go: it falls by g t^2/2 again. A box
     beside stays at rest on the floor all the time, and the first body to be joined collides with it afterwards."""
