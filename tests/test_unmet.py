@@ -72,6 +72,29 @@ def test_what_meets_nothing_spends_work_too() -> None:
     assert all(unmet.value < 12 for unmet in cut)
 
 
+def test_what_rests_pushes_up_to_the_end_of_a_step_that_is_cut_short() -> None:
+    """The impulse of a box at rest on the floor is its weight times the length of the step, as it was in the end."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -10.0
+    space.add(pymunk.Segment(space.static_body, (-99, 0), (99, 0), 0.0))
+    for i in range(7):
+        body = pymunk.Body(1.0, 0.2)
+        body.position, body.angle = (0.9 * (i % 2), 30.7 + i), 0.3 * i
+        if i == 6:
+            body.position, body.angle = (-50.0, 0.3), 0.0
+        space.add(body, pymunk.Poly.create_box(body, (0.8, 0.6)))
+    stepper = ep.EECA(space)
+    for _ in range(60):
+        stepper.step(1 / 60)
+    scene = stepper.event_loop.scene
+    scene.COUNT.budget = 20
+    report = stepper.step(3.0)
+    assert not report.converged
+    assert scene.PAR.dt < 2.0
+    below = report.contacts.point[:, 0] < -40.0
+    assert report.impulse[below].sum() == pytest.approx(10.0 * scene.PAR.dt)
+
+
 def test_a_step_without_work_left_ends_before_its_time() -> None:
     """Boxes that tumble, with hardly any solves: what the step has come to is consistent, energy right."""
     space = pymunk.Space()

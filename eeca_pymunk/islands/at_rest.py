@@ -206,10 +206,11 @@ def log_contact(A: Scene, c: int, part: float, duration: float) -> None:
 
 @nonallocating
 def report_at_rest(A: Scene, c: int) -> None:
-    """At the end of a step: log the impulse of contact c of an island at rest, and renew its remembered forces."""
+    """At the end of a step: log the impulse of contact c of an island at rest, which was that of the step as planned,
+    and renew its remembered forces."""
     renew_forces(A, c, A.PAR.stamp)
     if A.PUSHED[c].normal != 0.0 or A.PUSHED[c].tangential != 0.0:
-        log_contact(A, c, 1.0, A.PAR.dt)
+        log_contact(A, c, A.PAR.dt / A.PAR.planned, A.PAR.dt)
 
 
 @nonallocating
