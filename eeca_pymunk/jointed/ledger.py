@@ -127,9 +127,9 @@ def account_joints(A: Scene, J: Joints) -> None:
 @nonallocating
 def load_welds(A: Scene, J: Joints, R: Reading) -> None:
     """At the end of a step, write the impulses of welded bodies' joints, by the balance of momentum
-    (`..joints.welds`)."""
+    (`..joints.welds`). If the step was cut short, forces are kept, as by `account_joints`."""
     IDS, now = R.IDS, R.STATES[READ]
-    PINNED, BODY, dt, links = A.PINNED, A.BODY, A.PAR.dt, 0
+    PINNED, BODY, dt, links = A.PINNED, A.BODY, A.PAR.planned, 0
     for k in range(len(PINNED)):
         pinned = PINNED[k]
         for c in range(2 if pinned.kind == WELDED else 0):
@@ -151,8 +151,9 @@ def load_welds(A: Scene, J: Joints, R: Reading) -> None:
     for e in range(A.COUNT.logged if links > 0 else 0):
         one = A.LOG[e]
         px, py = one.normal * one.nx - one.tangential * one.ny, one.normal * one.ny + one.tangential * one.nx
+        longer = dt / A.PAR.dt if one.duration > 0.0 else 1.0
         for end in range(2):
-            row, side = A.LINK[int(one.first if end == 0 else one.second)].owner, 2.0 * end - 1.0
+            row, side = A.LINK[int(one.first if end == 0 else one.second)].owner, (2.0 * end - 1.0) * longer
             k = pinned_row(PINNED, row) if BODY[row].inv_mass == 0.0 else -1
             if k >= 0:
                 push_weld(J, PINNED[k], one.px, one.py, side * px, side * py, 0.0)

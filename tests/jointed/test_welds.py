@@ -199,6 +199,29 @@ def test_welds_bear_what_velocity_functions_give(twist: float) -> None:
     assert gear.impulse == pytest.approx(abs(plank.moment * twist - plank.mass * 20.0 * 0.4) * DT)
 
 
+def test_welds_of_a_step_that_is_cut_short_show_forces_over_its_whole_length() -> None:
+    """As other joints do: the weights of a plank and of a box that lies on it. Boxes far away use up the work."""
+    space, (plank,) = arm(1)
+    space.gravity = 0.0, -10.0
+    (disk,) = (body for body in space.bodies if body is not plank)
+    space.remove(disk, *disk.shapes)
+    box = pymunk.Body(3.0, 0.1)
+    box.position = 0.0, 0.3
+    space.add(box, pymunk.Poly.create_box(box, (0.3, 0.3)), pymunk.Segment(space.static_body, (50, 0), (99, 0), 0.0))
+    for k in range(6):
+        body = pymunk.Body(1.0, 0.2)
+        body.position, body.angle = (60.0 + 0.9 * (k % 2), 30.7 + k), 0.3 * k
+        space.add(body, pymunk.Poly.create_box(body, (0.8, 0.6)))
+    stepper, (pivot, _) = ep.EECA(space), list(space.constraints)
+    for _ in range(60):
+        stepper.step(DT)
+    assert isinstance(stepper._method, EventLoop)
+    stepper._method.scene.COUNT.budget = 20
+    report = stepper.step(3.0)
+    assert [unmet.name for unmet in report.unmet] == ["solves"]
+    assert pivot.impulse == pytest.approx((plank.mass + box.mass) * 10.0 * 3.0, rel=1e-6)
+
+
 def test_joints_come_and_go_in_one_reading() -> None:
     """A disk that falls from rest is welded to the ground at its place, and let go: it falls by g t^2/2 again. A box
     beside stays at rest on the floor all the time, and the first body to be joined collides with it afterwards."""
