@@ -20,7 +20,7 @@ def shared_turn(a: BodyStep, b: BodyStep) -> float:
         return float((b.turned - a.turned) / (chi_b - chi_a))
     product = 1.0 + 0.25 * chi_a * chi_b
     y = 0.5 * (chi_b - chi_a) / product
-    return float((1.0 - y * y / 3.0 + y**4 / 5.0 - y**6 / 7.0 + y**8 / 9.0) / product)
+    return float((1.0 - y * y / 3.0 + y**4 / 5.0 - y**6 / 7.0 + y**8 / 9.0 - y**10 / 11.0) / product)
 
 
 @nonallocating

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pymunk
 import pytest
 
 from eeca_pymunk.arrays import FloatArray
+from eeca_pymunk.compiled.records import kind_of, zeros
 from eeca_pymunk.joints.ordering import order_unknowns
 from eeca_pymunk.joints.workspace import workspace
-from eeca_pymunk.model.joint_steps import NO_BEND, OWN_TURN, JointStep
+from eeca_pymunk.model.joint_steps import NO_BEND, OWN_TURN, BodyStep, JointStep
+from eeca_pymunk.newton.angles import shared_turn
 from eeca_pymunk.newton.banded import back_banded, factor_banded
 from eeca_pymunk.newton.condensed import factor, substitute
 from eeca_pymunk.newton.motion import move, seat, size_up
@@ -177,6 +181,20 @@ def test_torques_of_angles_are_opposite() -> None:
         force = one.at(k)[0].force
         assert force[2] == -force[5]
         assert (force[[0, 1, 3, 4]] == 0.0).all()
+
+
+def test_the_common_turn_of_two_bodies_is_known_to_round_off() -> None:
+    """Both sides of the switch from the quotient to its series: s = atan(y)/y / (1 + chi_a chi_b/4)."""
+    for start in (-2.0, -0.05, 0.0, 0.3, 1.0):
+        for apart in (1e-9, 0.01, 0.0999, 0.1001):
+            bodies = zeros(2, kind_of(BodyStep))
+            bodies[0].way[2], bodies[1].way[2] = start, start + apart
+            for one in bodies:
+                one.turned = 2.0 * math.atan(0.5 * one.way[2])
+            product = 1.0 + 0.25 * start * (start + apart)
+            y = 0.5 * (bodies[1].way[2] - start) / product
+            most = 5e-16 if apart < 0.1 else 1e-14
+            assert abs(shared_turn(bodies[0], bodies[1]) * product * y / math.atan(y) - 1.0) <= most
 
 
 def test_forces_between_points_keep_angular_momentum() -> None:
