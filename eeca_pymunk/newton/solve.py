@@ -97,7 +97,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
     Args:
         loops: whether rows may be redundant.  give: compliance over h², see `systems`.
     """
-    hinge, local, component, progress = W.J.HINGE, W.J.LOCAL, W.J.COMPONENT[W.s], W.J.PROGRESS
+    local, component, progress = W.J.LOCAL, W.J.COMPONENT[W.s], W.J.PROGRESS
     first_iterate(W, STEP, h)
     best, last, stalls = 1e300, 1e300, 0
     system = DUAL if component.rigid > 1 else component.system
@@ -108,10 +108,9 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
     ready, fresh, since = lasting and component.factored > 0, False, 0
     component.factored = 0
     boxes = boxed_rows(W.link, W.joints)
-    unscaled = hinge[0].scale[0] == 0.0  # the rows have no scales in this step yet
     for iteration in range(NEWTON_ITERATIONS + 1):
         built = not ready
-        worst = linearise(W, STEP, h, length, give, unscaled and iteration == 0, system, built)
+        worst = linearise(W, STEP, h, length, give, False, system, built)
         floor = JOINT_ROUND_OFF_KEPT if lasting else NEWTON_FLOOR if stalls > 1 else JOINT_ROUND_OFF
         at_floor = iteration > since + 1 and 0.5 * best < worst < floor
         if iteration > 0 and (worst <= max(JOINT_TOLERANCE, progress.near) or at_floor):

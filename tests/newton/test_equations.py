@@ -235,6 +235,25 @@ def arrange(stepper: Driven, condensed: bool) -> None:
     )  # fmt: skip
 
 
+@pytest.mark.parametrize("idle", [False, True], ids=["spring", "idle limit"])
+def test_rows_have_one_scale_in_a_step_whatever_joint_comes_first(idle: bool) -> None:
+    """Also of the parts of a step of order 4: factors that are used again have it."""
+    found = []
+    for first in (True, False):
+        space = empty()
+        rod = body(space, 1.0, 0.1, (1.0, 0.0), 0.0)
+        rod.angular_velocity, rod.velocity = 3.0, (0.0, 3.0)
+        other: pymunk.Constraint = pymunk.DampedSpring(space.static_body, rod, (0, 0), (0, 0), 1.0, 1.0, 0.0)
+        if idle:
+            other = pymunk.RotaryLimitJoint(space.static_body, rod, -9.0, 9.0)
+        pin = pymunk.PinJoint(space.static_body, rod, (0.0, 0.0), (0.3, 0.2))
+        space.add(*((other, pin) if first else (pin, other)))
+        driven = Driven(space, 4)
+        driven.step(0.1)
+        found.append(float(driven.joints.HINGE["scale"][1 if first else 0, 0]))
+    assert found[0] == pytest.approx(found[1], rel=1e-14)
+
+
 def linked() -> pymunk.Space:
     """A chain of pivots and pins with a branch, a closed loop, a gear and limits that are met; no springs or motors."""
     space = linkages.chain(6, lean=0.4)
