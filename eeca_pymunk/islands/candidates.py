@@ -198,8 +198,8 @@ def slip_time(
 
     Where slip has turned round by the end, to u_t+, friction has acted with it at first: it would have given energy if
     the interval were cut. At its limit against u_t it would change that by |u_t - u_t+| + A_tt (mu lam - |beta|) if
-    beta is against u_t, too, else with + |beta|. In lossy islands only slip of one face counts so: nothing bounces for
-    long there, and each end of an interval costs a solve.
+    beta is against u_t, too, else with + |beta|. In lossy islands only a single contact counts so: nothing bounces
+    for long there, and each end of an interval costs a solve.
 
     Args:
         ROWS, L: the m contacts with their impulses.  FREE, VN: (k, 3) velocities at the end without and with them.
@@ -222,7 +222,7 @@ def slip_time(
         beta -= sign * L[z, 1]
         if before > slip:
             slip, others = before, sign * (tangent_rate(ROWS[z], FREE) - ROWS[z].ut)
-            back = (m <= 2 or not lossy) and after < -intervals.STICK_TOLERANCE * before
+            back = (m == 1 or not lossy) and after < -intervals.STICK_TOLERANCE * before
             turned = before - after + change + sign * L[z, 1] / ROWS[z].k_t if back else 0.0
     if turned > 0.0:
         return h * slip / turned

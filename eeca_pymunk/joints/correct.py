@@ -73,6 +73,17 @@ def kinetic_of_component(local: Rows[BodyStep], bodies: int, which: int) -> floa
 
 
 @nonallocating
+def kinetic_of_change(local: Rows[BodyStep], bodies: int) -> float:
+    """(1/2) dv.M dv of the change of velocities from `v_kept` to `v0`."""
+    total = 0.0
+    for i in range(bodies):
+        for c in range(3):
+            if local[i].mobility[c] > 0.0:
+                total += 0.5 * (local[i].v0[c] - local[i].v_kept[c]) ** 2 / local[i].mobility[c]
+    return total
+
+
+@nonallocating
 def fitting_loss(local: Rows[BodyStep], bodies: int, ledger: JointLedger) -> float:
     """The energy lost by the projection of velocities from `v_kept` to `v0`.
 
@@ -80,13 +91,10 @@ def fitting_loss(local: Rows[BodyStep], bodies: int, ledger: JointLedger) -> flo
     supports, 0 unless they move, and enters the ledger.
     """
     gained = kinetic_of_component(local, bodies, NOW) - kinetic_of_component(local, bodies, KEPT)
-    lost, moves = 0.0, False
+    lost, moves = kinetic_of_change(local, bodies), False
     for i in range(bodies):
         for c in range(3):
-            if local[i].mobility[c] > 0.0:
-                lost += 0.5 * (local[i].v0[c] - local[i].v_kept[c]) ** 2 / local[i].mobility[c]
-            elif local[i].v0[c] != 0.0:
-                moves = True
+            moves = moves or (not local[i].mobility[c] > 0.0 and local[i].v0[c] != 0.0)
     if moves:
         ledger.supports += gained + lost
     return lost if moves else -gained
@@ -96,12 +104,7 @@ def fitting_loss(local: Rows[BodyStep], bodies: int, ledger: JointLedger) -> flo
 def steps_left(local: Rows[BodyStep], bodies: int) -> bool:
     """Whether the projection of velocities from `v_kept` to `v0` has changed no more of the kinetic energy than steps
     of another stepper may have left."""
-    lost = 0.0
-    for i in range(bodies):
-        for c in range(3):
-            if local[i].mobility[c] > 0.0:
-                lost += 0.5 * (local[i].v0[c] - local[i].v_kept[c]) ** 2 / local[i].mobility[c]
-    return lost <= joints.TAKEN_OVER_LEFT * kinetic_of_component(local, bodies, KEPT)
+    return kinetic_of_change(local, bodies) <= joints.TAKEN_OVER_LEFT * kinetic_of_component(local, bodies, KEPT)
 
 
 @nonallocating

@@ -19,7 +19,7 @@ CONDENSED_BAND = work(16, "rows", "Half-width of the band from which on rows are
 JOINT_SPEED_ROUND_OFF = round_off(1e-14, "of the speeds", "Velocity along a joint row that is round-off.")
 JOINT_SPEED_LEFT = heuristic(0.01, "of the speeds along a row",
     "Velocity along a joint row up to which it is an error of steps and not an edit to be corrected.")
-TAKEN_OVER_LEFT = heuristic(0.02, "of the kinetic energy of the component",
+TAKEN_OVER_LEFT = heuristic(0.05, "of the kinetic energy of the component",
     "Energy of velocities along joint rows up to which, where no earlier step is known, it is an error of the steps of "
     "another stepper and not given by the program.")
 LEAST_INERTIA = work(0.1, "of a body's inertia",
