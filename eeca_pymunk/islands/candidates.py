@@ -186,9 +186,10 @@ def excess_way(A: Scene, ROWS: Rows[Row], V: FloatArray, VN: FloatArray, m: int,
 
 @kernel
 def slip_time(
-    ROWS: Rows[Row], L: FloatArray, FREE: FloatArray, VN: FloatArray, m: int, h: float, lossy: bool, hasty: bool
+    ROWS: Rows[Row], L: FloatArray, FREE: FloatArray, VN: FloatArray, m: int, h: float, turns: bool, sticks: bool
 ) -> float:  # fmt: skip
-    """Time after which slip ends within an interval h of few contacts, if `hasty` only where it turns round; else h.
+    """Time after which slip ends within an interval h of few contacts, where it turns round or the contact sticks; else
+    h.
 
     Let contacts slip with u_t at the start, and by the solve no longer at the end. Their frictions beta, which are
     below the limits mu lam, change u_t by F in h; other forces increase |u_t| by a_t h, so that |F| = |u_t| + a_t h.
@@ -198,10 +199,10 @@ def slip_time(
 
     Where slip has turned round by the end, to u_t+, friction has acted with it at first: it would have given energy if
     the interval were cut. At its limit against u_t it would change that by |u_t - u_t+| + A_tt (mu lam - |beta|) if
-    beta is against u_t, too, else with + |beta|. In lossy islands only a single contact counts so: nothing bounces
-    for long there, and each end of an interval costs a solve.
+    beta is against u_t, too, else with + |beta|.
 
     Args:
+        turns, sticks: which ends of slip count.
         ROWS, L: the m contacts with their impulses.  FREE, VN: (k, 3) velocities at the end without and with them.
     """
     if m > intervals.EXACT_CONTACTS:
@@ -222,11 +223,11 @@ def slip_time(
         beta -= sign * L[z, 1]
         if before > slip:
             slip, others = before, sign * (tangent_rate(ROWS[z], FREE) - ROWS[z].ut)
-            back = (m == 1 or not lossy) and after < -intervals.STICK_TOLERANCE * before
+            back = turns and after < -intervals.STICK_TOLERANCE * before
             turned = before - after + change + sign * L[z, 1] / ROWS[z].k_t if back else 0.0
     if turned > 0.0:
         return h * slip / turned
-    if hasty or beta <= intervals.STICK_TOLERANCE * limit or beta >= (1.0 - intervals.STICK_TOLERANCE) * limit:
+    if not sticks or beta <= intervals.STICK_TOLERANCE * limit or beta >= (1.0 - intervals.STICK_TOLERANCE) * limit:
         return h
     rate = (slip + others) * limit / beta - others
     return h * slip / rate if rate > slip else h

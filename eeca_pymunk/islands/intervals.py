@@ -123,11 +123,11 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
     shortest = A.PAR.dt / RESOLUTION
     if p > 0 and h > 0.0:
         m = step_island(A, isle, contacts, n, h, sweeps, least, owed, quiet)
-        stuck = (
-            h
-            if COUNT.together > 0 or OUT[0].at_rest > 0 or (may_lose and candidates.in_haste(A))
-            else candidates.slip_time(ROWS, L, V + h * isle.ACC, VN, m, h, may_lose, candidates.in_haste(A))
-        )
+        # With losses nothing bounces for long: there only a single contact ends one interval of a step so.
+        turns = COUNT.together == 0 and (not may_lose or (m == 1 and t == 0.0))
+        sticks, stuck = not candidates.in_haste(A), h
+        if (turns or sticks) and OUT[0].at_rest == 0:
+            stuck = candidates.slip_time(ROWS, L, V + h * isle.ACC, VN, m, h, turns, sticks)
         if stuck < h:
             # The interval ends where slip ends, as the law of friction changes there.
             h = min(max(stuck, shortest), h)
