@@ -116,16 +116,18 @@ def put_handled(R: Reading, HANDLED: Rows[HandledShape], dt: float) -> None:
         if box.body >= 0:
             i = box.body
             before, after = end[6 * i + 2], end[6 * i + 2] + dt * now[i, 5]
-            # Origin + R(before) cog: the centre of mass moves by dt v, and about it the box turns.
-            x, y = transfer.to_centre(R.EXTRA, i, before)
-            back_x, back_y = transfer.to_centre(R.EXTRA, i, after)
-            dx, dy = end[6 * i] + x - back_x + dt * now[i, 3], end[6 * i + 1] + y - back_y + dt * now[i, 4]
-            c, s = math.cos(after), math.sin(after)
-            box.at_x, box.at_y = dx + c * box.x - s * box.y, dy + s * box.x + c * box.y
+            # The centre of mass moves by dt v, and about it the box turns.
+            x, y = now[i, 0], now[i, 1]
+            way_x, way_y = end[6 * i] + dt * now[i, 3] - x, end[6 * i + 1] + dt * now[i, 4] - y
+            if R.IDS[layout.FLAGS, i] & layout.ECCENTRIC:
+                from_x, from_y = transfer.to_centre(R.EXTRA, i, now[i, 2])
+                to_x, to_y = transfer.to_centre(R.EXTRA, i, before)
+                x, y, way_x, way_y = x + from_x, y + from_y, way_x + to_x - from_x, way_y + to_y - from_y
             box.cos, box.sin = math.cos(after + box.angle), math.sin(after + box.angle)
-            x, y = transfer.to_centre(R.EXTRA, i, now[i, 2])
-            way = math.hypot(dx + back_x - now[i, 0] - x, dy + back_y - now[i, 1] - y)
-            box.reach = box.rounding + NEAR_WAYS * (way + box.extent * abs(after - now[i, 2]))
+            box.at_x = x + way_x + box.cos * box.x - box.sin * box.y
+            box.at_y = y + way_y + box.sin * box.x + box.cos * box.y
+            turn = abs(after - now[i, 2])
+            box.reach = box.rounding + NEAR_WAYS * (math.hypot(way_x, way_y) + box.extent * turn)
 
 
 @nonallocating

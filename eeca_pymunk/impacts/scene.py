@@ -99,7 +99,7 @@ class EventLoop(Remembering):
     @property
     def held(self) -> list[int]:
         """The rows of the bodies that joints hold where they are."""
-        return self.pinned["body"].tolist() if len(self.pinned) else []
+        return self.pinned["body"].tolist()
 
     @property
     def mobility(self) -> FloatArray:

@@ -26,7 +26,7 @@ def find_apart(W: Workspace, h: float) -> tuple[bool, bool, bool, bool]:
     Rows must be those of the present poses. Joints that will still be apart are marked APART, or LEFT_APART if a step
     has left them so; they keep the rest of their error over the step, so that it does no work. Elastic joints
     (GIVES_WAY) stay as they are. Returns whether any was EDITED since the last step, whether any is TAKEN_OVER
-    (`unknown`), whether any is to be closed (`apart`), and whether only steps have left them apart (`own`).
+    (`unknown`), whether any is to be closed (`apart`), and whether no edit has left them apart (`own`).
     """
     joint, hinge, link = W.J.JOINT, W.J.HINGE, W.link
     edited, unknown, apart, own = False, False, False, True

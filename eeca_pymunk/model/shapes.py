@@ -115,9 +115,9 @@ class HandledShape(Record):
     """A box that contains a shape with collision handlers, where a rehearsal puts it. Lengths in those of the space."""
 
     body: int  # row of STATES, -1 for static shapes, which have their place from the start
-    x: float  # its centre, in coordinates of the body
+    x: float  # its centre from the body's centre of mass, along its own sides
     y: float
-    angle: float  # of its longer sides there
+    angle: float  # of its sides in coordinates of the body
     half_x: float  # half its sides
     half_y: float
     rounding: float  # radius of the shape, and a part of its size against round-off

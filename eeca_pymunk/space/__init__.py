@@ -24,5 +24,6 @@ earlier reading of the space, of which everything that has not changed is used a
 Five files replace methods or properties of pymunk's classes, which then act as before for all other spaces:
 `edits.py` (setters of shapes and bodies; `Body.sleep` at import), `joint_edits.py` (`Constraint.__setattr__`),
 `constraint_impulses.py` (`Constraint.impulse`), `arbiters.py` (`each_arbiter`, `batch.get_space_arbiters`,
-`debug_draw`), `late_shapes.py` (queries, `Shape.bb`, `Space.remove`). They are not restored.
+`debug_draw`), `late_shapes.py` (queries, `Shape.bb`, `Space.remove`; `Space.use_spatial_hash` at import). They are not
+restored.
 """

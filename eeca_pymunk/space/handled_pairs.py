@@ -88,13 +88,14 @@ def _put_box(box: HandledShape, world: World, shape: Any) -> bool:
         box.angle, box.half_x = math.atan2(along[1], along[0]), 0.5 * math.hypot(*along)
     else:
         box.half_x, box.half_y = 0.5 * (max(xs) - min(xs)), 0.5 * (max(ys) - min(ys))
-    box.x, box.y = 0.5 * (max(xs) + min(xs)), 0.5 * (max(ys) + min(ys))
-    size, centre = math.hypot(box.half_x, box.half_y) + radius, body.center_of_gravity
-    box.rounding, box.extent = radius + _WIDER * size, math.hypot(box.x - centre.x, box.y - centre.y) + size
+    middle = pymunk.Vec2d(0.5 * (max(xs) + min(xs)), 0.5 * (max(ys) + min(ys)))
+    size, arm = math.hypot(box.half_x, box.half_y) + radius, middle - body.center_of_gravity
+    box.rounding, box.extent = radius + _WIDER * size, arm.length + size
+    box.x, box.y = arm.rotated(-box.angle)
     if world.IDS[BODY_ROW, row] >= 0:
         box.body = row
         return True
-    at, angle = body.local_to_world((box.x, box.y)), body.angle + box.angle
+    at, angle = body.local_to_world(middle), body.angle + box.angle
     box.body, box.at_x, box.at_y, box.reach = -1, at.x, at.y, box.rounding
     box.cos, box.sin = math.cos(angle), math.sin(angle)
     return True

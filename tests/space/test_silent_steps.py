@@ -304,16 +304,35 @@ def test_every_pair_that_overlaps_at_the_end_of_free_flight_is_near(dt: float) -
     assert min(overlapping, apart) > 20
 
 
-@pytest.mark.parametrize(("gap", "near"), [(0.021, False), (0.019, True)])
-def test_pairs_are_near_within_twice_their_ways(gap: float, near: bool) -> None:
-    """A rod of length 10 that moves .01 along its normal towards another one at rest, both at 45 degrees: far within
-    the circles and the upright boxes around them."""
-    space = pymunk.Space()
+@pytest.mark.parametrize(("speed", "spin"), [(1.0, 0.0), (0.0, 0.0), (0.0, 0.3), (2.0, -0.2)])
+@pytest.mark.parametrize(("more", "near"), [(0.001, False), (-0.001, True)])
+def test_pairs_are_near_within_twice_their_ways(speed: float, spin: float, more: float, near: bool) -> None:
+    """Two rods of length 10 that rotate with each other, one of which moves towards the other one along its normal: far
+    within the circles and the upright boxes around them."""
+    space, dt, size = pymunk.Space(), 0.01, 5.1
+    end = 0.25 * math.pi + spin * dt
+    normal = pymunk.Vec2d(0.0, 1.0).rotated(end)
+    reach = 2.0 * (0.1 + 0.01 * size + 2.0 * size * abs(spin) * dt) + 2.0 * speed * dt
     for k in range(2):
         body = pymunk.Body(1.0, 1.0)
-        body.angle = 0.25 * math.pi
-        body.position = k * pymunk.Vec2d(0.0, 0.2 + 0.01 + gap + 2.0 * 0.01 * 5.1).rotated(body.angle)
-        body.velocity = (1 - k) * pymunk.Vec2d(0.0, 1.0).rotated(body.angle)
+        body.angle, body.angular_velocity = 0.25 * math.pi, spin
+        body.position, body.velocity = k * (reach + speed * dt + more) * normal, (1 - k) * speed * normal
         space.add(body, pymunk.Segment(body, (-5.0, 0.0), (5.0, 0.0), 0.1))
     space.on_collision(None, None, begin=lambda *_: None)
-    assert near_at_the_end(space, 0.01) is near
+    assert near_at_the_end(space, dt) is near
+
+
+@pytest.mark.parametrize("spin", [0.0, 0.2])
+@pytest.mark.parametrize(("more", "near"), [(0.01, False), (-0.01, True)])
+def test_what_turns_about_its_centre_of_mass_has_no_other_way(spin: float, more: float, near: bool) -> None:
+    """A rod of length 10 whose centre of mass is its right end turns by .3 within the step, by its spin and a torque."""
+    space, turn, size = pymunk.Space(), 0.3, 5.1
+    rod = pymunk.Body(1.0, 2.0)
+    rod.center_of_gravity, rod.position = (5.0, 0.0), (0.0, 0.0)
+    rod.angular_velocity, rod.torque = spin, 2.0 * 2.0 * (turn - spin)
+    reach = 0.1 + 0.01 * size + 2.0 * (5.0 + size) * turn + 1.01
+    along = pymunk.Vec2d(1.0, 0.0).rotated(turn)
+    place = pymunk.Vec2d(5.0, 0.0) - 5.0 * along + (reach + more) * along.perpendicular()
+    space.add(rod, pymunk.Segment(rod, (-5.0, 0.0), (5.0, 0.0), 0.1), pymunk.Circle(space.static_body, 1.0, place))
+    space.on_collision(None, None, begin=lambda *_: None)
+    assert near_at_the_end(space, 1.0) is near

@@ -92,6 +92,10 @@ def test_many_shapes_of_a_spatial_hash_that_are_read_after_each_step_are_moved_b
             space.point_query((0.0, 0.0), 0.0, pymunk.ShapeFilter())
             stepper.step(DT)
         assert ways[3:] == 2 * [expected]
+        for body in space.bodies:
+            found = space.point_query_nearest(body.position, 0.0, pymunk.ShapeFilter())
+            assert found is not None
+            assert found.shape in body.shapes
         monkeypatch.undo()
 
 
