@@ -325,7 +325,7 @@ def test_pairs_are_near_within_twice_their_ways(speed: float, spin: float, more:
 @pytest.mark.parametrize("spin", [0.0, 0.2])
 @pytest.mark.parametrize(("more", "near"), [(0.01, False), (-0.01, True)])
 def test_what_turns_about_its_centre_of_mass_has_no_other_way(spin: float, more: float, near: bool) -> None:
-    """A rod of length 10 whose centre of mass is its right end turns by .3 within the step, by its spin and a torque."""
+    """A rod of length 10 whose centre of mass is its right end turns by .3 in the step, by its spin and a torque."""
     space, turn, size = pymunk.Space(), 0.3, 5.1
     rod = pymunk.Body(1.0, 2.0)
     rod.center_of_gravity, rod.position = (5.0, 0.0), (0.0, 0.0)
