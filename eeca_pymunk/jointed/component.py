@@ -6,7 +6,7 @@ import math
 
 from ..arrays import FloatArray
 from ..compiled import inlined, nonallocating
-from ..joints.bounds import has_bound, limit_gap
+from ..joints.bounds import passed_side
 from ..joints.correct import project
 from ..joints.start import springs_of
 from ..joints.step import take_step
@@ -96,16 +96,15 @@ def close_at_poses(
                 NEW[q, c] = J.LOCAL[i].pose[c]
     stored = springs_of(W) - stored
     for k in range(W.joints):
-        link, small = W.link[k], CORRECTION_JOINTS * W.J.HINGE[k].size
+        link, hinge = W.link[k], W.J.HINGE[k]
         if link.bounded != 0:
             continue
         for r in range(link.rows):
-            if acts(W.link, k, r) and abs(W.J.HINGE[k].value[r] - W.J.HINGE[k].target[r]) > small:
+            if acts(W.link, k, r) and abs(hinge.value[r] - hinge.target[r]) > CORRECTION_JOINTS * hinge.size:
                 return math.inf
-        for side in (-1, 1):
-            passed = has_bound(W, k, side) and link.side != side
-            if passed and limit_gap(W, k, side) < -small:
-                return math.inf
+        passed = passed_side(W, k, CORRECTION_JOINTS)
+        if passed != 0 and passed != link.side:
+            return math.inf
     return stored
 
 

@@ -18,25 +18,31 @@ from ..newton.rows import joint_rows
 
 
 @nonallocating
-def has_bound(W: Workspace, k: int, side: int) -> bool:
-    """Whether joint k has a bound at this side."""
+def limit_gap(W: Workspace, k: int, side: int) -> float:
+    """Gap of joint k to its bound at this side at the end of the present iterate: length or rad, negative beyond the
+    bound; infinite if it has none."""
     kind, joint = W.link[k].kind, W.J.JOINT[W.link[k].joint]
+    bound = joint.notch if kind == RATCHET else joint.upper if side > 0 else joint.lower
     if kind == RATCHET:
-        return bool(side * joint.tooth < 0.0)
-    if kind == SLIDE and side < 0:
-        return bool(joint.lower > 0.0)
-    if kind in (SLIDE, ROTARY_LIMIT, GROOVE):
-        return bool(abs(joint.upper if side > 0 else joint.lower) < 1e300)
-    return False
+        bounded = side * joint.tooth < 0.0
+    elif kind == SLIDE and side < 0:
+        bounded = bound > 0.0
+    else:
+        bounded = kind in (SLIDE, ROTARY_LIMIT, GROOVE) and abs(bound) < 1e300
+    return float(side * (bound - W.J.HINGE[k].measure)) if bounded else math.inf
+
+
+@inlined
+def inactive(link: Rows[Coupling], k: int) -> bool:
+    """Whether joint k, if it is a limit, would be met at a bound: it stands on none, and its force is not bounded."""
+    return link[k].side == 0 and link[k].bounded == 0
 
 
 @nonallocating
-def limit_gap(W: Workspace, k: int, side: int) -> float:
-    """Gap of joint k to its bound at this side at the end of the present iterate: length or rad, negative beyond the
-    bound."""
-    joint = W.J.JOINT[W.link[k].joint]
-    bound = joint.notch if W.link[k].kind == RATCHET else joint.upper if side > 0 else joint.lower
-    return float(side * (bound - W.J.HINGE[k].measure))
+def passed_side(W: Workspace, k: int, least: float) -> int:
+    """The side on which joint k is beyond its bound by more than `least`, in units of its g; 0 if there is none."""
+    least *= W.J.HINGE[k].size
+    return 1 if limit_gap(W, k, 1) < -least else -1 if limit_gap(W, k, -1) < -least else 0
 
 
 @nonallocating
@@ -99,12 +105,14 @@ def update_idle(W: Workspace, k: int, h: float) -> None:
 
 
 @nonallocating
-def is_far(W: Workspace, k: int) -> bool:
-    """Whether joint k is a rotary limit that the bodies, turning by at most chi each, cannot reach in the present
-    iterate."""
+def in_reach(W: Workspace, k: int) -> bool:
+    """Whether joint k is `inactive` and may meet a bound in the present iterate, in which bodies turn by at most chi
+    each."""
+    if not inactive(W.link, k):
+        return False
     j, a, b = W.J.JOINT[W.link[k].joint], W.J.LOCAL[W.link[k].body[0]], W.J.LOCAL[W.link[k].body[1]]
     angle, reach = b.pose[2] - a.pose[2], abs(a.way[2]) + abs(b.way[2])
-    return bool(W.link[k].kind == ROTARY_LIMIT and j.lower < angle - reach and angle + reach < j.upper)
+    return bool(W.link[k].kind != ROTARY_LIMIT or not j.lower < angle - reach or not angle + reach < j.upper)
 
 
 @nonallocating
@@ -150,15 +158,13 @@ def instant_of(start: float, before: float, after: float, h: float) -> float:
 def first_bound(W: Workspace, h: float) -> tuple[int, int, float]:
     """The inactive limit that the solved step h passes first, by the rates of its gap, -1 for none; its side; and
     approximately the instant, from the start of the step."""
-    hinge, link = W.J.HINGE, W.link
+    hinge = W.J.HINGE
     which, at_side, instant = -1, 0, h
     for k in range(W.joints):
-        if link[k].side != 0 or link[k].bounded != 0 or is_far(W, k):
+        if not in_reach(W, k):
             continue
         update_idle(W, k, h)
         for side in (-1, 1):
-            if not has_bound(W, k, side):
-                continue
             end = limit_gap(W, k, side)
             if end >= -JOINT_TOUCH * hinge[k].size:
                 continue
@@ -176,6 +182,8 @@ def least_gap(W: Workspace, k: int, side: int, h: float) -> tuple[float, float]:
     uniformly from b to a: the gap is smallest at s = b/(b - a), where it has changed by b s h/2."""
     hinge = W.J.HINGE[k]
     end = limit_gap(W, k, side)
+    if not end < math.inf:
+        return end, 1.0
     if W.link[k].kind == SLIDE:
         x, y = hinge.apart[0], hinge.apart[1]
         way_x, way_y = 2.0 * (hinge.measure * hinge.rows[0, 3] - x), 2.0 * (hinge.measure * hinge.rows[0, 4] - y)
@@ -195,13 +203,12 @@ def least_gap(W: Workspace, k: int, side: int, h: float) -> tuple[float, float]:
 def passed_within(W: Workspace, h: float) -> float:
     """The first instant, from the start of the solved step h, at which an inactive limit is farthest beyond a bound
     although it ends within it; h if there is none. Only after `first_bound`, which computes the rows of limits."""
-    link, first = W.link, 1.0
+    first = 1.0
     for k in range(W.joints):
-        if link[k].side != 0 or link[k].bounded != 0 or is_far(W, k):
+        if not in_reach(W, k):
             continue
         for side in (-1, 1):
-            if has_bound(W, k, side):
-                least, part = least_gap(W, k, side, h)
-                if part < first and least < -JOINT_TOUCH * W.J.HINGE[k].size:
-                    first = part
+            least, part = least_gap(W, k, side, h)
+            if part < first and least < -JOINT_TOUCH * W.J.HINGE[k].size:
+                first = part
     return first * h

@@ -12,7 +12,7 @@ from ..model.parameters.joints import JOINT_APART, JOINT_TOUCH
 from ..newton.entries import acts
 from ..newton.motion import go_back, save
 from ..newton.rows import joint_rows
-from .bounds import has_bound, limit_gap
+from .bounds import inactive, limit_gap, passed_side
 from .correct import fitting_loss, project, restore_speeds, speeds_fit, steps_left
 from .lock import lock_energy
 from .start import closing_share, compute_rows, springs_of
@@ -37,13 +37,11 @@ def find_apart(W: Workspace, h: float) -> tuple[bool, bool, bool, bool]:
         joint[j].touched = 0
         if link[k].bounded != 0 or rows == 0:
             continue
-        for side in (-1, 1):
-            if has_bound(W, k, side):
-                room = limit_gap(W, k, side)
-                if room < -JOINT_APART * hinge[k].size:
-                    link[k].side = side
-                elif link[k].side == side and room > JOINT_APART * hinge[k].size:
-                    link[k].side = 0
+        passed = passed_side(W, k, JOINT_APART)
+        if passed != 0:
+            link[k].side = passed
+        elif link[k].side != 0 and limit_gap(W, k, link[k].side) > JOINT_APART * hinge[k].size:
+            link[k].side = 0
         joint_rows(W, k, 2.0, False)
         error = 0.0
         for r in range(rows):
@@ -92,12 +90,10 @@ def hold_passed(W: Workspace) -> bool:
     present poses."""
     hinge, link, found = W.J.HINGE, W.link, False
     for k in range(W.joints):
-        if link[k].side != 0 or link[k].bounded != 0:
-            continue
-        for side in (-1, 1):
-            if has_bound(W, k, side) and limit_gap(W, k, side) < -JOINT_TOUCH * hinge[k].size:
-                link[k].side, hinge[k].target[link[k].rows - 1] = side, 0.0
-                found = True
+        side = passed_side(W, k, JOINT_TOUCH) if inactive(link, k) else 0
+        if side != 0:
+            link[k].side, hinge[k].target[link[k].rows - 1] = side, 0.0
+            found = True
     return found
 
 

@@ -12,7 +12,7 @@ from ..model.joints import DUAL, Workspace
 from ..model.parameters import joints
 from ..newton.entries import acts
 from ..newton.systems import apply, back, factorise, first_iterate, linearise
-from .bounds import has_bound, limit_gap, limit_gap_rate
+from .bounds import inactive, limit_gap, limit_gap_rate
 
 NOW, KEPT, SAVED = 0, 1, 2  # velocities of a kinetic energy
 
@@ -171,19 +171,20 @@ def hold_closing(W: Workspace, kept: bool) -> bool:
     hinge, link, local = W.J.HINGE, W.link, W.J.LOCAL
     found = False
     for k in range(W.joints):
-        if link[k].side == 0 and link[k].bounded == 0:
-            for side in (-1, 1):
-                if not (has_bound(W, k, side) and limit_gap(W, k, side) <= joints.JOINT_TOUCH * hinge[k].size):
-                    continue
-                a, b, last = local[link[k].body[0]], local[link[k].body[1]], link[k].rows - 1
-                if kept:
-                    closes = limit_gap_rate(hinge[k], link[k].rows, side, a.v_kept, b.v_kept) < 0.0
-                else:
-                    least = terms(W, k, last) * joints.JOINT_SPEED_ROUND_OFF
-                    closes = limit_gap_rate(hinge[k], link[k].rows, side, a.v0, b.v0) < -least
-                if closes:
-                    link[k].side = side
-                    found = True
+        if not inactive(link, k):
+            continue
+        for side in (-1, 1):
+            if not limit_gap(W, k, side) <= joints.JOINT_TOUCH * hinge[k].size:
+                continue
+            a, b, rows = local[link[k].body[0]], local[link[k].body[1]], link[k].rows
+            if kept:
+                closes = limit_gap_rate(hinge[k], rows, side, a.v_kept, b.v_kept) < 0.0
+            else:
+                least = terms(W, k, rows - 1) * joints.JOINT_SPEED_ROUND_OFF
+                closes = limit_gap_rate(hinge[k], rows, side, a.v0, b.v0) < -least
+            if closes:
+                link[k].side = side
+                found = True
     return found
 
 

@@ -13,7 +13,7 @@ from ..newton.entries import is_limit
 from ..newton.rows import joint_rows
 from ..newton.saturation import bound_otherwise
 from ..newton.systems import first_iterate
-from .bounds import has_bound, limit_gap, limit_gap_rate
+from .bounds import limit_gap, limit_gap_rate
 from .ledger import springs_hold
 
 
@@ -144,11 +144,10 @@ def bounded_targets(W: Workspace, h: float) -> None:
             continue
         link[k].side = 0
         for side in (-1, 1):
-            if not has_bound(W, k, side) or link[k].side != 0:
-                continue
             room = limit_gap(W, k, side)
             a, b = W.J.LOCAL[link[k].body[0]], W.J.LOCAL[link[k].body[1]]
-            if room <= 0.0 or room + h * limit_gap_rate(hinge[k], rows, side, a.v0, b.v0) < 0.0:
+            passes = room <= 0.0 or room + h * limit_gap_rate(hinge[k], rows, side, a.v0, b.v0) < 0.0
+            if passes and link[k].side == 0:
                 link[k].side = side
                 speed = room / h if room > 0.0 else closing_share(joint, j, -room, h) * room / h
                 hinge[k].target[rows - 1] = side * speed
