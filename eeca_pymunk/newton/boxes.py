@@ -37,7 +37,7 @@ from ..model.parameters.joints import (
     DISC_WORK,
     MOTOR_OFF,
 )
-from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, on_half_disc
+from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, on_half_disc, on_interval
 from .condensed import factor, substitute
 from .dual import STRIDE
 from .entries import acting_rows, interval_of, put_free
@@ -128,9 +128,7 @@ def sweep_boxes(more: FloatArray, w: int, u: int, n: int) -> float:
         a, x = more[w + i * n + i], more[u + n + i]
         low, high = more[u + 2 * n + i], more[u + 3 * n + i]
         if more[u + 4 * n + i] == SINGLE:
-            to = x - more[u + i] / a if a > 0.0 else low if more[u + i] > 0.0 else high if more[u + i] < 0.0 else x
-            to = min(max(to, low), high)
-            worst = max(worst, change_box(more, w, u, n, i, to))
+            worst = max(worst, change_box(more, w, u, n, i, on_interval(a, more[u + i], x, low, high)))
         elif more[u + 4 * n + i] == FIRST_OF_DISC:
             b = 0.5 * (more[w + i * n + i + 1] + more[w + (i + 1) * n + i])
             c, y = more[w + (i + 1) * n + i + 1], more[u + n + i + 1]

@@ -1,9 +1,10 @@
 """Rows of bounded impulses (motors, and joints with a finite max_force), as unknowns beside those of contacts.
 
 A row is bounded alone (low <= lambda <= high), or both rows of a pivot by a disc, x^2 + y^2 <= high^2; at the end of a
-groove by that half of it in which its second row pushes inwards. Inside the
-bounds the velocity along the row equals its target; at a bound its difference to the target has the opposite sign of
-the impulse.
+groove by that half of it in which its second row pushes inwards. Inside the bounds the velocity along the row equals
+its target; at a bound its difference to the target has the opposite sign of the impulse (`on_interval`,
+`on_half_disc`, of one row and of two, all other impulses given). Two sweeps solve for all rows: `sweep_bounded` with
+velocities of bodies, beside contacts; `..newton.boxes.sweep_boxes` with those along the rows alone.
 """
 
 from __future__ import annotations
@@ -19,6 +20,14 @@ from ..model.contacts import BOUNDED_ROW, Bounded
 from ..model.parameters.joints import BOX_SECULAR
 
 SINGLE, FIRST_OF_DISC, SECOND_OF_DISC = 0.0, 1.0, 2.0
+
+
+@inlined
+def on_interval(a: float, u: float, x: float, low: float, high: float) -> float:
+    """The impulse x' in low ... high with u + a (x' - x) = 0, else the bound at which this has the other sign than x'.
+    If no impulse changes the velocity u, a = 0, it is at the bound against u."""
+    to = x - u / a if a > 0.0 else low if u > 0.0 else high if u < 0.0 else x
+    return min(max(to, low), high)
 
 
 @nonallocating
@@ -68,7 +77,7 @@ def on_half_disc(
     outside, the nearest ones by W are on the edge, y' = 0."""
     to, other = on_disc(a, b, c, ux, uy, x, y, bound)
     if pulls(other, half):
-        return min(max(x - (ux - b * y) / a, -bound), bound), 0.0
+        return on_interval(a, ux - b * y, x, -bound, bound), 0.0
     return to, other
 
 
@@ -136,7 +145,7 @@ def sweep_bounded(B: Bounded, L: FloatArray, m: int, V: FloatArray) -> float:
             continue
         u = B.ROWS[i].speed + bounded_rate(B, i, V)
         if part == SINGLE:
-            L[m + i, 0] = min(max(x - u / a, low), high)
+            L[m + i, 0] = on_interval(a, u, x, low, high)
         else:
             b, c, y = B.ROWS[i].cross, B.ROWS[i + 1].give, L[m + i + 1, 0]
             if not c > 0.0:
