@@ -14,7 +14,7 @@ from ..model.contacts import Columns, JointedProblem, Problem, Row
 from ..model.parameters.joints import DISC_WORK, SLIP_WORK, SWEEP_ENTRY_WORK, SWEEP_WORK
 from .bounded import FIRST_OF_DISC, SINGLE, bounded_rate, push_row, room_for_rows, sweep_bounded
 from .build import normal_rate, tangent_rate
-from .coulomb import coulomb, limited_slip
+from .coulomb import OPEN, STICK, coulomb, limited_slip, state_of
 
 
 @inlined
@@ -122,17 +122,12 @@ def breach(problem: JointedProblem, L: FloatArray, V: FloatArray) -> float:
         if ROWS[i].wake < np.inf:
             worst = max(worst, ROWS[i].wake - normal_rate(ROWS[i], V))
             continue
-        lam, beta, mu = L[i, 0], L[i, 1], ROWS[i].friction
-        un = normal_rate(ROWS[i], V) - ROWS[i].target
-        worst = max(worst, abs(un) if lam > 0.0 else -un)
-        if lam > 0.0 and mu > 0.0:
-            ut = tangent_rate(ROWS[i], V)
-            off = ut - limited_slip(ROWS[i], lam, beta)
-            if abs(beta) < (1.0 - 1e-12) * mu * lam:
-                reversed_slip = beta == 0.0 and ut * ROWS[i].ut < 0.0
-                worst = max(worst, 0.0 if reversed_slip else abs(off))
-            else:
-                worst = max(worst, off if beta > 0.0 else -off)
+        un, ut = normal_rate(ROWS[i], V) - ROWS[i].target, tangent_rate(ROWS[i], V)
+        state, sign = state_of(ROWS[i], ut, L[i, 0], L[i, 1])
+        worst = max(worst, -un if state == OPEN else abs(un))
+        if state == STICK or sign != 0.0:
+            off = ut - limited_slip(ROWS[i], L[i, 0], L[i, 1])
+            worst = max(worst, abs(off) if state == STICK else sign * off)
     for i in range(D.USED[0]):
         row, x = D.ROWS[i], L[m + i, 0]
         if row.part != SINGLE:

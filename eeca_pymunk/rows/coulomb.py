@@ -15,7 +15,9 @@ import math
 from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Row
-from ..model.parameters.impulses import JAMMED, SINGULAR
+from ..model.parameters.impulses import JAMMED, ON_CONE, SINGULAR
+
+OPEN, STICK, SLIP = 1, 2, 3  # states of a contact
 
 
 @nonallocating
@@ -84,6 +86,26 @@ def lossless_slip(row: Row, lam: float, beta: float) -> float:
 
 
 @nonallocating
+def state_of(row: Row, slip: float, lam: float, beta: float) -> tuple[int, float]:
+    """The state of a contact with these impulses whose u_t+ is `slip`, and the sign of its friction in SLIP, which is 0
+    without friction: beta = sign mu lam. So is that of a slip that has reversed by less than its size, where the
+    contact has no other loss: friction would give energy. In STICK, u_t+ is to be `limited_slip`."""
+    if not lam > 0.0:
+        return OPEN, 0.0
+    most = row.friction * lam
+    if not abs(beta) < most * (1.0 - ON_CONE):
+        return SLIP, 0.0 if beta == 0.0 or most <= 0.0 else 1.0 if beta > 0.0 else -1.0
+    reverses = beta == 0.0 and slip * row.ut < 0.0 and lam * min(row.un + row.target, 0.0) == 0.0
+    return SLIP if reverses else STICK, 0.0
+
+
+@inlined
+def limits_slip(row: Row, lam: float, beta: float) -> bool:
+    """Whether a contact with these impulses would give energy if it stuck."""
+    return bool(beta * row.ut > -lam * min(row.un + row.target, 0.0))
+
+
+@nonallocating
 def limited_slip(row: Row, lam: float, beta: float) -> float:
     """`lossless_slip` where a contact with these impulses would give energy if it stuck; else 0: it may stick."""
-    return lossless_slip(row, lam, beta) if beta * row.ut > -lam * min(row.un + row.target, 0.0) else 0.0
+    return lossless_slip(row, lam, beta) if limits_slip(row, lam, beta) else 0.0

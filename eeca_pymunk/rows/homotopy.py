@@ -14,28 +14,24 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..compiled import inlined, kernel, nonallocating
 from ..model.contacts import JointedProblem
 from ..model.parameters.impulses import HOMOTOPY_CHANGES, HOMOTOPY_CHANGES_ANEW, HOMOTOPY_REFINEMENTS
 from ..model.parameters.joints import CHANGE_ENTRY_WORK, CHANGE_WORK, HOMOTOPY_WORK
 from .bounded import SINGLE, bounded_rate
 from .build import normal_rate, tangent_rate
-from .coulomb import limited_slip
+from .coulomb import OPEN, SLIP, STICK, limited_slip, state_of
 from .dense import matrix_jointed
 from .pivots import (
     BOUND,
     INSIDE,
-    OPEN,
     OUT,
-    SLIP,
-    STICK,
     Tableau,
     bound_of,
     change,
     margin,
     pivot,
-    sign_of,
     slip,
     slope_of,
     stick,
@@ -62,22 +58,21 @@ def start_homotopy(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: 
         np.zeros(m + n, np.int64), np.zeros(m + n), np.zeros(m), np.zeros(n), np.zeros(n), np.zeros(m),
         np.zeros((size, size + 2)), np.empty(size + 2),
     )  # fmt: skip
-    T, X = tableau.T, np.zeros(size)
+    T, X, BEGAN, SIGN = tableau.T, np.zeros(size), np.zeros(m, np.int64), np.zeros(m)  # states of L, signs of friction
     AT, KIND = np.empty(size, np.int64), np.empty(size, np.int64)
     for k in range(size):
         AT[k], KIND[k] = (k // 2, k % 2) if k < 2 * m else (k - 2 * m, 2)
     matrix_jointed(problem, np.zeros(m), AT, KIND, size, T)
     C.WORK[0] += HOMOTOPY_WORK
     for i in range(m):
-        tableau.MU[i] = max(ROWS[i].friction, 0.0)
         if C.OUT[i] == 0 and not ROWS[i].wake < np.inf:
             tableau.STATE[i] = OPEN
             T[2 * i, size] = normal_rate(ROWS[i], V) - ROWS[i].target
             slides = tangent_rate(ROWS[i], V)
             tableau.REST[i] = limited_slip(ROWS[i], L[i, 0], L[i, 1])
             T[2 * i + 1, size] = slides - tableau.REST[i]
-            if L[i, 0] > 0.0 and L[i, 1] == 0.0 and slides * ROWS[i].ut < 0.0:
-                tableau.MU[i] = 0.0  # a slip that has reversed by less than its size: no friction without giving energy
+            BEGAN[i], SIGN[i] = state_of(ROWS[i], slides, L[i, 0], L[i, 1])
+            tableau.MU[i] = max(ROWS[i].friction, 0.0) if BEGAN[i] != SLIP or SIGN[i] != 0.0 else 0.0
             X[2 * i], X[2 * i + 1] = L[i, 0], L[i, 1]
             C.WORK[0] += work_of_change(size) if L[i, 0] > 0.0 else 0.0
     for i in range(n):
@@ -89,19 +84,19 @@ def start_homotopy(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: 
             T[k, size] = row.speed + bounded_rate(D, i, V)
             X[k] = L[m + i, 0]
     if not anew:
-        set_direction_of_residuals(tableau, m, X)
+        set_direction_of_residuals(tableau, m, X, BEGAN, SIGN)
     remove_impulses(tableau, m, X)
     if anew:
         set_opening_direction(tableau, m)
     else:
-        restore_states(tableau, m, X)
+        restore_states(tableau, m, X, BEGAN, SIGN)
     return tableau
 
 
 @nonallocating
-def set_direction_of_residuals(tableau: Tableau, m: int, X: FloatArray) -> None:
+def set_direction_of_residuals(tableau: Tableau, m: int, X: FloatArray, BEGAN: IntArray, SIGN: FloatArray) -> None:
     """Set p, the velocities per theta T[:, size + 1]: minus the residuals of the laws at impulses X (size,), at which
-    the velocities are T[:, size]."""
+    the velocities are T[:, size] and contacts in the states BEGAN (m,) with friction of SIGN (m,)."""
     T, size = tableau.T, len(tableau.T)
     for c in range(len(tableau.STATE)):
         k, state = unknown_of(m, c), tableau.STATE[c]
@@ -111,8 +106,7 @@ def set_direction_of_residuals(tableau: Tableau, m: int, X: FloatArray) -> None:
             T[k, size + 1] = -u if inside or tableau.SIGN[c] * u > 0.0 else 0.0
         elif state == OPEN:
             T[k, size + 1] = -u if x > 0.0 else max(-u, 0.0)
-            s = sign_of(tableau, c, x, X[k + 1])
-            if x > 0.0 and tableau.MU[c] > 0.0 and (s == 0.0 or s * T[k + 1, size] > 0.0):
+            if BEGAN[c] == STICK or SIGN[c] * T[k + 1, size] > 0.0:
                 T[k + 1, size + 1] = -T[k + 1, size]
 
 
@@ -145,8 +139,9 @@ def remove_impulses(tableau: Tableau, m: int, X: FloatArray) -> None:
 
 
 @nonallocating
-def restore_states(tableau: Tableau, m: int, X: FloatArray) -> None:
-    """Pivot from open contacts and rows at bounds to the states of the impulses X (size,)."""
+def restore_states(tableau: Tableau, m: int, X: FloatArray, BEGAN: IntArray, SIGN: FloatArray) -> None:
+    """Pivot from open contacts and rows at bounds to the states of the impulses X (size,), of contacts BEGAN and
+    SIGN (m,)."""
     T, STATE, size = tableau.T, tableau.STATE, len(tableau.T)
     for c in range(len(STATE)):
         k = unknown_of(m, c)
@@ -155,10 +150,9 @@ def restore_states(tableau: Tableau, m: int, X: FloatArray) -> None:
             pivot(tableau, k)
             T[k, size] += bound
             STATE[c], tableau.SIGN[c] = INSIDE, 0.0
-        elif STATE[c] == OPEN and X[k] > 0.0:
-            sign = sign_of(tableau, c, X[k], X[k + 1])
-            slip(tableau, c, sign)
-            if sign == 0.0 and tableau.MU[c] > 0.0:
+        elif STATE[c] == OPEN and BEGAN[c] != OPEN:
+            slip(tableau, c, SIGN[c])
+            if BEGAN[c] == STICK:
                 stick(tableau, c)
 
 

@@ -11,9 +11,9 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import inlined, nonallocating
+from .coulomb import OPEN, SLIP, STICK
 
-# States: of what takes no part, of contacts, of bounded rows inside of their bounds and at one.
-OUT, OPEN, STICK, SLIP, INSIDE, BOUND = 0, 1, 2, 3, 4, 5
+OUT, INSIDE, BOUND = 0, 4, 5  # states beside OPEN, STICK, SLIP: none; of bounded rows inside of their bounds, at one
 
 
 class Tableau(NamedTuple):
@@ -22,7 +22,7 @@ class Tableau(NamedTuple):
 
     STATE, SIGN (m + n,): states; sign of the friction that slips, or of the bound; else 0.  MU (m,): friction, as long
     as the homotopy lasts.  LOW, HIGH (n,): bounds.  REST (m,): tangential velocity of contacts that stick, not 0 where
-    energy limits friction (`polish.classify`). T (size, size + 2): an unknown is an impulse or a velocity less its
+    energy limits friction (`coulomb.state_of`). T (size, size + 2): an unknown is an impulse or a velocity less its
     target; its state leaves one of both free, and fixes the other at 0. Row k has the free one of unknown k by changes
     of all fixed ones, then at theta = 0, and per theta. Where a contact slips, beta stands for beta - s mu lam.
     R (size + 2,): room for a row.
@@ -152,11 +152,3 @@ def bound_of(tableau: Tableau, m: int, c: int) -> float:
     """The bound of row c on the side of its sign, 0 if it is infinite."""
     bound = tableau.HIGH[c - m] if tableau.SIGN[c] > 0.0 else tableau.LOW[c - m]
     return float(bound) if abs(bound) < np.inf else 0.0
-
-
-@nonallocating
-def sign_of(tableau: Tableau, c: int, lam: float, beta: float) -> float:
-    """Sign of the friction of a contact with these impulses, 0 if it sticks or has none."""
-    if tableau.MU[c] <= 0.0 or abs(beta) < (1.0 - 1e-9) * tableau.MU[c] * lam:
-        return 0.0
-    return 1.0 if beta > 0.0 else -1.0

@@ -18,7 +18,7 @@ from ..model.contacts import AnyProblem, Problem, Row
 from ..model.parameters.impulses import FACE_LINE
 from .build import normal_rate, push_contact, slip_rate, tangent_rate
 from .cholesky import assemble_blocks, factor_blocks, make_factor, roots_of, solve_blocks
-from .coulomb import lossless_slip
+from .coulomb import OPEN, STICK, limits_slip, lossless_slip, state_of
 from .sweeps import velocities
 
 
@@ -58,21 +58,12 @@ def classify(
     """
     held, stuck, slip, rest = np.zeros(m, np.int64), np.zeros(m, np.int64), np.zeros(m), np.zeros(m)
     for i in range(m):
-        lam, beta, mu = L[i, 0], L[i, 1], ROWS[i].friction
-        held[i] = 1 if lam > 0.0 else 0
-        if lam <= 0.0 or mu <= 0.0:
-            continue
-        if abs(beta) < mu * lam * (1.0 - 1e-12):
-            loss = lam * min(ROWS[i].un + ROWS[i].target, 0.0)
-            if beta == 0.0 and loss == 0.0 and tangent_rate(ROWS[i], V) * ROWS[i].ut < 0.0:
-                continue  # a slip that has reversed by less than its size: no friction without giving energy
-            if beta * ROWS[i].ut <= -loss:
-                stuck[i] = 1
-            else:
-                stuck[i] = 2
-                rest[i] = lossless_slip(ROWS[i], lam, beta)
-        elif beta != 0.0:
-            slip[i] = mu if beta > 0.0 else -mu
+        state, sign = state_of(ROWS[i], tangent_rate(ROWS[i], V), L[i, 0], L[i, 1])
+        held[i], slip[i] = int(state != OPEN), sign * ROWS[i].friction
+        if state == STICK:
+            limited = limits_slip(ROWS[i], L[i, 0], L[i, 1])
+            stuck[i] = 2 if limited else 1
+            rest[i] = lossless_slip(ROWS[i], L[i, 0], L[i, 1]) if limited else 0.0
     return held, stuck, slip, rest
 
 

@@ -8,6 +8,8 @@ from .record import accuracy, heuristic, round_off, work
 SINGULAR = round_off(1e-12, "of the product of its diagonal",
     "Determinant of a contact's 2 x 2 matrix below which normal and tangential impulse are not solved together.")
 JAMMED = round_off(1e-09, "of A_nn", "Mobility along the impulse of a slipping contact below which it jams.")
+ON_CONE = round_off(1e-12, "of the largest friction",
+    "Friction nearer than this to the edge of its cone counts as that of slip.")
 WEDGED = heuristic(0.01, "of the speed",
     "Velocity that a solve leaves, or part of its impulses that the energy lock takes, from which on contacts count "
     "as wedged: without friction.")
