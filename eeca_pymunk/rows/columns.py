@@ -14,7 +14,7 @@ from ..model.contacts import Columns, JointedProblem, Problem, Row
 from ..model.parameters.joints import DISC_WORK, SLIP_WORK, SWEEP_ENTRY_WORK, SWEEP_WORK
 from .bounded import FIRST_OF_DISC, SINGLE, bounded_rate, push_row, room_for_rows, sweep_bounded
 from .build import normal_rate, tangent_rate
-from .coulomb import OPEN, STICK, coulomb, limited_slip, state_of
+from .coulomb import OPEN, STICK, lawful, limited_slip, state_of
 
 
 @inlined
@@ -72,43 +72,6 @@ def push_jointed(problem: JointedProblem, L: FloatArray, factor: float, V: Float
 
 
 @nonallocating
-def lawful(problem: JointedProblem, L: FloatArray, V: FloatArray, i: int) -> tuple[float, float]:
-    """The impulses (lam, beta) of contact i by its law, those of all others being given."""
-    ROWS, _, _, _ = problem
-    lam0, beta0, ann = L[i, 0], L[i, 1], ROWS[i].a_nn
-    short = normal_rate(ROWS[i], V) - ROWS[i].target
-    if ROWS[i].wake < np.inf:
-        if short + ROWS[i].target - lam0 * ann - beta0 * ROWS[i].a_nt < ROWS[i].wake:
-            ROWS[i].wake = np.inf
-        else:
-            short = np.inf
-    if ROWS[i].friction <= 0.0:
-        return max(lam0 - ROWS[i].k_n * short, 0.0), 0.0
-    qn = short - lam0 * ann - beta0 * ROWS[i].a_nt
-    # Where friction alone could separate the surfaces, a_nn < mu |a_nt|, a contact may stick although it would
-    # open without its impulses: a sticking contact then remains.
-    if not (qn < 0.0 or lam0 > 0.0):
-        return 0.0, 0.0
-    ut = tangent_rate(ROWS[i], V)
-    # Most contacts stick.
-    lam = lam0 - (ROWS[i].w_nn * short + ROWS[i].w_nt * ut)
-    beta = beta0 - (ROWS[i].w_nt * short + ROWS[i].w_tt * ut)
-    if abs(beta) <= ROWS[i].friction * lam and beta * ROWS[i].ut <= 0.0:
-        return lam, beta
-    if not qn < 0.0:
-        # Such a contact stays closed as well if energy limits its friction, and its slip to `limited_slip`.
-        off = ut - limited_slip(ROWS[i], lam0, beta0)
-        lam = lam0 - (ROWS[i].w_nn * short + ROWS[i].w_nt * off)
-        beta = beta0 - (ROWS[i].w_nt * short + ROWS[i].w_tt * off)
-        return (lam, beta) if beta * ROWS[i].ut > 0.0 and abs(beta) <= ROWS[i].friction * lam else (0.0, 0.0)
-    ant, att = ROWS[i].a_nt, ROWS[i].a_tt
-    problem.C.WORK[0] += SLIP_WORK
-    return coulomb(
-        qn, ut - beta0 * att - lam0 * ant, ann, ant, att, ROWS[i].friction, ROWS[i].un, ROWS[i].ut, ROWS[i].target
-    )
-
-
-@nonallocating
 def breach(problem: JointedProblem, L: FloatArray, V: FloatArray) -> float:
     """The largest velocity by which impulses L and velocities V break the laws of contacts and bounded rows; inf if
     there are discs. Inactive contacts break theirs beyond the velocity that activates them. The change of velocity in a
@@ -159,7 +122,8 @@ def sweep_jointed(problem: JointedProblem, L: FloatArray, V: FloatArray) -> floa
     for i in range(m):
         if C.OUT[i] != 0:
             continue
-        lam, beta = lawful(problem, L, V, i)
+        lam, beta, slips = lawful(ROWS[i], V, L[i, 0], L[i, 1], True)
+        C.WORK[0] += SLIP_WORK if slips else 0.0
         dn, dt = lam - L[i, 0], beta - L[i, 1]
         if dn == 0.0 and dt == 0.0:
             continue

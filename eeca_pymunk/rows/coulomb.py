@@ -12,10 +12,14 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
+from ..arrays import FloatArray
 from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Row
 from ..model.parameters.impulses import JAMMED, ON_CONE, SINGULAR
+from .build import normal_rate, tangent_rate
 
 OPEN, STICK, SLIP = 1, 2, 3  # states of a contact
 
@@ -109,3 +113,53 @@ def limits_slip(row: Row, lam: float, beta: float) -> bool:
 def limited_slip(row: Row, lam: float, beta: float) -> float:
     """`lossless_slip` where a contact with these impulses would give energy if it stuck; else 0: it may stick."""
     return lossless_slip(row, lam, beta) if limits_slip(row, lam, beta) else 0.0
+
+
+@inlined
+def lawful(row: Row, V: FloatArray, lam0: float, beta0: float, stays: bool) -> tuple[float, float, bool]:
+    """The impulses (lam, beta) of a contact by its law, and whether it slips. All other impulses are given: V (k, 3)
+    are the velocities with these, and with its own (lam0, beta0). An inactive contact (`Row.wake`) becomes active.
+
+    Where friction alone could separate the surfaces, a_nn < mu |a_nt|, a contact may stick although it would open
+    without its impulses. If `stays`, a sticking contact then remains; it also stays closed if energy limits its
+    friction, and its slip to `limited_slip`.
+    """
+    ann, ant, att, mu = row.a_nn, row.a_nt, row.a_tt, row.friction
+    short = normal_rate(row, V) - row.target
+    if row.wake < np.inf:
+        if short + row.target - lam0 * ann - beta0 * ant < row.wake:
+            row.wake = np.inf
+        else:
+            short = np.inf
+    if short >= 0.0 and lam0 == 0.0 and beta0 == 0.0:
+        return 0.0, 0.0, False
+    if mu <= 0.0:
+        return max(lam0 - row.k_n * short, 0.0), 0.0, False
+    qn = short - lam0 * ann - beta0 * ant
+    if not (qn < 0.0 or (stays and lam0 > 0.0)):
+        return 0.0, 0.0, False
+    ut = tangent_rate(row, V)
+    # Most contacts stick.
+    lam = lam0 - (row.w_nn * short + row.w_nt * ut)
+    beta = beta0 - (row.w_nt * short + row.w_tt * ut)
+    sticks = abs(beta) <= mu * lam
+    if sticks and not limits_slip(row, lam, beta):
+        return lam, beta, False
+    if not qn < 0.0:
+        off = ut - limited_slip(row, lam0, beta0)
+        lam = lam0 - (row.w_nn * short + row.w_nt * off)
+        beta = beta0 - (row.w_nt * short + row.w_tt * off)
+        closed = beta * row.ut > 0.0 and abs(beta) <= mu * lam
+        return (lam, beta, False) if closed else (0.0, 0.0, False)
+    qt = ut - beta0 * att - lam0 * ant
+    if not sticks:
+        # Nearly all others slip in the direction of the motion without friction.
+        slope = -mu if qt * ann > qn * ant else mu
+        felt = ann + slope * ant
+        if felt > JAMMED * ann:
+            lam = -qn / felt
+            beta = slope * lam
+            if slope * (qt + ant * lam + att * beta) <= 0.0 and beta * row.ut <= 0.0:
+                return lam, beta, True
+    lam, beta = coulomb(qn, qt, ann, ant, att, mu, row.un, row.ut, row.target)
+    return lam, beta, True

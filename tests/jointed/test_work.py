@@ -18,6 +18,7 @@ from eeca_pymunk.jointed import meet, press, solve
 from eeca_pymunk.model.parameters import joints as parameters
 from eeca_pymunk.newton import boxes, effort, response, systems
 from eeca_pymunk.rows import columns, dense, homotopy
+from eeca_pymunk.rows.coulomb import lawful
 
 STEP = 0.01
 BOX, FLOOR = 0, 1  # rows of shapes
@@ -119,7 +120,7 @@ BOX_DISCS: list[Part] = [(boxes, "sweep_boxes", lambda *_: 1)]
 BOX_COLUMNS: list[Part] = [(boxes, "measure_boxes", lambda W, w, u, n, *_: n * size_of(W))]
 # The box is the only body: each contact and each row has one entry.
 SWEEPS: list[Part] = [(columns, "sweep_bounded", lambda B, L, m, V: m + B.USED[0])]
-SLIPS: list[Part] = [(columns, "coulomb", lambda *_: 1)]
+SLIPS: list[Part] = [(columns, "lawful", lambda *given: lawful(*given)[2])]
 DISCS: list[Part] = [(columns, "sweep_bounded", lambda *_: 1)]
 HOMOTOPIES: list[Part] = [(homotopy, "start_homotopy", lambda *_: 1)]
 MATRICES: list[Part] = [
