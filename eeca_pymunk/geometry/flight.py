@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import nonallocating
+from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.bodies import Body
 
@@ -40,8 +40,10 @@ def rate(BODY: Rows[Body], i: int, t: float) -> tuple[float, float, float]:
     return BODY[i].vx + s * BODY[i].ax, BODY[i].vy + s * BODY[i].ay, BODY[i].spin + s * BODY[i].angular
 
 
-@nonallocating
-def speed_along(velocity: tuple[float, float, float], nx: float, ny: float, x: float, y: float) -> float:
-    """Velocity along n of the point at (x, y) from a body with this velocity and spin."""
-    vx, vy, spin = velocity
-    return float(nx * vx + ny * vy + (x * ny - y * nx) * spin)
+@inlined
+def opening_rate(
+    nx: float, ny: float, arm_a: float, arm_b: float, a: tuple[float, float, float], b: tuple[float, float, float]
+) -> float:
+    """Velocity along n with which a point of body b leaves one of body a: n.(v_b - v_a) + arm_b w_b - arm_a w_a, by
+    their velocities and spins, with arm = r x n, r from the centre of the body to the point."""
+    return nx * (b[0] - a[0]) + ny * (b[1] - a[1]) + (arm_b * b[2] - arm_a * a[2])

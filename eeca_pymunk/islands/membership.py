@@ -8,6 +8,7 @@ from ..arrays import IntArray
 from ..compiled import kernel, nonallocating
 from ..contacts.memory import find, key_of
 from ..contacts.targets import hardly_bounces
+from ..geometry.flight import opening_rate
 from ..geometry.gap import gap_at
 from ..geometry.sides import smaller
 from ..model.bodies import AT_REST
@@ -165,8 +166,8 @@ def approach(A: Scene, a: int, b: int, t: float) -> tuple[float, float, float, f
     )  # fmt: skip
     xi, yi, xj, yj = (px - BODY[i].x, py - BODY[i].y, px - BODY[j].x - BODY[j].vx * h, py - BODY[j].y - BODY[j].vy * h)
     arm_i, arm_j = xi * ny - yi * nx, xj * ny - yj * nx
-    u = nx * (BODY[j].vx - BODY[i].vx) + ny * (BODY[j].vy - BODY[i].vy)
-    u += arm_j * BODY[j].spin - arm_i * BODY[i].spin
+    one, two = (BODY[i].vx, BODY[i].vy, BODY[i].spin), (BODY[j].vx, BODY[j].vy, BODY[j].spin)
+    u = opening_rate(nx, ny, arm_i, arm_j, one, two)
     closing = nx * (PULL[i, 0] - PULL[j, 0]) + ny * (PULL[i, 1] - PULL[j, 1])
     closing += arm_i * PULL[i, 2] - arm_j * PULL[j, 2]
     present = nx * (BODY[i].ax - BODY[j].ax) + ny * (BODY[i].ay - BODY[j].ay)

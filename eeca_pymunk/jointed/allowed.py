@@ -8,7 +8,7 @@ alone close from the start on.
 from __future__ import annotations
 
 from ..compiled import nonallocating
-from ..geometry.flight import pose, rate, speed_along
+from ..geometry.flight import opening_rate, pose, rate
 from ..geometry.gap import gap
 from ..joints.start import mark_bounded
 from ..joints.workspace import workspace
@@ -36,11 +36,14 @@ def allowed_velocity(A: Scene, J: Joints, i: int, t: float) -> tuple[float, floa
 
 
 @nonallocating
-def allowed_rate(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
-    """The rate of the gap of shapes a and b at instant t by velocities that joints allow, negative if it closes."""
+def gap_and_rate(A: Scene, J: Joints, a: int, b: int, t: float, allowed: bool) -> tuple[float, float]:
+    """Gap of shapes a and b on the paths of their bodies at instant t, and its rate, negative if it closes; by the
+    velocities that joints allow, if `allowed`."""
     i, j = A.LINK[a].owner, A.LINK[b].owner
-    _, nx, ny, px, py = gap(A, a, b, t)
+    g, nx, ny, px, py = gap(A, a, b, t)
     xi, yi, _ = pose(A.BODY, i, t)
     xj, yj, _ = pose(A.BODY, j, t)
-    one = speed_along(allowed_velocity(A, J, i, t), nx, ny, px - xi, py - yi)
-    return speed_along(allowed_velocity(A, J, j, t), nx, ny, px - xj, py - yj) - one
+    one = allowed_velocity(A, J, i, t) if allowed else rate(A.BODY, i, t)
+    two = allowed_velocity(A, J, j, t) if allowed else rate(A.BODY, j, t)
+    arm_i, arm_j = (px - xi) * ny - (py - yi) * nx, (px - xj) * ny - (py - yj) * nx
+    return g, opening_rate(nx, ny, arm_i, arm_j, one, two)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 from ..compiled import kernel, nonallocating
-from ..geometry.flight import pose, rate, speed_along
 from ..geometry.gap import gap
 from ..islands.membership import in_large_island, members_of
 from ..islands.rest import speed
@@ -24,7 +23,7 @@ from ..model.parameters.joints import (
     MEET_SECANTS_LOADED,
 )
 from ..model.scene import Scene
-from .allowed import allowed_rate
+from .allowed import gap_and_rate
 from .ends import end_here, left_apart, shorten, under_way
 from .ledger import work_left
 from .partners import carry
@@ -121,11 +120,11 @@ def locate_impact(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float,
         latest = min(latest, max(t, A.HEAP_TIME[0]))
     small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
     # Shapes that overlap at the start without closing meet when they are as deep again.
-    start, rate = gap_and_rate(A, a, b, least)
+    start, rate = gap_and_rate(A, J, a, b, least, False)
     # Closing by round-off, as after an impact, does not count: an impact would not change it.
     rate = 0.0 if abs(rate) <= CLOSES * max(speed(A, i), speed(A, j)) else rate
     if rate >= 0.0 and start <= TOUCH * small:
-        allowed = allowed_rate(A, J, a, b, least)
+        _, allowed = gap_and_rate(A, J, a, b, least, True)
         if allowed < -CLOSES * max(speed(A, i), speed(A, j)):
             rate, t = allowed, least
     level = min(start, 0.0) if rate >= 0.0 else 0.0
@@ -145,7 +144,7 @@ def locate_impact(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float,
         if ((loaded > 0 or spent) and tries + 1 >= most and not deep) or abs(g) <= touch * small:
             break
         secant = before >= 0.0 and t != before
-        slope = (g - gap_before) / (t - before) if secant else gap_and_rate(A, a, b, t)[1]
+        slope = (g - gap_before) / (t - before) if secant else gap_and_rate(A, J, a, b, t, False)[1]
         if not slope < 0.0 and g < -touch * small and start >= -touch * small:
             # Beyond the middle of a thin shape the normal is that of its far side.
             through, crosses = crossing_of_paths(A, a, b, t)[0], True
@@ -203,14 +202,3 @@ def locate_impact(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float,
             g, crossed = math.inf if work_left(A, J) < 0.0 else gap(A, a, b, t)[0] - level, True
     # Shapes that close within PAR.instant, which is no interval, meet now.
     return t, crossed and g > max(touch * small, -rate * A.PAR.instant)
-
-
-@nonallocating
-def gap_and_rate(A: Scene, a: int, b: int, t: float) -> tuple[float, float]:
-    """Gap of shapes a and b on the paths of their bodies at instant t, and its rate, negative as they close."""
-    i, j = A.LINK[a].owner, A.LINK[b].owner
-    g, nx, ny, px, py = gap(A, a, b, t)
-    xi, yi, _ = pose(A.BODY, i, t)
-    xj, yj, _ = pose(A.BODY, j, t)
-    one = speed_along(rate(A.BODY, i, t), nx, ny, px - xi, py - yi)
-    return g, speed_along(rate(A.BODY, j, t), nx, ny, px - xj, py - yj) - one

@@ -7,6 +7,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
+from ..geometry.flight import opening_rate
 from ..model.contacts import Row
 from ..model.parameters.impulses import SINGULAR
 
@@ -50,17 +51,15 @@ def invert(row: Row, nn: float, nt: float, tt: float) -> None:
 @nonallocating
 def normal_rate(row: Row, V: FloatArray) -> float:
     """u_n of a contact at velocities V (k, 3)."""
-    a, b = row.a, row.b
-    turning = row.arm_nb * V[b, 2] - row.arm_na * V[a, 2]
-    return float(row.nx * (V[b, 0] - V[a, 0]) + row.ny * (V[b, 1] - V[a, 1]) + turning)
+    a, b = (V[row.a, 0], V[row.a, 1], V[row.a, 2]), (V[row.b, 0], V[row.b, 1], V[row.b, 2])
+    return float(opening_rate(row.nx, row.ny, row.arm_na, row.arm_nb, a, b))
 
 
 @nonallocating
 def slip_rate(row: Row, V: FloatArray) -> float:
     """The part of `tangent_rate` that is of the bodies."""
-    a, b = row.a, row.b
-    turning = row.arm_tb * V[b, 2] - row.arm_ta * V[a, 2]
-    return float(row.nx * (V[b, 1] - V[a, 1]) - row.ny * (V[b, 0] - V[a, 0]) + turning)
+    a, b = (V[row.a, 0], V[row.a, 1], V[row.a, 2]), (V[row.b, 0], V[row.b, 1], V[row.b, 2])
+    return float(opening_rate(-row.ny, row.nx, row.arm_ta, row.arm_tb, a, b))
 
 
 @nonallocating
