@@ -33,7 +33,7 @@ _TIE = "kind", "body", "bounded"  # fields of JOINT that decide the plan of the 
 def differences(now: AnyArray, then: AnyArray) -> Iterator[tuple[str, BoolArray]]:
     """The fields of joints that no step changes, each with (j,) whether its values differ in two arrays of JOINT."""
     for name in Joint.TYPE.names or ():
-        if name not in ("touched", *OF_STEPS):
+        if name not in OF_STEPS:
             yield name, (now[name] != then[name]).reshape(len(now), -1).any(axis=1)
 
 

@@ -127,7 +127,7 @@ def _remember(stepper: RunningStepper, world: World, parts: _Parts, at: IntArray
     loop.recall(parts.take)
     if joints is not None:
         joint = parts.take(joints.joint.dtype, joints.joint.shape)
-        for name in ("touched", *OF_STEPS):
+        for name in OF_STEPS:
             joints.joint[name] = joint[name]
         ratchets = joints.joint["kind"] == RATCHET
         joints.joint["notch"][ratchets] = joint["notch"][ratchets]

@@ -70,8 +70,8 @@ EDITED, APART, LEFT_APART, GIVES_WAY, TAKEN_OVER = 1, 2, 3, 4, 5
 
 # Fields that steps change.
 OF_STEPS = (
-    "side", "impulse", "struck", "last_step", "work", "led", "known_parts", "known_step", "past_led", "past_push",
-    "compliance",
+    "touched", "side", "impulse", "struck", "last_step", "work", "led", "known_parts", "known_step", "past_led",
+    "past_push", "compliance",
 )  # fmt: skip
 
 
