@@ -21,6 +21,7 @@ from ..model.parameters.intervals import (
     INTERVAL_RESIDUAL_SPEED,
     INTERVAL_UNMET,
     LARGE_ISLAND,
+    TRAVEL_MARGIN,
 )
 from ..model.parameters.joints import COLUMN_CONTACTS
 from ..model.scene import Scene, scene_of
@@ -82,9 +83,9 @@ def speeds(
         pull = max(pull, math.sqrt(ACC[i, 0] ** 2 + ACC[i, 1] ** 2) + abs(ACC[i, 2]) * EXTENT[i])
     for i in range(len(IM)):
         speed = math.sqrt((V[i, 0] - x) ** 2 + (V[i, 1] - y) ** 2) + abs(V[i, 2]) * EXTENT[i]
-        REACH[i] = 1.1 * speed * h
+        REACH[i] = TRAVEL_MARGIN * speed * h
         if i < n:
-            REACH[i] += 1.1 * pull * h * h + 1e-9 * EXTENT[i]
+            REACH[i] += TRAVEL_MARGIN * pull * h * h + 1e-9 * EXTENT[i]
             square += speed * speed
             most = max(most, speed)
         else:

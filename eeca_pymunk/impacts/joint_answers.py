@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..jointed.columns import fill_group, push_group
-from ..jointed.component import answer, fit_speeds, ready, size_joints
+from ..jointed.component import answer, fit_speeds, ready_at_poses, size_joints
 from ..jointed.gathered import find_places, gather_component
 from ..jointed.groups import Groups
 from ..joints.correct import hold_closing, keep_speeds
@@ -80,9 +80,9 @@ def answer_impact(A: Scene, J: Joints, block: Block, groups: Groups, C: Columns,
                 if groups.GROUP[q] == g:
                     for c in range(3):
                         V[q, c] = J.LOCAL[INDEX[q]].v0[c]
-        if not ready(J, s, 2.0, False):
+        if not ready_at_poses(J, s):
             continue
-        fill_group(J, groups, C, g, INDEX, False, ROWS, len(ROWS), PUSH, 2)
+        fill_group(J, groups, C, g, INDEX, ROWS, len(ROWS), PUSH, 2)
         if not along:
             keep_allowed(J, block, groups, g, n, INDEX, PUSH)
     return driven
@@ -105,7 +105,7 @@ def keep_allowed(J: Joints, block: Block, groups: Groups, g: int, n: int, INDEX:
     V = block.V
     PUSH[:] = 0.0
     put_momenta(block, groups, g, n, V, INDEX, PUSH)
-    answer(J, groups.COMPONENT[g], False, PUSH)
+    answer(J, groups.COMPONENT[g], PUSH)
     for q in range(n):
         if groups.GROUP[q] == g:
             for c in range(3):
@@ -127,13 +127,13 @@ def add_joint_impulses(
         gather_component(A, J, s, block.POSE, FREE, np.zeros_like(FREE), block.IM, block.II, t, 0.0)
         along = has_prescribed_motion(J, s)
         PUSH = np.zeros((find_places(A, J, s, INDEX), 3))
-        if not ready(J, s, 2.0, False):
+        if not ready_at_poses(J, s):
             continue
         if not along:
             put_momenta(block, groups, g, len(FREE), FREE, INDEX, PUSH)
         for i in range(len(ROWS)):
             push_group(groups, g, INDEX, ROWS[i], L[i, 0], L[i, 1], PUSH)
-        answer(J, s, False, PUSH)
+        answer(J, s, PUSH)
         W = workspace(J, s)
         for k in range(W.joints):
             for r in range(W.link[k].rows):

@@ -16,7 +16,7 @@ from ..geometry.sides import half_width, smaller
 from ..model.bodies import AT_REST
 from ..model.contacts import ENDED, LASTED
 from ..model.parameters.events import BUSY_STEPS, RESOLUTION, WORK_JOINTED
-from ..model.parameters.intervals import INTERVAL_DEPTH_WIDTH, TOUCH
+from ..model.parameters.intervals import INTERVAL_DEPTH_WIDTH, TOUCH, TRAVEL_MARGIN
 from ..model.scene import Scene
 from ..model.step import DONE, PUSHES_FULL
 from ..pairs.lists import far_apart
@@ -53,7 +53,7 @@ def join_neighbours(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
             if busy:
                 speed = norm(BODY[i].vx, BODY[i].vy) + norm(BODY[j].vx, BODY[j].vy)
                 speed += abs(BODY[i].spin) * BODY[i].extent + abs(BODY[j].spin) * BODY[j].extent
-                reach += 1.1 * (speed + pulled * dt) * h
+                reach += TRAVEL_MARGIN * (speed + pulled * dt) * h
             if far_apart(A, s, o, t, reach + TOUCH * small):
                 continue
             other = STATE[j].island

@@ -25,7 +25,7 @@ from .membership import approach, fixed_support, persists, remembered_force
 def travel_bound(A: Scene, i: int, h: float) -> float:
     """Bound of the distance that points of body i travel in a time h, with a margin; for `Midstep`."""
     pulled = 0.5 * A.PAR.pulled * h if A.BODY[i].inv_mass > 0.0 else 0.0
-    return 1.1 * (A.RESTING[i].speed + pulled) * h
+    return intervals.TRAVEL_MARGIN * (A.RESTING[i].speed + pulled) * h
 
 
 @kernel
@@ -57,7 +57,7 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                 small = smaller(A, s, o)
                 busy = A.MEMBER[i].busy > 0 or A.MEMBER[j].busy > 0
                 speed = own + norm(BODY[j].vx, BODY[j].vy) + abs(BODY[j].spin) * BODY[j].extent
-                reach = 1.1 * (speed * h + A.PAR.pulled * h * h) + intervals.TOUCH * small
+                reach = intervals.TRAVEL_MARGIN * (speed * h + A.PAR.pulled * h * h) + intervals.TOUCH * small
                 if together:
                     reach = travel_bound(A, i, h) + travel_bound(A, j, h) + intervals.TOUCH * small
                 if far_apart(A, s, o, t, reach):
@@ -71,7 +71,8 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                     if not together:
                         if not busy:
                             reach = (
-                                1.1 * (max(-u, 0.0) * h + max(A.PAR.pulled, closing) * h * h) + intervals.TOUCH * small
+                                intervals.TRAVEL_MARGIN * (max(-u, 0.0) * h + max(A.PAR.pulled, closing) * h * h)
+                                + intervals.TOUCH * small
                             )
                         # Within an interval bodies move no farther; other pairs meet at their times of impact.
                         reach = min(reach, 2.0 * intervals.INTERVAL_WAY * small)

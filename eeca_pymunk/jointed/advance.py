@@ -18,7 +18,7 @@ from ..model.scene import Scene
 from ..rows.build import push_contact
 from .bounded_rows import fill_rows, list_rows, note_rows
 from .columns import fill_group
-from .component import ready, step_component
+from .component import ready_in_step, step_component
 from .gathered import find_places, gather_component, lead_component, rewind_joints
 from .groups import Groups
 from .motors import let_slip
@@ -112,9 +112,9 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
             size = find_places(A, J, s, INDEX)
             let_slip(J, s, True, m <= COLUMN_CONTACTS)
             first = list_rows(A, J, B, s, h, motion.MEAN)
-            if ready(J, s, h, True):
+            if ready_in_step(J, s, h):
                 PUSH = np.empty((size, 3))
-                fill_group(J, groups, C, g, INDEX, True, ROWS, m, PUSH, 2)
+                fill_group(J, groups, C, g, INDEX, ROWS, m, PUSH, 2)
                 fill_rows(J, groups, B, g, first, INDEX, PUSH)
             else:
                 B.USED[0] = first

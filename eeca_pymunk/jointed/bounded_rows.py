@@ -102,7 +102,7 @@ def fill_rows(J: Joints, groups: Groups, B: Bounded, g: int, first: int, INDEX: 
             if B.END[i, end] >= 0:
                 for c in range(3):
                     PUSH[INDEX[B.END[i, end]], c] += B.ROW[i, 3 * end + c]
-        answer(J, s, True, PUSH)
+        answer(J, s, PUSH)
         at = B.AT[i]
         for w in range(groups.FIRST[g], groups.FIRST[g + 1]):
             q = groups.BODY[w]

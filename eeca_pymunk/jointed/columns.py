@@ -73,10 +73,9 @@ def push_group(groups: Groups, g: int, INDEX: IntArray, row: Row, lam: float, be
 
 @nonallocating
 def fill_group(
-    J: Joints, groups: Groups, C: Columns, g: int, INDEX: IntArray, about_step: bool, ROWS: Rows[Row], m: int,
-    PUSH: FloatArray, ways: int,
-) -> None:  # fmt: skip
-    """Compute the columns' entries on the bodies of group g, whose component is `ready`.
+    J: Joints, groups: Groups, C: Columns, g: int, INDEX: IntArray, ROWS: Rows[Row], m: int, PUSH: FloatArray, ways: int
+) -> None:
+    """Compute the columns' entries on the bodies of group g, whose component is ready (`component.answer`).
 
     Args:
         INDEX: (k,) places of bodies in the scratch of their component.  PUSH: (bodies of the component, 3) scratch.
@@ -89,7 +88,7 @@ def fill_group(
         for tangent in range(ways):
             PUSH[:] = 0.0
             push_group(groups, g, INDEX, ROWS[i], 1.0 - tangent, float(tangent), PUSH)
-            answer(J, s, about_step, PUSH)
+            answer(J, s, PUSH)
             D = C.N if tangent == 0 else C.T
             for w in range(C.AT[i], C.AT[i + 1]):
                 if groups.GROUP[C.BODY[w]] == g:

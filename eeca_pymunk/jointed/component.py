@@ -109,16 +109,25 @@ def close_at_poses(
 
 
 @nonallocating
-def ready(J: Joints, s: int, h: float, about_step: bool) -> bool:
-    """Prepare the response of component s to impulses: about the step that `step_component` has just taken (the scratch
-    is then at its start again), or at the poses that `gather_component` has put there. False if there is none."""
-    J.TALLY.answers = prepare_response(workspace(J, s), STEP if about_step else SPEEDS, h)
+def ready_in_step(J: Joints, s: int, h: float) -> bool:
+    """Prepare the response of component s to impulses over the step h that `step_component` has just taken: the scratch
+    is at its start again. False if there is none."""
+    W = workspace(J, s)
+    J.TALLY.answers = prepare_response(W, STEP, h)
+    J.TALLY.gives = int(W.J.JOINT[W.link[0].joint].compliance > 0.0)
     return bool(J.TALLY.answers >= 0)
 
 
 @nonallocating
-def answer(J: Joints, s: int, about_step: bool, PUSH: FloatArray) -> None:
-    """Replace the impulses PUSH (bodies of the component, 3) by the changes of velocity that they cause."""
-    W = workspace(J, s)
-    gives = about_step and W.J.JOINT[W.link[0].joint].compliance > 0.0
-    respond(W, J.TALLY.answers, PUSH, gives)
+def ready_at_poses(J: Joints, s: int) -> bool:
+    """Prepare the response of component s to impulses at the instant and the poses that `gather_component` has put into
+    the scratch. False if there is none."""
+    J.TALLY.answers, J.TALLY.gives = prepare_response(workspace(J, s), SPEEDS, 2.0), 0
+    return bool(J.TALLY.answers >= 0)
+
+
+@nonallocating
+def answer(J: Joints, s: int, PUSH: FloatArray) -> None:
+    """Replace the impulses PUSH (bodies of the component, 3) by the changes of velocity that they cause in component s,
+    which `ready_in_step` or `ready_at_poses` has prepared."""
+    respond(workspace(J, s), J.TALLY.answers, PUSH, J.TALLY.gives > 0)

@@ -18,7 +18,7 @@ from ..rows.build import normal_rate
 from ..rows.inplace import add
 from .advance import Interval, apart, find_hit, join_points
 from .columns import fill_free, fill_group, make_columns, set_effective_masses
-from .component import fit_speeds, ready
+from .component import fit_speeds, ready_at_poses
 from .gathered import find_places, gather_component
 from .lifting import raise_gaps
 from .motors import acts_at_once, is_driven
@@ -105,9 +105,9 @@ def stop_closing(
             continue
         gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, end, h)
         size = find_places(A, J, s, INDEX)
-        if not ready(J, s, 2.0, False):
+        if not ready_at_poses(J, s):
             return np.zeros(m)
-        fill_group(J, groups, C, g, INDEX, False, KEEP, pushing, np.empty((size, 3)), 1)
+        fill_group(J, groups, C, g, INDEX, KEEP, pushing, np.empty((size, 3)), 1)
     set_effective_masses(groups, C, KEEP, pushing)
     RATES = np.empty(pushing)
     for i in range(pushing):

@@ -25,7 +25,7 @@ from ..rows.inplace import copy
 from ..rows.lifting import lift_above_walls
 from .advance import Interval, Motion
 from .columns import fill_free, fill_group, make_columns, set_effective_masses
-from .component import close_at_poses, ready
+from .component import close_at_poses, ready_at_poses
 from .gathered import find_places, gather_component
 from .groups import find_groups, has_partner
 from .motors import keeps_speed
@@ -114,8 +114,8 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget
         if s >= 0 and (build or keeps_speed(J, s)):
             gather_component(A, J, s, END, V, NOTHING, isle.IM, isle.II, end, h)
             places = find_places(A, J, s, INDEX)
-            if ready(J, s, 2.0, False):
-                fill_group(J, groups, C, g, INDEX, False, ROWS, m, np.empty((places, 3)), 1)
+            if ready_at_poses(J, s):
+                fill_group(J, groups, C, g, INDEX, ROWS, m, np.empty((places, 3)), 1)
     KEEP = ROWS[:m].copy()
     set_effective_masses(groups, C, KEEP, m)
     D = np.zeros_like(V)

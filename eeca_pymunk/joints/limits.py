@@ -190,7 +190,7 @@ def meet_limit(W: Workspace, S: Parts, h: float, ledger: JointLedger) -> None:
 @inlined
 def is_solved(S: Parts, h: float) -> bool:
     """Whether the part is longer than round-off of the step h: only then it is solved."""
-    return bool(S.when > 1e-13 * abs(h) or h < 0.0)
+    return bool(S.when > joints.PART_ROUND_OFF * abs(h) or h < 0.0)
 
 
 @nonallocating
@@ -226,6 +226,6 @@ def step_with_limits(
             if verdict != MEETS:
                 return verdict == ENDS
         meet_limit(W, S, h, ledger)
-        if S.left <= 1e-13 * h:
+        if S.left <= joints.PART_ROUND_OFF * h:
             return True
         begin_next(W, S, loops)

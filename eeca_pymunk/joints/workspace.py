@@ -12,7 +12,7 @@ from ..compiled.layouts import COUNT, Layout, Plan
 from ..compiled.records import Rows
 from ..model.bodies import Body
 from ..model.joints import Joint, Joints, Workspace, joints_of
-from ..newton.boxes import ROW_ARRAYS
+from ..newton.boxes import room_for_boxes
 from ..newton.dual import STRIDE
 from .plan import make_plan, together
 
@@ -38,13 +38,12 @@ def measure_plan(J: Joints, ROOM: IntArray) -> bool:
     for s in range(J.TALLY.components):
         C = J.COMPONENT[s]
         whole, dual = C.unknowns * (3 * C.band + 1), C.dual_size * (2 * C.dual_band + 1)
-        boxes = (C.boxes + 1) * (C.unknowns + C.impulses + 3 * C.boxes + ROW_ARRAYS) if C.boxes > 0 else 0
         ROOM[0] = max(ROOM[0], C.end_body - C.first_body)
         ROOM[1] = max(ROOM[1], C.end_joint - C.first_joint)
         ROOM[2] = max(ROOM[2], 2 * C.unknowns, C.dual_size)
         ROOM[3] = max(ROOM[3], whole, dual if C.rigid > 0 else 0)
         ROOM[4] = max(ROOM[4], 2 * (C.unknowns + C.impulses))
-        ROOM[5] = max(ROOM[5], STRIDE * C.dual_size + boxes)
+        ROOM[5] = max(ROOM[5], STRIDE * C.dual_size + room_for_boxes(C.boxes, C.unknowns + C.impulses))
     ROOM[4] = max(ROOM[4], 2)
     small = J.LOCAL.shape[0] < ROOM[0] or J.HINGE.shape[0] < ROOM[1] or J.PIVOTS.shape[0] < ROOM[2]
     return bool(

@@ -158,6 +158,7 @@ class Tally(Record):
     order: int  # of steps without dissipation, drives and contacts: 4, or 2
     worst: int  # status of the step
     answers: int  # linear system with which the component that is ready answers impulses, -1 for none
+    gives: int  # 1 if its joints give way in that
 
 
 class Joints(NamedTuple):

@@ -42,7 +42,11 @@ from .condensed import factor, substitute
 from .dual import STRIDE
 from .entries import acting_rows, interval_of, put_free
 
-ROW_ARRAYS = 8  # arrays of one number per row, beside the columns (and a right side) and a matrix with its factors
+
+@nonallocating
+def room_for_boxes(n: int, size: int) -> int:
+    """Numbers of MORE for n rows and `size` unknowns, without the scratch of a dual system."""
+    return (n + 1) * size + (3 * n + 7) * n if n > 0 else 0
 
 
 @nonallocating

@@ -15,7 +15,7 @@ from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.joint_steps import JointStep
 from ..model.joints import CONDENSED, WHOLE, Workspace
-from ..model.parameters.joints import CONDENSED_BAND
+from ..model.parameters.joints import FACTOR_BAND
 from .entries import put_condensed, put_rows
 
 
@@ -60,7 +60,7 @@ def factor(matrix: FloatArray, size: int, band: int) -> bool:
             if below != 0.0:
                 below *= inverse
                 matrix[to] = below
-                if band >= CONDENSED_BAND:
+                if band >= FACTOR_BAND:
                     subtract(matrix[to + 1 : to + reach], matrix[at + 1 : at + reach], below)
                 else:
                     for j in range(1, reach):
@@ -75,7 +75,7 @@ def substitute(matrix: FloatArray, size: int, band: int, right: FloatArray, at: 
     for i in range(size):
         n = min(band, i)
         begin = i * width + band - n
-        if band >= CONDENSED_BAND:
+        if band >= FACTOR_BAND:
             right[at + i] -= dot(matrix[begin : begin + n], right[at + i - n : at + i])
         else:
             total = right[at + i]
@@ -86,7 +86,7 @@ def substitute(matrix: FloatArray, size: int, band: int, right: FloatArray, at: 
         n = min(band, size - 1 - i)
         begin = i * width + band
         total = right[at + i]
-        if band >= CONDENSED_BAND:
+        if band >= FACTOR_BAND:
             total -= dot(matrix[begin + 1 : begin + 1 + n], right[at + i + 1 : at + i + 1 + n])
         else:
             # The unknown found last is used last, so that no other product waits for it.

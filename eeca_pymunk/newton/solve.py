@@ -34,7 +34,7 @@ def drop_impulses(W: Workspace) -> None:
 
 
 @nonallocating
-def bounded_rows(link: Rows[Coupling], joints: int) -> bool:
+def has_bounded(link: Rows[Coupling], joints: int) -> bool:
     """Whether any joint has bounded rows in the matrix."""
     for k in range(joints):
         if link[k].bounded == BOUNDED:
@@ -101,7 +101,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
     first_iterate(W, STEP, h)
     best, last, stalls = 1e300, 1e300, 0
     system = DUAL if component.rigid > 1 else component.system
-    lasting = system == DUAL or not bounded_rows(W.link, W.joints)
+    lasting = system == DUAL or not has_bounded(W.link, W.joints)
     # A wide matrix is expensive to factor: the parts of a step share one while errors fall with it.
     # ready: factors can be used again; fresh: those of the last iteration were new; since: iteration from which on each
     # has new ones (full Newton).

@@ -9,7 +9,7 @@ from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..geometry.flight import opening_rate
 from ..model.contacts import Row
-from ..model.parameters.impulses import SINGULAR
+from ..model.parameters.impulses import ARM_ROUND_OFF, SINGULAR
 
 
 @nonallocating
@@ -21,11 +21,11 @@ def place_row(row: Row, px: float, py: float, POSE: FloatArray, IM: FloatArray, 
     frictionless impulses exert no torque on disks.
     """
     a, b = row.a, row.b
-    nx, ny, noise = row.nx, row.ny, 1e-15 * (abs(px) + abs(py))
+    nx, ny, noise = row.nx, row.ny, ARM_ROUND_OFF * (abs(px) + abs(py))
     xa, ya, xb, yb = px - POSE[a, 0], py - POSE[a, 1], px - POSE[b, 0], py - POSE[b, 1]
     na, nb, ta, tb = xa * ny - ya * nx, xb * ny - yb * nx, xa * nx + ya * ny, xb * nx + yb * ny
-    na = 0.0 if abs(na) <= 1e-15 * (abs(xa) + abs(ya)) + noise else na
-    nb = 0.0 if abs(nb) <= 1e-15 * (abs(xb) + abs(yb)) + noise else nb
+    na = 0.0 if abs(na) <= ARM_ROUND_OFF * (abs(xa) + abs(ya)) + noise else na
+    nb = 0.0 if abs(nb) <= ARM_ROUND_OFF * (abs(xb) + abs(yb)) + noise else nb
     row.arm_na, row.arm_nb, row.arm_ta, row.arm_tb = na, nb, ta, tb
     mass = IM[a] + IM[b]
     nn, tt = mass + II[a] * na**2 + II[b] * nb**2, mass + II[a] * ta**2 + II[b] * tb**2

@@ -15,6 +15,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Row
+from ..model.parameters.impulses import FACTOR_LEAST
 from .dissection import contact_neighbours, dissect, pattern
 
 
@@ -148,11 +149,11 @@ def factor_blocks(n: int, factor: Factor) -> None:
                 head[r] = k
             k = follower
         # B >= 1 in exact arithmetic; for large R round-off may violate that.
-        d00 = math.sqrt(max(D[j, 0, 0], 1e-3))
+        d00 = math.sqrt(max(D[j, 0, 0], FACTOR_LEAST))
         d10, d20 = D[j, 1, 0] / d00, D[j, 2, 0] / d00
-        d11 = math.sqrt(max(D[j, 1, 1] - d10 * d10, 1e-3))
+        d11 = math.sqrt(max(D[j, 1, 1] - d10 * d10, FACTOR_LEAST))
         d21 = (D[j, 2, 1] - d20 * d10) / d11
-        d22 = math.sqrt(max(D[j, 2, 2] - d20 * d20 - d21 * d21, 1e-3))
+        d22 = math.sqrt(max(D[j, 2, 2] - d20 * d20 - d21 * d21, FACTOR_LEAST))
         D[j, 0, 0], D[j, 1, 0], D[j, 2, 0] = d00, d10, d20
         D[j, 1, 1], D[j, 2, 1], D[j, 2, 2] = d11, d21, d22
         for q in range(columns[j], columns[j + 1]):

@@ -8,11 +8,14 @@ from .record import accuracy, heuristic, round_off, work
 SINGULAR = round_off(1e-12, "of the product of its diagonal",
     "Determinant of a contact's 2 x 2 matrix below which normal and tangential impulse are not solved together.")
 JAMMED = round_off(1e-09, "of A_nn", "Mobility along the impulse of a slipping contact below which it jams.")
+ARM_ROUND_OFF = round_off(1e-15, "of the point's coordinates", "Arm of a normal impulse that is 0.")
 ON_CONE = round_off(1e-12, "of the largest friction",
     "Friction nearer than this to the edge of its cone counts as that of slip.")
 WEDGED = heuristic(0.01, "of the speed",
     "Velocity that a solve leaves, or part of its impulses that the energy lock takes, from which on contacts count "
     "as wedged: without friction.")
+FACTOR_LEAST = round_off(0.001, "of a body's inertia",
+    "Pivot of sparse factors, at least; it is 1 or more in exact arithmetic.")
 PROXIMAL_DENSE = round_off(100000000.0, "over the effective mass",
     "Stiffness of the proximal term that makes redundant contacts solvable with dense factors.")
 PROXIMAL_STATICS = round_off(100000000000.0, "over the effective mass",

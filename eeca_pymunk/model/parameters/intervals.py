@@ -26,6 +26,9 @@ LARGE_SWEEPS_HIT = work(12, "sweeps", "Sweeps of a large island that was hit wit
 INTERVAL_WAY = heuristic(0.5, "of the smaller shape; rad",
     "Relative way of two bodies in contact in one interval, and their rotation. Larger: contacts move while they are "
     "held fixed.")
+TRAVEL_MARGIN = accuracy(1.1, "of the way by the speeds and accelerations at its start",
+    "Reach of shapes within an interval. Smaller: impulses within it bring shapes together that are not in it. Larger: "
+    "more candidates.")
 INTERVAL_DEPTH = heuristic(0.05, "of the smaller shape", "Depth by which a contact may close in one interval.")
 INTERVAL_DEPTH_WIDTH = heuristic(0.1, "of both widths",
     "Depth by which a contact may close in one interval, or an impact that is passed over by the end of the step: a "

@@ -15,7 +15,6 @@ BOX_SECULAR = work(40, "iterations", "Iterations for the multiplier of a frictio
 CONDENSED_PASSES = work(3, "number", "Refinements of a condensed solution.")
 REFINEMENT_WORK = work(300.0, "operations", "Work of each of them for the rows of a joint.")
 STIFFEST = round_off(10000000.0, "of the bodies' inertia", "Stiffness of rows in a condensed system, at most.")
-CONDENSED_BAND = work(16, "rows", "Half-width of the band from which on rows are taken as views.")
 JOINT_SPEED_ROUND_OFF = round_off(1e-14, "of the speeds", "Velocity along a joint row that is round-off.")
 JOINT_SPEED_LEFT = heuristic(0.01, "of the speeds along a row",
     "Velocity along a joint row up to which it is an error of steps and not an edit to be corrected.")
@@ -54,7 +53,8 @@ REDUNDANT_MOST = work(0.01, "of the diagonal",
 CLOSING_EPSILON = round_off(1e-05, "of the diagonal", "Term added to the diagonal while joints that are apart close.")
 CLOSINGS = work(8, "iterations", "Iterations to close joints that are apart, at most.")
 REDUNDANT_PASSES = work(12, "number", "Passes of a projection of velocities, at most, beside three for each joint.")
-FACTOR_BAND = work(16, "rows", "Half-width of the band from which on factors are computed several numbers at a time.")
+FACTOR_BAND = work(16, "rows",
+    "Half-width of the band from which on factors and solutions take rows as views, several numbers at a time.")
 ROW_WORK = work(250.0, "operations", "Work of the rows of a joint in an iteration, for the budget of a step.")
 FACTOR_WORK = work(215.0, "operations", "Work of the factors of a row besides that of its band.")
 BACK_WORK = work(3.0, "operations", "Work of a solution for each row and each number in its band.")
@@ -112,6 +112,7 @@ MEET_HALVINGS = work(40, "iterations", "Halvings of the time to an instant befor
 MEET_SECANTS_LOADED = work(2, "iterations", "Secant steps to that instant if contacts push on the component.")
 MEET_INSTANT = round_off(1e-9, "of the step",
     "Length below which an interval before an impact, or a part before a limit, is empty.")
+PART_ROUND_OFF = round_off(1e-13, "of the step", "Length of a part of a step that is not solved.")
 COLUMN_CONTACTS = work(40, "contacts",
     "Number up to which islands are solved by homotopies, with joints always: exactly; others roughly.")
 COLUMN_SWEEPS = work(3, "sweeps", "Sweeps over components before the first homotopy.")
