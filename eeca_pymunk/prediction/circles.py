@@ -27,7 +27,7 @@ def circle_circle(
     Args:
         dx, dy: from centre to centre, length.  ux, uy: relative velocity.  ax, ay: relative acceleration.
         extent: sum of the radii.  tolerance: length, a gap that counts as closed.
-        duration: time up to which is searched; lower bounds are at least that. Infinite: the result is exact.
+        duration: time up to which is searched; lower bounds are at least that, or what ADVANCES steps reach.
     """
     if ax == 0.0 and ay == 0.0:
         return ball_point(dx, dy, ux, uy, extent), True
@@ -53,7 +53,7 @@ def circle_circle(
         s += step
         if s > duration:
             return s, False
-    return duration, False
+    return s, False
 
 
 @nonallocating
@@ -127,7 +127,7 @@ def circle_outline(
         s += max(step, entry)
         if s > duration:
             return s, False
-    return duration, False
+    return s, False
 
 
 @nonallocating
