@@ -59,7 +59,7 @@ def test_no_list_and_no_forecast_is_made_where_nothing_is_near() -> None:
     lists = method.scene.GRID.renewals
     for _ in range(3):
         stepper.step(1e-4)
-        assert method.scene.COUNT.predictions == 0
+        assert method.scene.COUNT.work == 0
     assert method.scene.GRID.renewals == lists
 
 

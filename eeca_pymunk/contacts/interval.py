@@ -203,13 +203,11 @@ def step_island(
             stop_at_walls(A, problem, n, np.zeros(m, np.int64), L, VN)
         velocities(problem, L, FREE, VN)  # without the round-off of many sweeps
         wedged = exactly and (worst > WEDGED * scale or excessive(L, m, isle.IM, n, quick))
-        OUT[0].lock, OUT[0].owed = lock(problem, L, VN, FREE, owed, elastic)
+        OUT[0].lock = lock(problem, L, VN, FREE, owed, elastic)
         if wedged or (exactly and OUT[0].lock < 1.0 - WEDGED):
             worst = unwedge(problem, L, VN, FREE, INTERVAL_RESIDUAL * scale, quick, OUT[0])
-            OUT[0].lock, OUT[0].owed = lock(problem, L, VN, FREE, owed, elastic)
+            OUT[0].lock = lock(problem, L, VN, FREE, owed, elastic)
         OUT[0].residual, OUT[0].tolerance = worst, INTERVAL_UNMET * scale if exactly else np.inf
         OUT[0].restitution, OUT[0].friction = works(problem, L, VN)
         remember_loads(A, ROWS, L, m, h)
-    elif m == 0:
-        OUT[0].owed = owed
     return m

@@ -103,9 +103,9 @@ def settle_energy(
         OUT[0].restitution += kinetic_energy(BEFORE - FREE, IM, II, n)
         A.PAR.external += gained_energy(V, BEFORE, IM, II, n) + OUT[0].restitution + OUT[0].friction - outside
         return
-    s, OUT[0].owed = scale_to_lose(outside - gained + square, square, owed, exact)
+    s = scale_to_lose(outside - gained + square, square, owed, exact)
     if abs(outside - gained - owed) <= IMPACT_ENERGY * kinetic_energy(FREE, IM, II, n):
-        s, OUT[0].owed = 1.0, 0.0  # a small impact on what moves fast would be scaled by round-off
+        s = 1.0  # a small impact on what moves fast would be scaled by round-off
     for z in range(rows):
         L[z, 0], L[z, 1] = s * L[z, 0], s * L[z, 1]
     for q in range(n):

@@ -111,7 +111,7 @@ def scale_impulses(A: Scene, root: int, t: float) -> None:
             SQUARE[GROUP[q]] += 0.5 * (turn * (t - start)) ** 2 / body.inv_inertia
     for g in range(n):
         if LOST[g] < 0.0:
-            Q[g], _ = scale_to_lose(LOST[g] + SQUARE[g], SQUARE[g], 0.0, False)
+            Q[g] = scale_to_lose(LOST[g] + SQUARE[g], SQUARE[g], 0.0, False)
     for q in range(n):
         body, pull, part = A.BODY[MINE[q]], A.PULL[MINE[q]], Q[GROUP[q]]
         if part != 1.0:

@@ -37,7 +37,7 @@ class Body(Record):
 
 
 BODIES = kind_of(Body)
-POSE, VELOCITY, ACCELERATION = ("x", "y", "angle"), ("vx", "vy", "spin"), ("ax", "ay", "angular")
+POSE, VELOCITY = ("x", "y", "angle"), ("vx", "vy", "spin")
 
 
 class Next(Record):

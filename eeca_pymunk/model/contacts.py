@@ -177,7 +177,6 @@ class Solved(Record):
     restitution: float  # energies: losses >= 0 by restitution and by friction
     friction: float
     lock: float  # scale of the energy lock
-    owed: float  # energy that later intervals have to take out
     residual: float  # of the contact problem: length/time
     tolerance: float  # of the residual
     sweeps: int

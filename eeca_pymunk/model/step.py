@@ -36,7 +36,6 @@ class Count(Record):
     heap: int  # rows of the heap in use
     logged: int  # rows of LOG in use
     blocks: int  # number of simultaneous impacts of several pairs of shapes
-    predictions: int  # number of predictions in the step
     limit: int  # impacts that a body may have in a step
     unmet: int  # number of budgets and tolerances that the step has not met
     closing: int  # 1 if bodies that impulses do not move may move relative to each other, and squeeze others

@@ -14,7 +14,6 @@ from .next_event import predict
 @nonallocating
 def predict_next(A: Scene, i: int, t: float, end: float, several: bool) -> None:
     """Predict the next event of body i at instant t of the loop; `several` as in `disks.first_impact`."""
-    A.COUNT.predictions += 1
     if i < A.COUNT.disks and A.STATE[i].island < 0:
         predict_disk(A, i, t, end, several)
         return

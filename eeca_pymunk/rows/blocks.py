@@ -30,7 +30,7 @@ CONVERGED, TRUNCATED = 0, 1  # statuses
 @nonallocating
 def clear_report(out: Solved) -> None:
     """Reset the report of a solve."""
-    out.restitution = out.friction = out.owed = out.residual = out.tolerance = out.operations = 0.0
+    out.restitution = out.friction = out.residual = out.tolerance = out.operations = 0.0
     out.sweeps = out.direct = out.at_rest = 0
     out.lock = 1.0
 
@@ -94,7 +94,7 @@ def close_block(
     """Lock the energy of impulses L, and report what they lose; V is computed from them again, without the round-off
     of many sweeps."""
     velocities(problem, L, FREE, V)
-    OUT[0].lock, OUT[0].owed = lock(problem, L, V, FREE, owed, exact)
+    OUT[0].lock = lock(problem, L, V, FREE, owed, exact)
     OUT[0].restitution, OUT[0].friction = works(problem, L, V)
 
 
@@ -117,7 +117,6 @@ def solve_block(problem: AnyProblem, L: FloatArray, V: FloatArray, owed: float, 
     """
     ROWS, m = problem.ROWS, problem.m
     clear_report(OUT[0])
-    OUT[0].owed = owed
     rates(ROWS, V, m)
     speed = aim(ROWS, m)
     if not speed > 0.0:

