@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 
 from ..compiled import kernel, nonallocating
+from ..compiled.records import Rows, zeros
 from ..geometry.gap import gap
 from ..islands.membership import in_large_island, members_of
 from ..islands.rest import speed
+from ..model.islands import MEETING, Meeting
 from ..model.joint_steps import LINEAR
 from ..model.joints import Joints
 from ..model.parameters.intervals import TOUCH
@@ -45,24 +47,6 @@ def begun(A: Scene, i: int) -> float:
 
 
 @kernel
-def shorten_both(A: Scene, J: Joints, one: int, other: int, t: float) -> int:
-    """`shorten` two islands, or one if both are the same; returns how many contacts they had."""
-    loaded = int(shorten(A, J, one, t))
-    if other != one:
-        loaded += shorten(A, J, other, t)
-    return loaded
-
-
-@nonallocating
-def too_late(A: Scene, J: Joints, roots: tuple[int, int], t: float) -> float:
-    """The instant by which one of both islands, whose intervals end at t, has moved too far: it `passes_through`
-    another shape, or is `left_apart` at t; infinity if neither has."""
-    if left_apart(A, J, roots[0]) or left_apart(A, J, roots[1]):
-        return t
-    return min(passes_through(A, roots[0], t), passes_through(A, roots[1], t))
-
-
-@kernel
 def end_before(A: Scene, J: Joints, root: int, t: float, fits: bool, spent: bool) -> bool:
     """End the interval of an island, which was shortened to instant t; whether the island ends before t. Unless the
     interval is known to fit (`fits`), it is halved while joints do not hold at its end or it has passed through other
@@ -85,25 +69,10 @@ def end_before(A: Scene, J: Joints, root: int, t: float, fits: bool, spent: bool
     return bool(then < t)
 
 
-@kernel
-def locate_impact(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
-    """Bring the islands of shapes a and b, predicted to meet at instant t, to the instant at which they do. Returns it,
-    and whether the shapes are apart there.
-
-    An interval that ends earlier has another path, so t is found by secants on the gap at the end of shortened
-    intervals. The gap is no continuous function of their length: stiff springs swing more than once in a coarse
-    interval. If shapes are on the far side of each other, their paths cross before the end, or it is `too_late`, t is
-    halved towards the last instant at which they were apart. If no interval ends at contact, both end where they are
-    apart; an island for which no interval fits stays where it is until then. Shapes that touch at the start, and close
-    by velocities that joints allow (`allowed`), meet there. Once the work of the step is spent, t is the last instant
-    at which they were apart.
-    """
-    i, j = A.LINK[a].owner, A.LINK[b].owner
-    roots = (A.STATE[i].island, A.STATE[j].island if A.BODY[j].inv_mass > 0.0 else -1)
-    if not (under_way(A, roots[0]) or under_way(A, roots[1])):
-        # Both are at t, and have no paths beyond it: only bodies that they touch have joints.
-        return t, False
-    # Not before any path begins, where overlapping shapes would have met, nor after an interval's end.
+@nonallocating
+def instants_between(A: Scene, i: int, j: int, roots: tuple[int, int], t: float) -> tuple[float, float]:
+    """The least and the latest instant at which bodies i and j may meet, as predicted for t: not before any path
+    begins, where overlapping shapes would have met, nor after an interval's end or the next event of other bodies."""
     least, latest = A.BODY[i].since, A.PAR.dt
     if A.BODY[j].inv_mass > 0.0:
         least = max(least, A.BODY[j].since)
@@ -115,90 +84,159 @@ def locate_impact(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float,
                 least = max(least, begun(A, member))
         elif end == 0 or A.BODY[j].inv_mass > 0.0:
             least = max(least, begun(A, i if end == 0 else j))
-    # Nor after the next event of other bodies, which comes first.
     if A.COUNT.heap > 0:
         latest = min(latest, max(t, A.HEAP_TIME[0]))
-    small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
-    # Shapes that overlap at the start without closing meet when they are as deep again.
-    start, rate = gap_and_rate(A, J, a, b, least, False)
+    return least, latest
+
+
+@kernel
+def begin_meeting(A: Scene, J: Joints, a: int, b: int, t: float, SEARCH: Rows[Meeting]) -> None:
+    """Write the record of the search for the impact of shapes a and b, predicted for t. Shapes that overlap at the
+    start without closing meet when they are as deep again; those that touch there, and close by velocities that joints
+    allow (`allowed`), meet at once."""
+    S, i, j = SEARCH[0], A.LINK[a].owner, A.LINK[b].owner
+    S.a, S.b, S.t = a, b, t
+    S.roots[0], S.roots[1] = A.STATE[i].island, A.STATE[j].island if A.BODY[j].inv_mass > 0.0 else -1
+    S.least, S.latest = instants_between(A, i, j, (S.roots[0], S.roots[1]), t)
+    S.small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
+    S.start, rate = gap_and_rate(A, J, a, b, S.least, False)
     # Closing by round-off, as after an impact, does not count: an impact would not change it.
-    rate = 0.0 if abs(rate) <= CLOSES * max(speed(A, i), speed(A, j)) else rate
-    if rate >= 0.0 and start <= TOUCH * small:
-        _, allowed = gap_and_rate(A, J, a, b, least, True)
-        if allowed < -CLOSES * max(speed(A, i), speed(A, j)):
-            rate, t = allowed, least
-    level = min(start, 0.0) if rate >= 0.0 else 0.0
-    before, gap_before, g, touch, loaded = -1.0, 0.0, 0.0, 0.0, 0
-    apart, crossed, crosses = least, False, False
-    spent = J.PROGRESS.effort > J.PROGRESS.budget
-    most = 1 if spent or in_large_island(A, a, b) else MEET_SECANTS_LOADED
+    slow = CLOSES * max(speed(A, i), speed(A, j))
+    S.rate = 0.0 if abs(rate) <= slow else rate
+    if S.rate >= 0.0 and S.start <= TOUCH * S.small:
+        _, allowed = gap_and_rate(A, J, a, b, S.least, True)
+        if allowed < -slow:
+            S.rate, S.t = allowed, S.least
+    S.level = min(S.start, 0.0) if S.rate >= 0.0 else 0.0
+    S.apart = S.least
+
+
+@kernel
+def end_both(A: Scene, J: Joints, S: Meeting, t: float) -> None:
+    """`shorten` both islands to t, or one if both are the same."""
+    S.t, S.loaded = t, shorten(A, J, S.roots[0], t)
+    if S.roots[1] != S.roots[0]:
+        S.loaded += shorten(A, J, S.roots[1], t)
+
+
+@nonallocating
+def too_late(A: Scene, J: Joints, S: Meeting) -> float:
+    """The instant by which one of both islands, whose intervals end at S.t, has moved too far: it `passes_through`
+    another shape, or is `left_apart` at S.t; infinity if neither has."""
+    if left_apart(A, J, S.roots[0]) or left_apart(A, J, S.roots[1]):
+        return S.t
+    return min(passes_through(A, S.roots[0], S.t), passes_through(A, S.roots[1], S.t))
+
+
+@kernel
+def find_contact(A: Scene, J: Joints, S: Meeting) -> None:
+    """Search the instant at which the gap is S.level by secants on the gap at the end of shortened intervals. It is no
+    continuous function of their length: stiff springs swing more than once in a coarse interval. If shapes are on the
+    far side of each other, or their paths cross before the end, the instant is halved towards S.apart."""
+    spent, before, gap_before = J.PROGRESS.effort > J.PROGRESS.budget, -1.0, 0.0
+    most = 1 if spent or in_large_island(A, S.a, S.b) else MEET_SECANTS_LOADED
+    crosses = False
     for tries in range(MEET_SECANTS):
-        loaded = shorten_both(A, J, roots[0], roots[1], t)
-        g = gap(A, a, b, t)[0] - level
-        touch = MEET if loaded == 0 else MEET_LOADED if loaded <= COLUMN_CONTACTS else MEET_MANY
+        t, last = S.t, tries + 1 == MEET_SECANTS
+        end_both(A, J, S, t)
+        S.gap = gap(A, S.a, S.b, t)[0] - S.level
+        S.touch = S.small * (MEET if S.loaded == 0 else MEET_LOADED if S.loaded <= COLUMN_CONTACTS else MEET_MANY)
         crosses, through = False, t
-        if g + level > touch * small:
-            through, crosses = crossing_of_paths(A, a, b, t)
+        if S.gap + S.level > S.touch:
+            through, crosses = crossing_of_paths(A, S.a, S.b, t)
         # Depths add up from impact to impact.
-        deep = not spent and g < -MEET_MANY * small
-        if ((loaded > 0 or spent) and tries + 1 >= most and not deep) or abs(g) <= touch * small:
+        deep = not spent and S.gap < -MEET_MANY * S.small
+        if ((S.loaded > 0 or spent) and tries + 1 >= most and not deep) or abs(S.gap) <= S.touch:
             break
         secant = before >= 0.0 and t != before
-        slope = (g - gap_before) / (t - before) if secant else gap_and_rate(A, J, a, b, t, False)[1]
-        if not slope < 0.0 and g < -touch * small and start >= -touch * small:
+        slope = (S.gap - gap_before) / (t - before) if secant else gap_and_rate(A, J, S.a, S.b, t, False)[1]
+        if not slope < 0.0 and S.gap < -S.touch and S.start >= -S.touch:
             # Beyond the middle of a thin shape the normal is that of its far side.
-            through, crosses = crossing_of_paths(A, a, b, t)[0], True
+            through, crosses = crossing_of_paths(A, S.a, S.b, t)[0], True
         if crosses:
-            if tries + 1 == MEET_SECANTS:
+            if last:
                 break
-            crossed, before = True, -1.0
-            t = through if apart < through < t else 0.5 * (apart + t)
+            S.crossed, before = 1, -1.0
+            S.t = through if S.apart < through < t else 0.5 * (S.apart + t)
             continue
-        if g > 0.0 and not (left_apart(A, J, roots[0]) or left_apart(A, J, roots[1])):
-            apart = t
-        # The last attempt stays.
-        if not slope < 0.0 or tries + 1 == MEET_SECANTS:
+        if S.gap > 0.0 and not (left_apart(A, J, S.roots[0]) or left_apart(A, J, S.roots[1])):
+            S.apart = t
+        if not slope < 0.0 or last:  # the last attempt stays
             break
-        before, gap_before = t, g
-        then = max(min(t - g / slope, latest), least)
+        before, gap_before = t, S.gap
+        then = max(min(t - S.gap / slope, S.latest), S.least)
         # A flat secant leads back to the start, where shapes that were apart do not meet.
-        away = level < 0.0 or start > touch * small
-        if (then == least and away) or (then <= apart and loaded > 0 and deep):
-            then = 0.5 * (apart + t)
+        away = S.level < 0.0 or S.start > S.touch
+        if (then == S.least and away) or (then <= S.apart and S.loaded > 0 and deep):
+            then = 0.5 * (S.apart + t)
         if then == t:
             break
-        t = then
-    if loaded == 0 and rate >= 0.0 and g < -MEET_MANY * small:
-        crosses = True  # joints bring the shapes together before the first secant
-    fits = False
+        S.t = then
+    # Joints may bring the shapes together before the first secant.
+    S.crosses = int(crosses or (S.loaded == 0 and S.rate >= 0.0 and S.gap < -MEET_MANY * S.small))
+
+
+@kernel
+def find_apart_before(A: Scene, J: Joints, S: Meeting) -> bool:
+    """Halve the instant towards S.apart while paths cross before it or it is `too_late`; once the work of the step is
+    spent, it is S.apart. Returns whether it is known to be neither."""
     for _ in range(MEET_HALVINGS):
-        late = math.inf if crosses else too_late(A, J, roots, t)
-        fits = not (crosses or late < math.inf)
-        if fits:
-            break
-        if late <= apart:  # shapes were too far at `apart` already
-            apart = least
+        late = math.inf if S.crosses > 0 else too_late(A, J, S)
+        if not (S.crosses > 0 or late < math.inf):
+            return True
+        if late <= S.apart:  # shapes were too far at `apart` already
+            S.apart = S.least
         spent = work_left(A, J) < 0.0
-        crossed, t = True, apart if spent else 0.5 * (apart + t)
-        shorten_both(A, J, roots[0], roots[1], t)
-        g = gap(A, a, b, t)[0] - level
+        S.crossed = 1
+        end_both(A, J, S, S.apart if spent else 0.5 * (S.apart + S.t))
+        S.gap = gap(A, S.a, S.b, S.t)[0] - S.level
         # Where a limit drives them together, the instant after it counts: before it they are as at the start.
-        crosses = g < -TOUCH * small or (g + level > touch * small and crossing_of_paths(A, a, b, t)[1])
+        through = S.gap + S.level > S.touch and crossing_of_paths(A, S.a, S.b, S.t)[1]
+        S.crosses = int(S.gap < -TOUCH * S.small or through)
         if spent:
             break
-    if rate >= 0.0 and t - least <= A.PAR.instant:
-        # Shapes only close once joints act, for instance at a limit that directs velocities into the other shape. The
-        # interval doubles with each impact of the bodies, so that the step ends.
-        met = min(max(A.STATE[i].events, A.STATE[j].events), MEET_DOUBLINGS)
-        t = min(least + 2.0 ** (met + 1) * A.PAR.instant, latest)
-        shorten_both(A, J, roots[0], roots[1], t)
-        fits = too_late(A, J, roots, t) == math.inf
-        while not fits and t - least > A.PAR.instant and work_left(A, J) >= 0.0:
-            t = 0.5 * (least + t)
-            shorten_both(A, J, roots[0], roots[1], t)
-            fits = too_late(A, J, roots, t) == math.inf
-    for root in roots:
-        if end_before(A, J, root, t, fits, work_left(A, J) < 0.0):
-            g, crossed = math.inf if work_left(A, J) < 0.0 else gap(A, a, b, t)[0] - level, True
+    return False
+
+
+@kernel
+def find_later(A: Scene, J: Joints, S: Meeting) -> bool:
+    """An instant after the start for shapes that only close once joints act, for instance at a limit that directs
+    velocities into the other shape. The interval doubles with each impact of the bodies, so that the step ends, and is
+    halved while it is `too_late`. Returns whether it is not."""
+    i, j = A.LINK[S.a].owner, A.LINK[S.b].owner
+    met = min(max(A.STATE[i].events, A.STATE[j].events), MEET_DOUBLINGS)
+    end_both(A, J, S, min(S.least + 2.0 ** (met + 1) * A.PAR.instant, S.latest))
+    fits = too_late(A, J, S) == math.inf
+    while not fits and S.t - S.least > A.PAR.instant and work_left(A, J) >= 0.0:
+        end_both(A, J, S, 0.5 * (S.least + S.t))
+        fits = too_late(A, J, S) == math.inf
+    return fits
+
+
+@kernel
+def locate_impact(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
+    """Bring the islands of shapes a and b, predicted to meet at instant t, to the instant at which they do. Returns it,
+    and whether the shapes are apart there.
+
+    An interval that ends earlier has another path, so the instant is searched: at contact (`find_contact`); if no
+    interval ends so, where they are apart (`find_apart_before`); if that is the start, after it (`find_later`). An
+    island for which no interval fits stays where it is until then.
+    """
+    i, j = A.LINK[a].owner, A.LINK[b].owner
+    if not (under_way(A, A.STATE[i].island) or (A.BODY[j].inv_mass > 0.0 and under_way(A, A.STATE[j].island))):
+        # Both are at t, and have no paths beyond it: only bodies that they touch have joints.
+        return t, False
+    SEARCH = zeros(1, MEETING)
+    begin_meeting(A, J, a, b, t, SEARCH)
+    S = SEARCH[0]
+    find_contact(A, J, S)
+    fits = find_apart_before(A, J, S)
+    if S.rate >= 0.0 and S.t - S.least <= A.PAR.instant:
+        fits = find_later(A, J, S)
+    then, g, crossed = S.t, S.gap, S.crossed > 0
+    for end in range(2):
+        if end_before(A, J, S.roots[end], then, fits, work_left(A, J) < 0.0):
+            g, crossed = math.inf if work_left(A, J) < 0.0 else gap(A, a, b, then)[0] - S.level, True
     # Shapes that close within PAR.instant, which is no interval, meet now.
-    return t, crossed and g > max(touch * small, -rate * A.PAR.instant)
+    apart = crossed and g > max(SEARCH[0].touch, -SEARCH[0].rate * A.PAR.instant)
+    return then, apart

@@ -1,12 +1,13 @@
-"""An island in local numbering, for its solve: its bodies, its contacts, and the report of the solve."""
+"""An island in local numbering, for its solve: its bodies, its contacts, and the report of the solve; the search for an
+impact of islands."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import Opener
-from ..compiled.records import Rows
+from ..compiled.records import Record, Rows, kind_of
 from .contacts import Row, Solved
 
 
@@ -44,5 +45,28 @@ class IslandContacts(NamedTuple):
     JUMP: FloatArray
     OUT: Rows[Solved]
 
+
+class Meeting(Record):
+    """The search for the impact of two shapes of islands with joints (`..jointed.meet`): lengths, instants."""
+
+    a: int  # shapes
+    b: int
+    roots: Annotated[IntArray, 2]  # islands of their bodies, -1 for none
+    t: float  # instant at which both intervals end at present
+    least: float  # the shapes meet no earlier, no later
+    latest: float
+    apart: float  # last instant at which they were apart
+    small: float  # extent of the smaller one
+    level: float  # gap at which they meet: 0, or that of the start
+    start: float  # gap and its rate at the start, negative if it closes
+    rate: float
+    gap: float  # gap at t, less `level`
+    touch: float  # the same that counts as none
+    loaded: int  # contacts of both intervals
+    crosses: int  # 1 if paths cross before t
+    crossed: int  # 1 if t was not found as that of a contact
+
+
+MEETING = kind_of(Meeting)
 
 island_of, contacts_of = Opener(Island), Opener(IslandContacts)

@@ -199,8 +199,8 @@ def test_the_search_for_an_impact_ends_where_the_budget_of_the_step_is_spent(mon
     J.PROGRESS.budget = 1e12
     interval(A, J)
     searched: list[float] = []
-    monkeypatch.setattr(meet, "too_late", lambda A, J, roots, t: 0.5 * t)
-    monkeypatch.setattr(meet, "shorten_both", counted(meet.shorten_both, lambda A, J, one, other, t: t, searched))
+    monkeypatch.setattr(meet, "too_late", lambda A, J, S: 0.5 * S.t)
+    monkeypatch.setattr(meet, "end_both", counted(meet.end_both, lambda A, J, S, t: t, searched))
     J.PROGRESS.budget = J.PROGRESS.effort
     t, apart = meet.locate_impact(A, J, BOX, FLOOR, 0.009)
     assert (t, apart) == (0.0, True)
