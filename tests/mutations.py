@@ -51,7 +51,7 @@ MUTATIONS = (
     Mutation("times: sign in the root of two disks", "prediction/roots.py", "(reach + cross)) - b)",
              "(reach + cross)) + b)", "prediction/test_impact_times.py", "grazing"),
     Mutation("limits: what leaves its bound meets it again at once", "joints/bounds.py",
-             "return -0.5 * (before + root) / bend if bend < 0.0 else h", "return 0.0",
+             "return -0.5 * (before + root) / curvature if curvature < 0.0 else h", "return 0.0",
              "joints/test_limits.py", "opens_first"),
     Mutation("limits: what is let go is never held", "joints/bounds.py", "link[k].let_go == side and", "False and",
              "joints/test_limits.py", "another"),

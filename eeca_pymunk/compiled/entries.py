@@ -41,7 +41,7 @@ TABLES = {
     "Joints": """
         JOINT:Joint[1] PARTNER:Body[1] COMPONENT:Component[1] JOINED:ComponentBody[1]
         COUPLING:Coupling[1] HINGE:JointStep[1] LOCAL:BodyStep[1] MATRIX:f8[1] RIGHT:f8[1] MORE:f8[1] STIFF:f8[2]
-        PROGRESS:Progress PARTS:Parts PART:JointLedger PIVOTS:i8[1] OF:i8[1] KEPT:Joint[1] STEPPED:JointLedger[1]
+        PROGRESS:Progress PARTS:Parts PART_LEDGER:JointLedger PIVOTS:i8[1] OF:i8[1] KEPT:Joint[1] STEPPED:JointLedger[1]
         TALLY:Tally
     """,
     "Island": """

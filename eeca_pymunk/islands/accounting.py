@@ -186,7 +186,7 @@ def apply_correction(A: Scene, root: int, end: float) -> None:
     """Apply the penetration correction of an island's bodies, displacements D, dtheta and changes of velocity, at the
     end of its interval. It costs the change of kinetic energy, less the work of forces m a.D + I alpha dtheta. Up to
     `Rest.payable` the cost is deducted from the losses of the step; beyond it is external work."""
-    PAR, BODY, PULL, JUMP = A.PAR, A.BODY, A.PULL, A.RESTING
+    PAR, BODY, PULL, RESTING = A.PAR, A.BODY, A.PULL, A.RESTING
     spent = 0.0
     i = root
     if A.MEMBER[root].jointed > 0:
@@ -197,24 +197,24 @@ def apply_correction(A: Scene, root: int, end: float) -> None:
         return
     while i >= 0:
         move_to(BODY, i, end)
-        linear = PULL[i, 0] * JUMP[i].lift_x + PULL[i, 1] * JUMP[i].lift_y
-        linear -= JUMP[i].lift_vx * (BODY[i].vx + 0.5 * JUMP[i].lift_vx)
-        linear -= JUMP[i].lift_vy * (BODY[i].vy + 0.5 * JUMP[i].lift_vy)
+        linear = PULL[i, 0] * RESTING[i].lift_x + PULL[i, 1] * RESTING[i].lift_y
+        linear -= RESTING[i].lift_vx * (BODY[i].vx + 0.5 * RESTING[i].lift_vx)
+        linear -= RESTING[i].lift_vy * (BODY[i].vy + 0.5 * RESTING[i].lift_vy)
         spent -= linear / BODY[i].inv_mass
         if BODY[i].inv_inertia > 0.0:
-            turning = JUMP[i].lift_spin * (BODY[i].spin + 0.5 * JUMP[i].lift_spin)
-            spent += (turning - PULL[i, 2] * JUMP[i].lift_angle) / BODY[i].inv_inertia
-        BODY[i].x += JUMP[i].lift_x
-        BODY[i].y += JUMP[i].lift_y
-        BODY[i].angle += JUMP[i].lift_angle
-        BODY[i].vx += JUMP[i].lift_vx
-        BODY[i].vy += JUMP[i].lift_vy
-        BODY[i].spin += JUMP[i].lift_spin
+            turning = RESTING[i].lift_spin * (BODY[i].spin + 0.5 * RESTING[i].lift_spin)
+            spent += (turning - PULL[i, 2] * RESTING[i].lift_angle) / BODY[i].inv_inertia
+        BODY[i].x += RESTING[i].lift_x
+        BODY[i].y += RESTING[i].lift_y
+        BODY[i].angle += RESTING[i].lift_angle
+        BODY[i].vx += RESTING[i].lift_vx
+        BODY[i].vy += RESTING[i].lift_vy
+        BODY[i].spin += RESTING[i].lift_spin
         i = A.MEMBER[i].following
-    paid = min(spent, JUMP[root].payable)
+    paid = min(spent, RESTING[root].payable)
     PAR.external += spent - paid
     PAR.restitution -= paid
-    JUMP[root].lost -= paid
+    RESTING[root].lost -= paid
 
 
 @nonallocating

@@ -126,10 +126,10 @@ def set_effective_masses(groups: Groups, C: Columns, ROWS: Rows[Row], m: int) ->
         nn, tt = column_rate(C, ROWS, i, C.N, False), column_rate(C, ROWS, i, C.T, True)
         nt = 0.5 * (column_rate(C, ROWS, i, C.N, True) + column_rate(C, ROWS, i, C.T, False))
         least = least_mobility(groups, ROWS[i].a, ROWS[i].b)
-        C.OUT[i] = 0 if is_movable(groups, ROWS[i], nn) else 1
-        if C.OUT[i] == 0:
+        C.LEFT_OUT[i] = 0 if is_movable(groups, ROWS[i], nn) else 1
+        if C.LEFT_OUT[i] == 0:
             ROWS[i].k_n, ROWS[i].a_nn = 1.0 / nn, nn
-        if C.OUT[i] == 0 and (tt - nt * nt / nn) * ROWS[i].k_t <= least:
+        if C.LEFT_OUT[i] == 0 and (tt - nt * nt / nn) * ROWS[i].k_t <= least:
             tt = nt * nt / nn
         if tt * ROWS[i].k_t > least:
             ROWS[i].k_t, ROWS[i].a_tt, ROWS[i].a_nt = 1.0 / tt, tt, nt
@@ -143,6 +143,6 @@ def set_effective_masses(groups: Groups, C: Columns, ROWS: Rows[Row], m: int) ->
 def leave_out(C: Columns, L: FloatArray, m: int, V: FloatArray) -> None:
     """Set the impulses of contacts that are left out to 0, and update the velocities V."""
     for i in range(m):
-        if C.OUT[i] != 0:
+        if C.LEFT_OUT[i] != 0:
             push_column(C, i, -L[i, 0], -L[i, 1], V)
             L[i, 0] = L[i, 1] = 0.0

@@ -64,7 +64,7 @@ def project_velocities(A: Scene, J: Joints, interval: Interval, L: FloatArray, e
     PUSHING, pushing, fastest = np.empty(m, np.int64), 0, 0.0
     for i in range(m):
         driven = DRIVEN[groups.GROUP[ROWS[i].a] + 1] + DRIVEN[groups.GROUP[ROWS[i].b] + 1] > 0
-        if L[i, 0] > 0.0 and interval.C.OUT[i] == 0 and not driven:
+        if L[i, 0] > 0.0 and interval.C.LEFT_OUT[i] == 0 and not driven:
             PUSHING[pushing] = i
             pushing += 1
             fastest = max(fastest, -normal_rate(ROWS[i], motion.V))

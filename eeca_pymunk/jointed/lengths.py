@@ -149,7 +149,7 @@ def too_deep_on_way(A: Scene, interval: Interval) -> float:
 def forced_deeper(A: Scene, interval: Interval) -> int:
     """A contact that joints force deeper than an interval allows, -1 if there is none; only one that is left out (OUT)
     can be, as no impulse moves it."""
-    ROWS, OUT, WAY = interval.ROWS, interval.C.OUT, interval.motion.WAY
+    ROWS, OUT, WAY = interval.ROWS, interval.C.LEFT_OUT, interval.motion.WAY
     for z in range(interval.m):
         closed = normal_rate(ROWS[z], WAY)
         a, b = shapes_of(A, ROWS[z])

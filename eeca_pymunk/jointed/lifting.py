@@ -38,7 +38,7 @@ def raise_gaps(
     """Displacements D (k, 3) = Y mu with 0 <= mu _|_ g + G D >= 0, for contacts that are not left out; returns mu
     (m,)."""
     for i in range(problem.m):
-        if problem.C.OUT[i] != 0:
+        if problem.C.LEFT_OUT[i] != 0:
             GAPS[i] = np.inf
     return lift_above_walls(problem, n, GAPS, D, tolerance, JOINTED_CORRECTION_SWEEPS)
 

@@ -195,7 +195,7 @@ def solve_contacts(
         if worst > WEDGED * scale and m <= joints.COLUMN_CONTACTS and rubs(ROWS, m):
             worst = solve_wedged(problem, BOTH, FORESEEN, fine, most, work)
         if not exactly:
-            stop_at_walls(A, problem, n, C.OUT, BOTH, FORESEEN)
+            stop_at_walls(A, problem, n, C.LEFT_OUT, BOTH, FORESEEN)
         count_operations(J, C)
         for i in range(m):
             L[i, 0], L[i, 1] = BOTH[i, 0], BOTH[i, 1]

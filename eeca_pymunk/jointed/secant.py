@@ -71,6 +71,6 @@ def fit_columns(
             for c in range(3 if square > 0.0 else 0):
                 B.N[w, c] += ERROR[B.BODY[w], c] * (B.ROWS[i].now - NOW[i]) / square
     for i in range(m):
-        if C.OUT[i] == 0 and not is_movable(groups, ROWS[i], column_rate(C, ROWS, i, C.N, False)):
+        if C.LEFT_OUT[i] == 0 and not is_movable(groups, ROWS[i], column_rate(C, ROWS, i, C.N, False)):
             return False
     return True

@@ -147,10 +147,10 @@ def hops(W: Workspace, k: int, side: int, instant: float, h: float) -> bool:
 def instant_of(start: float, before: float, after: float, h: float) -> float:
     """The first root t of a gap start + before t + (after - before) t^2/(2h), start >= 0, that is negative at h: its
     rate changes uniformly from `before` to `after`."""
-    bend = 0.5 * (after - before) / h
-    root = math.sqrt(max(before * before - 4.0 * bend * start, 0.0))
+    curvature = 0.5 * (after - before) / h
+    root = math.sqrt(max(before * before - 4.0 * curvature * start, 0.0))
     if before > 0.0:
-        return -0.5 * (before + root) / bend if bend < 0.0 else h
+        return -0.5 * (before + root) / curvature if curvature < 0.0 else h
     return 2.0 * start / (root - before) if root - before > 0.0 else 0.0
 
 

@@ -74,7 +74,7 @@ def compliance_on(rung: int, h: float, yields: bool, before: float) -> float:
 
 @nonallocating
 def take_parts(W: Workspace, h: float, length: float, rung: int, parts: int, give: float, cold: bool) -> bool:
-    """Take the step h in the parts of a rung; False if one of them fails. Energies are added to PART.
+    """Take the step h in the parts of a rung; False if one of them fails. Energies are added to PART_LEDGER.
 
     Args:
         length: size of the component.  give: compliance of joints over the square of a part.
@@ -92,7 +92,7 @@ def take_parts(W: Workspace, h: float, length: float, rung: int, parts: int, giv
         before = piece
         if rung == ORDER_4 and recalls(W, h):
             predict_part(W, p, piece, cold)
-        if not step_with_limits(W, False, piece, length, cold, give, rung == ORDER_4, W.J.PART):
+        if not step_with_limits(W, False, piece, length, cold, give, rung == ORDER_4, W.J.PART_LEDGER):
             return False
         if rung == ORDER_4:
             remember_part(W, piece)
@@ -107,7 +107,7 @@ def repaid(W: Workspace, own: bool) -> bool:
     step fails. Other rows hold to round-off e of their places, and give e times their impulse over h: more in shorter
     steps.
     """
-    part = W.J.PART
+    part = W.J.PART_LEDGER
     # What limits lose pays for round-off of joints that hold.
     gain = part.closed - (0.0 if own else max(part.limited, 0.0))
     if not gain > 0.0 or not supports_rest(W.J.LOCAL, W.bodies):
@@ -144,7 +144,7 @@ def restore_start(W: Workspace) -> None:
 @nonallocating
 def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own: bool) -> int:
     """Take the step h by the first rung of the ladder that succeeds: EXACT, HALVED or ELASTIC; LINEAR if none does,
-    with everything as at the start. PART has the energies.
+    with everything as at the start. PART_LEDGER has the energies.
 
     Args:
         touched: whether joints were edited.  own: whether only steps have left them apart, see `repaid`.
@@ -159,7 +159,7 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
     while rung < RUNGS and not progress.effort > progress.limit:
         parts = 5 if rung == ORDER_4 else 1 if rung == ELASTIC_RUNG else 1 << rung if rung < 3 else joints.ELASTIC_PARTS
         compliance = compliance_on(rung, h, yields, first.compliance)
-        clear_ledger(W.J.PART)
+        clear_ledger(W.J.PART_LEDGER)
         done = take_parts(W, h, length, rung, parts, compliance / (h / parts) ** 2, cold)
         if done and (rung >= ELASTIC_RUNG or repaid(W, own)):
             first.compliance = compliance

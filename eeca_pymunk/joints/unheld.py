@@ -21,8 +21,8 @@ from .start import springs_of
 @nonallocating
 def step_linearly(W: Workspace, h: float, length: float) -> float:
     """Take the step h by linear systems, one for each limit that is released, or in free flight if they have no
-    solution. Returns `farthest` at its start. PART has the energy that springs have stored."""
-    local, part = W.J.LOCAL, W.J.PART
+    solution. Returns `farthest` at its start. PART_LEDGER has the energy that springs have stored."""
+    local, part = W.J.LOCAL, W.J.PART_LEDGER
     stored, apart = springs_of(W), farthest(W)
     drop_impulses(W)
     if step_with_limits(W, True, h, length, True, 0.0, False, part):
@@ -42,8 +42,8 @@ def step_linearly(W: Workspace, h: float, length: float) -> float:
 
 @nonallocating
 def stop_joints(W: Workspace, h: float) -> None:
-    """Take the step h again by `move_rigidly`, which needs no solution; the loss is `projected` in PART."""
-    local, part = W.J.LOCAL, W.J.PART
+    """Take the step h again by `move_rigidly`, which needs no solution; the loss is `projected` in PART_LEDGER."""
+    local, part = W.J.LOCAL, W.J.PART_LEDGER
     go_back(local, W.bodies)
     stored = springs_of(W)
     move_rigidly(local, W.bodies, h)
@@ -62,7 +62,7 @@ def take_gain(W: Workspace, h: float, status: int, before: float) -> int:
     Joints that close within a short h make bodies fast, and the lock then takes most of this. Compared with the kinetic
     energies before and after are both the gain, and what is left of it: the work done on the way.
     """
-    local, part, stopped = W.J.LOCAL, W.J.PART, False
+    local, part, stopped = W.J.LOCAL, W.J.PART_LEDGER, False
     close_ledger(local, W.bodies, part)
     if part.closed > 0.0:
         lock_energy(local, W.bodies, part.closed)

@@ -64,7 +64,7 @@ def plan_components(table: Table, BODY: Rows[Body], ROOM: IntArray) -> bool:
     return measure_plan(J, ROOM)
 
 
-_PLAN = "TALLY", "PROGRESS", "PARTS", "PART", "STIFF", "COMPONENT", "JOINED", "COUPLING", "KEPT", "STEPPED", "OF"
+_PLAN = "TALLY", "PROGRESS", "PARTS", "PART_LEDGER", "STIFF", "COMPONENT", "JOINED", "COUPLING", "KEPT", "STEPPED", "OF"
 _OF_ONE = "LOCAL", "HINGE", "PIVOTS", "MATRIX", "RIGHT", "MORE"  # scratch of one component
 
 
@@ -91,7 +91,7 @@ class JointMemory:
         j = len(JOINT)
         while True:
             counts = {
-                "TALLY": 1, "PROGRESS": 1, "PARTS": 1, "PART": 1, "STIFF": 6, "OF": len(BODY), "JOINT": j,
+                "TALLY": 1, "PROGRESS": 1, "PARTS": 1, "PART_LEDGER": 1, "STIFF": 6, "OF": len(BODY), "JOINT": j,
                 "PARTNER": len(PARTNER),
                 "COMPONENT": j, "JOINED": 2 * j, "COUPLING": j, "KEPT": j, "STEPPED": j,
             }  # fmt: skip

@@ -115,14 +115,14 @@ class Problem(NamedTuple):
 
 
 class Columns(NamedTuple):
-    """Of contact i: AT[i] : AT[i + 1] the entries BODY, N and T (., 3) of its columns; OUT (m,) 1 if it is left out.
-    WORK (1,): operations that solutions with these columns have taken."""
+    """Of contact i: AT[i] : AT[i + 1] the entries BODY, N and T (., 3) of its columns; LEFT_OUT (m,) 1 if it takes no
+    part. WORK (1,): operations that solutions with these columns have taken."""
 
     AT: IntArray
     BODY: IntArray
     N: FloatArray
     T: FloatArray
-    OUT: IntArray
+    LEFT_OUT: IntArray
     WORK: FloatArray
 
 

@@ -33,7 +33,7 @@ class BodyStep(Record):
     lever: float  # levers over r_m
     turned: float  # angle turned
     per: float  # turned/chi, its derivative by chi
-    bend: float  # derivative of `per` by chi
+    per_slope: float  # derivative of `per` by chi
     impulse: Annotated[FloatArray, 3]  # of the joints
     lead: Annotated[FloatArray, 3]  # acceleration by joints that Newton's method begins with
     inertia: Annotated[FloatArray, 3]  # diagonal of the bodies' part of a dual system, scaled; factored, the reciprocal
@@ -79,7 +79,7 @@ class JointStep(Record):
     dual: int  # the first of its rows that act, in a system in the rows alone
 
 
-NO_BEND, OWN_TURN, FULL_BEND = 0, 1, 2  # what of STIFF is there: nothing, [2, 2] and [5, 5], all
+STIFF_NONE, STIFF_TURNS, STIFF_ALL = 0, 1, 2  # what of STIFF is there: nothing, [2, 2] and [5, 5], all
 
 # What is solved for: the implicit step; poses or velocities that fit the joints; the step with rows of the start.
 STEP, POSES, SPEEDS, LINEAR_STEP = 0, 1, 2, 3

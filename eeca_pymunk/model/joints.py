@@ -168,8 +168,8 @@ class Joints(NamedTuple):
     COMPONENT (components,), with the bodies of each in JOINED and its joints in COUPLING. Scratch for the largest
     component: HINGE, LOCAL, of its joints and bodies; MATRIX, banded; RIGHT, right sides; PIVOTS; MORE, of linear
     systems and bounded rows; STIFF (6, 6), derivative of a joint's impulse by the ways of its bodies; PROGRESS;
-    PARTS; PART, the ledger of a part of the step. OF (n,): the component of a body, -1 for none. KEPT (j,): the joints
-    at the start of an interval. STEPPED (components,): their ledgers in their intervals.
+    PARTS; PART_LEDGER, of a part of the step. OF (n,): the component of a body, -1 for none. KEPT (j,): the joints at
+    the start of an interval. STEPPED (components,): their ledgers in their intervals.
     """
 
     JOINT: Rows[Joint]
@@ -185,7 +185,7 @@ class Joints(NamedTuple):
     STIFF: FloatArray
     PROGRESS: Progress
     PARTS: Parts
-    PART: JointLedger
+    PART_LEDGER: JointLedger
     PIVOTS: IntArray
     OF: IntArray
     KEPT: Rows[Joint]
@@ -194,7 +194,19 @@ class Joints(NamedTuple):
 
 
 # What a return to an earlier step restores; the rest is scratch that each step writes first.
-OF_JOINTS = ("JOINT", "HINGE", "LOCAL", "STIFF", "PROGRESS", "PARTS", "PART", "PIVOTS", "KEPT", "STEPPED", "TALLY")
+OF_JOINTS = (
+    "JOINT",
+    "HINGE",
+    "LOCAL",
+    "STIFF",
+    "PROGRESS",
+    "PARTS",
+    "PART_LEDGER",
+    "PIVOTS",
+    "KEPT",
+    "STEPPED",
+    "TALLY",
+)
 
 joints_of = Opener(Joints)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..arrays import FloatArray
 from ..compiled import nonallocating
-from ..model.joint_steps import FULL_BEND, NO_BEND, BodyStep, JointStep
+from ..model.joint_steps import STIFF_ALL, STIFF_NONE, BodyStep, JointStep
 from ..model.joints import GEAR, RATCHET, ROTARY_SPRING, Joint
 from .motion import find_turned
 from .springs import mean_force
@@ -49,7 +49,7 @@ def angle_rows(
         hinge.slopes[0, 2], hinge.slopes[0, 5] = -share, 1.0
         hinge.force[2], hinge.force[5] = -share * lam, lam
         hinge.value[0] = 0.5 * h * (b.v1[2] - share * a.v1[2] - hinge.target[0])
-        return NO_BEND
+        return STIFF_NONE
     both = a.cayley > 0 and b.cayley > 0 and kind != GEAR
     factor = shared_turn(a, b) if both else 0.0
     per_a = factor if both else a.per
@@ -82,15 +82,15 @@ def angle_rows(
             stiff[r, c] = 0.0
     if both:  # d s/d chi_b = half the second derivative of 2 atan(chi/2) at two thirds of the way from chi_a to chi_b
         t_a, t_b = a.way[2] / 6.0, b.way[2] / 6.0
-        bend_a = -0.5 * (2.0 * t_a + t_b) / (1.0 + (2.0 * t_a + t_b) ** 2) ** 2
-        bend_b = -0.5 * (t_a + 2.0 * t_b) / (1.0 + (t_a + 2.0 * t_b) ** 2) ** 2
-        stiff[2, 5], stiff[5, 2] = -share * lam * bend_b, lam * bend_a
+        slope_a = -0.5 * (2.0 * t_a + t_b) / (1.0 + (2.0 * t_a + t_b) ** 2) ** 2
+        slope_b = -0.5 * (t_a + 2.0 * t_b) / (1.0 + (t_a + 2.0 * t_b) ** 2) ** 2
+        stiff[2, 5], stiff[5, 2] = -share * lam * slope_b, lam * slope_a
     else:
-        bend_a, bend_b = a.bend, b.bend
-    stiff[2, 2], stiff[5, 5] = -share * lam * bend_a, lam * bend_b
+        slope_a, slope_b = a.per_slope, b.per_slope
+    stiff[2, 2], stiff[5, 5] = -share * lam * slope_a, lam * slope_b
     if slope != 0.0:
         stiff[2, 2] -= slope * per_a * a.slope
         stiff[2, 5] += slope * per_a * b.slope
         stiff[5, 2] += slope * per_b * a.slope
         stiff[5, 5] -= slope * per_b * b.slope
-    return FULL_BEND
+    return STIFF_ALL

@@ -12,7 +12,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import inlined
 from ..compiled.records import Rows
-from ..model.joint_steps import FULL_BEND, JointStep
+from ..model.joint_steps import STIFF_ALL, JointStep
 from ..model.joints import DUAL, GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, WHOLE, Coupling, Workspace
 
 
@@ -97,11 +97,11 @@ def put_condensed(W: Workspace, k: int, r: int) -> None:
 
 
 @inlined
-def put_stiffness(W: Workspace, k: int, bend: int, h: float, system: int) -> None:
+def put_stiffness(W: Workspace, k: int, filled: int, h: float, system: int) -> None:
     """Add -(h/2) STIFF of joint k, scaled, to the matrix (x changes by h/2 per change of v1); of a dual system its
-    diagonal alone, to `inertia`. bend: which part of STIFF is not 0, NO_BEND ... FULL_BEND."""
+    diagonal alone, to `inertia`. filled: which part of STIFF is not 0, STIFF_NONE ... STIFF_ALL."""
     link, local, stiff, matrix, band = W.link, W.J.LOCAL, W.J.STIFF, W.J.MATRIX, W.J.COMPONENT[W.s].band
-    low = 0 if bend == FULL_BEND else 2
+    low = 0 if filled == STIFF_ALL else 2
     width = 3 * band + 1 if system == WHOLE else 2 * band + 1
     for end in range(2):
         i = link[k].body[end]
@@ -110,7 +110,7 @@ def put_stiffness(W: Workspace, k: int, bend: int, h: float, system: int) -> Non
                 local[i].inertia[c] -= stiff[3 * end + c, 3 * end + c] * 0.5 * h * local[i].root[c] ** 2
             continue
         for other in range(2):
-            if bend != FULL_BEND and end != other:
+            if filled != STIFF_ALL and end != other:
                 continue
             m = link[k].body[other]
             for c in range(low, local[i].freedoms):

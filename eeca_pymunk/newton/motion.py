@@ -72,7 +72,7 @@ def move(local: Rows[BodyStep], bodies: int, h: float) -> None:
 @nonallocating
 def find_turned(body: BodyStep) -> None:
     """Compute the angle by which a body turns (`turned`), its ratio to chi (`per`), and the derivative of `per` by chi
-    (`bend`), after `move`: for joints of angles. Small angles use the series of 2 atan(chi/2)."""
+    (`per_slope`), after `move`: for joints of angles. Small angles use the series of 2 atan(chi/2)."""
     chi = body.way[2]
     t = 0.5 * chi
     if body.cayley > 0:
@@ -80,14 +80,14 @@ def find_turned(body: BodyStep) -> None:
         body.turned = turned
         if abs(t) < 1e-3:
             body.per = 1.0 - t * t / 3.0 + t**4 / 5.0
-            body.bend = -t / 3.0 + 0.4 * t**3
+            body.per_slope = -t / 3.0 + 0.4 * t**3
         else:
             body.per = turned / chi
-            body.bend = (slope - turned / chi) / chi
+            body.per_slope = (slope - turned / chi) / chi
     else:
         body.turned = chi
         body.per = 1.0
-        body.bend = 0.0
+        body.per_slope = 0.0
 
 
 @inlined

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..compiled import inlined, nonallocating
-from ..model.joint_steps import FULL_BEND, OWN_TURN, BodyStep, JointStep
+from ..model.joint_steps import STIFF_ALL, STIFF_TURNS, BodyStep, JointStep
 from ..model.joints import PIVOT, SLIDE, SPRING, Joint
 from .springs import mean_force
 
@@ -14,7 +14,7 @@ from .springs import mean_force
 @inlined
 def point_rows(
     kind: int, side: int, bounded: bool, h: float, joint: Joint, hinge: JointStep, a: BodyStep, b: BodyStep,
-    bends: bool, stiff: FloatArray,
+    stiffens: bool, stiff: FloatArray,
 ) -> int:  # fmt: skip
     """`joint_rows` of pins, slides, pivots and springs; `measure` of a slide is its length at the end, of a spring its
     mean force without damping. Names end in 0 at the start, 1 at the end, nothing at the mean of both."""
@@ -41,9 +41,9 @@ def point_rows(
         hinge.slopes[0, 3], hinge.slopes[0, 4], hinge.slopes[0, 5] = 1.0, 0.0, ubx
         hinge.slopes[1, 0], hinge.slopes[1, 1], hinge.slopes[1, 2] = 0.0, -1.0, uay
         hinge.slopes[1, 3], hinge.slopes[1, 4], hinge.slopes[1, 5] = 0.0, 1.0, uby
-        bend = OWN_TURN
+        filled = STIFF_TURNS
     else:
-        bend = FULL_BEND
+        filled = STIFF_ALL
         hxx = hxy = hyx = hyy = 0.0  # derivative of the impulse (fx, fy) on b by d1
         if kind == SPRING:
             began, ended = hinge.began, np.sqrt(dx1 * dx1 + dy1 * dy1)
@@ -78,7 +78,7 @@ def point_rows(
             hinge.rows[0, 3], hinge.rows[0, 4], hinge.rows[0, 5] = mx, my, lever_b * (rbx * my - rby * mx)
             hinge.slopes[0, 0], hinge.slopes[0, 1], hinge.slopes[0, 2] = -nx, -ny, nx * uax + ny * uay
             hinge.slopes[0, 3], hinge.slopes[0, 4], hinge.slopes[0, 5] = nx, ny, nx * ubx + ny * uby
-        for c in range(6 if bends else 0):  # (ux, uy): derivative of (fx, fy) by way c of both bodies
+        for c in range(6 if stiffens else 0):  # (ux, uy): derivative of (fx, fy) by way c of both bodies
             if c == 0 or c == 3:
                 ux, uy = hxx, hyx
             elif c == 1 or c == 4:
@@ -93,13 +93,13 @@ def point_rows(
             stiff[2, c] = -lever_a * (rax * uy - ray * ux)
             stiff[3, c], stiff[4, c] = ux, uy
             stiff[5, c] = lever_b * (rbx * uy - rby * ux)
-    if bend == OWN_TURN:
+    if filled == STIFF_TURNS:
         stiff[2, 2] = stiff[5, 5] = 0.0
     stiff[2, 2] += 0.5 * slope_a * (rax1 * fx + ray1 * fy)
     stiff[5, 5] -= 0.5 * slope_b * (rbx1 * fx + rby1 * fy)
     hinge.force[0], hinge.force[1], hinge.force[2] = -fx, -fy, -lever_a * (rax * fy - ray * fx)
     hinge.force[3], hinge.force[4], hinge.force[5] = fx, fy, lever_b * (rbx * fy - rby * fx)
-    return bend
+    return filled
 
 
 @nonallocating
@@ -156,4 +156,4 @@ def groove_rows(side: int, joint: Joint, hinge: JointStep, a: BodyStep, b: BodyS
         stiff[2, 4] += 0.5 * lam * nx
         stiff[2, 5] += half_b * (rbx1 * nx + rby1 * ny)
         stiff[2, 2] -= half_a * (yx * nx1 + yy * ny1)
-    return FULL_BEND
+    return STIFF_ALL

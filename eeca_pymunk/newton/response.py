@@ -13,7 +13,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..compiled import nonallocating
-from ..model.joint_steps import FULL_BEND, NO_BEND, STEP
+from ..model.joint_steps import STEP, STIFF_ALL, STIFF_NONE
 from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, GEAR, GROOVE, Workspace
 from ..model.parameters.joints import CONDENSED_PASSES, REDUNDANT_EPSILON, RESPONSE_PASSES, TAUT
 from .entries import acts
@@ -26,7 +26,7 @@ from .systems import assemble, back, decompose, first_iterate
 @nonallocating
 def inertia_taken(W: Workspace, k: int, c: int, full: bool, h: float) -> float:
     """A bound of the part of a body's inertia that STIFF of joint k takes: (h/2) times the sum of the magnitudes in its
-    row c (0 to 5: body c // 3, direction c % 3), scaled by the roots of mobilities; of OWN_TURN (not `full`), the
+    row c (0 to 5: body c // 3, direction c % 3), scaled by the roots of mobilities; of STIFF_TURNS (not `full`), the
     diagonal alone."""
     link, local = W.link[k], W.J.LOCAL
     root = local[link.body[c // 3]].root[c % 3]
@@ -62,14 +62,14 @@ def bend_rows(W: Workspace, k: int, h: float) -> None:
     hinge, local = W.J.HINGE, W.J.LOCAL
     hinge[k].lam[0], hinge[k].lam[1] = hinge[k].total[0], hinge[k].total[1]
     kind = joint_rows(W, k, h, True)
-    full = kind == FULL_BEND
+    full = kind == STIFF_ALL
     pulls, slight = W.link[k].kind != GROOVE and not (full and W.link[k].kind < GEAR and turns_over(W, k)), True
-    for c in range(6 if kind != NO_BEND else 0):
+    for c in range(6 if kind != STIFF_NONE else 0):
         if full or c % 3 == 2:
             at = W.link[k].body[c // 3]
             pulls = pulls and W.J.STIFF[c, c] * local[at].mobility[c % 3] <= 0.0
             slight = slight and local[at].inertia[c % 3] - inertia_taken(W, k, c, full, h) >= 1.0 - TAUT
-    if kind == NO_BEND or not (pulls or slight):
+    if kind == STIFF_NONE or not (pulls or slight):
         hinge[k].lam[0] = hinge[k].lam[1] = 0.0
         return
     for c in range(0 if pulls else 6):

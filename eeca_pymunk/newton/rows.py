@@ -30,12 +30,12 @@ from .points import groove_rows, point_rows
 
 
 @inlined
-def joint_rows(W: Workspace, k: int, h: float, bends: bool) -> int:
+def joint_rows(W: Workspace, k: int, h: float, stiffens: bool) -> int:
     """Compute the rows of joint k at the present iterate, `way` of its bodies and its `lam`.
 
     Sets `value`, `force`, `rows`, `slopes`, of limits `measure`, of springs `lam`, `ended` and `measure`, their mean
-    force without damping; and STIFF if it is needed (`bends`). h: length of the part. Returns which entries of STIFF
-    are not 0, and set: NO_BEND, OWN_TURN, FULL_BEND.
+    force without damping; and STIFF if it is needed (`stiffens`). h: length of the part. Returns which entries of STIFF
+    are not 0, and set: STIFF_NONE, STIFF_TURNS, STIFF_ALL.
     """
     joint, hinge, link, local, stiff = W.J.JOINT, W.J.HINGE, W.link, W.J.LOCAL, W.J.STIFF
     kind, a, b, side = link[k].kind, link[k].body[0], link[k].body[1], link[k].side
@@ -43,9 +43,9 @@ def joint_rows(W: Workspace, k: int, h: float, bends: bool) -> int:
     if kind >= GEAR:
         return angle_rows(kind, side, bounded, h, joint[j], hinge[k], local[a], local[b], stiff)
     if kind == GROOVE:
-        bend = groove_rows(side, joint[j], hinge[k], local[a], local[b], stiff)
+        filled = groove_rows(side, joint[j], hinge[k], local[a], local[b], stiff)
     else:
-        bend = point_rows(kind, side, bounded, h, joint[j], hinge[k], local[a], local[b], bends, stiff)
+        filled = point_rows(kind, side, bounded, h, joint[j], hinge[k], local[a], local[b], stiffens, stiff)
     if bounded:
         for r in range(link[k].rows):
             speed = -hinge[k].target[r]
@@ -54,7 +54,7 @@ def joint_rows(W: Workspace, k: int, h: float, bends: bool) -> int:
             for c in range(6):
                 hinge[k].slopes[r, c] = hinge[k].rows[r, c]
             hinge[k].value[r] = 0.5 * h * speed
-    return bend
+    return filled
 
 
 @inlined

@@ -25,7 +25,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..compiled import inlined
-from ..model.joint_steps import LINEAR_STEP, NO_BEND, POSES, SPEEDS, STEP
+from ..model.joint_steps import LINEAR_STEP, POSES, SPEEDS, STEP, STIFF_NONE
 from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, WHOLE, Workspace
 from ..model.parameters.joints import STIFFEST
 from .banded import back_banded, factor_banded
@@ -114,9 +114,9 @@ def assemble(W: Workspace, what: int, h: float, give: float, first: bool, system
         if not still and idle(link, k):
             put_idle(W, k, system, build)
             continue
-        bend = NO_BEND
+        filled = STIFF_NONE
         if build or what != SPEEDS:  # else nothing has moved since rows were built
-            bend = joint_rows(W, k, h, build and not still)
+            filled = joint_rows(W, k, h, build and not still)
         a, b = link[k].body[0], link[k].body[1]
         if first or hinge[k].scale[0] == 0.0:
             scale_rows(W, k)
@@ -124,8 +124,8 @@ def assemble(W: Workspace, what: int, h: float, give: float, first: bool, system
             for c in range(3):
                 local[a].impulse[c] += hinge[k].force[c]
                 local[b].impulse[c] += hinge[k].force[c + 3]
-            if build and bend != NO_BEND:
-                put_stiffness(W, k, bend, h, system)
+            if build and filled != STIFF_NONE:
+                put_stiffness(W, k, filled, h, system)
         if link[k].bounded == BOUNDED and not still and acts(link, k, 0):
             off = put_bounded(W, k, slopes, h, system, build)
         elif link[k].bounded == BOXED and not still and acts(link, k, 0):

@@ -14,7 +14,7 @@ from ..model.contacts import Columns, JointedProblem, Problem, Row
 from ..model.parameters.joints import DISC_WORK, SLIP_WORK, SWEEP_ENTRY_WORK, SWEEP_WORK
 from .bounded import FIRST_OF_DISC, SINGLE, bounded_rate, push_row, room_for_rows, sweep_bounded
 from .build import normal_rate, tangent_rate
-from .coulomb import OPEN, STICK, lawful, limited_slip, state_of
+from .coulomb import OPEN, STICK, lawful, limited_slip, mode_of
 
 
 @inlined
@@ -80,13 +80,13 @@ def breach(problem: JointedProblem, L: FloatArray, V: FloatArray) -> float:
     ROWS, C, D, m = problem
     worst = 0.0
     for i in range(m):
-        if C.OUT[i] != 0:
+        if C.LEFT_OUT[i] != 0:
             continue
         if ROWS[i].wake < np.inf:
             worst = max(worst, ROWS[i].wake - normal_rate(ROWS[i], V))
             continue
         un, ut = normal_rate(ROWS[i], V) - ROWS[i].target, tangent_rate(ROWS[i], V)
-        state, sign = state_of(ROWS[i], ut, L[i, 0], L[i, 1])
+        state, sign = mode_of(ROWS[i], ut, L[i, 0], L[i, 1])
         worst = max(worst, -un if state == OPEN else abs(un))
         if state == STICK or sign != 0.0:
             off = ut - limited_slip(ROWS[i], L[i, 0], L[i, 1])
@@ -120,7 +120,7 @@ def sweep_jointed(problem: JointedProblem, L: FloatArray, V: FloatArray) -> floa
     C.WORK[0] += work_of_sweep(problem)
     worst = 0.0
     for i in range(m):
-        if C.OUT[i] != 0:
+        if C.LEFT_OUT[i] != 0:
             continue
         lam, beta, slips = lawful(ROWS[i], V, L[i, 0], L[i, 1], True)
         C.WORK[0] += SLIP_WORK if slips else 0.0

@@ -90,7 +90,7 @@ def lossless_slip(row: Row, lam: float, beta: float) -> float:
 
 
 @nonallocating
-def state_of(row: Row, slip: float, lam: float, beta: float) -> tuple[int, float]:
+def mode_of(row: Row, slip: float, lam: float, beta: float) -> tuple[int, float]:
     """The state of a contact with these impulses whose u_t+ is `slip`, and the sign of its friction in SLIP, which is 0
     without friction: beta = sign mu lam. So is that of a slip that has reversed by less than its size, where the
     contact has no other loss: friction would give energy. In STICK, u_t+ is to be `limited_slip`."""

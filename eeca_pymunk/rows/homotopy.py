@@ -21,12 +21,12 @@ from ..model.parameters.impulses import HOMOTOPY_CHANGES, HOMOTOPY_CHANGES_ANEW,
 from ..model.parameters.joints import CHANGE_ENTRY_WORK, CHANGE_WORK, HOMOTOPY_WORK
 from .bounded import SINGLE, bounded_rate
 from .build import normal_rate, tangent_rate
-from .coulomb import OPEN, SLIP, STICK, limited_slip, state_of
+from .coulomb import OPEN, SLIP, STICK, limited_slip, mode_of
 from .dense import matrix_jointed
 from .pivots import (
+    ABSENT,
     BOUND,
     INSIDE,
-    OUT,
     Tableau,
     bound_of,
     change,
@@ -50,7 +50,7 @@ def work_of_change(size: int) -> float:
 def start_homotopy(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: bool) -> Tableau:
     """The homotopy's start at impulses L (m + n, 2) of m contacts and n bounded rows with velocities V (k, 3); or, if
     `anew`, without impulses of contacts, and with rows at a bound. Contacts that are inactive (`Row.wake`) or left out
-    (`Columns.OUT`), discs, and rows that joints hold take no part: their impulses stay."""
+    (`Columns.LEFT_OUT`), discs, and rows that joints hold take no part: their impulses stay."""
     ROWS, C, D, m = problem
     n = D.USED[0]
     size = 2 * m + n
@@ -65,13 +65,13 @@ def start_homotopy(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: 
     matrix_jointed(problem, np.zeros(m), AT, KIND, size, T)
     C.WORK[0] += HOMOTOPY_WORK
     for i in range(m):
-        if C.OUT[i] == 0 and not ROWS[i].wake < np.inf:
-            tableau.STATE[i] = OPEN
+        if C.LEFT_OUT[i] == 0 and not ROWS[i].wake < np.inf:
+            tableau.MODE[i] = OPEN
             T[2 * i, size] = normal_rate(ROWS[i], V) - ROWS[i].target
             slides = tangent_rate(ROWS[i], V)
             tableau.REST[i] = limited_slip(ROWS[i], L[i, 0], L[i, 1])
             T[2 * i + 1, size] = slides - tableau.REST[i]
-            BEGAN[i], SIGN[i] = state_of(ROWS[i], slides, L[i, 0], L[i, 1])
+            BEGAN[i], SIGN[i] = mode_of(ROWS[i], slides, L[i, 0], L[i, 1])
             tableau.MU[i] = max(ROWS[i].friction, 0.0) if BEGAN[i] != SLIP or SIGN[i] != 0.0 else 0.0
             X[2 * i], X[2 * i + 1] = L[i, 0], L[i, 1]
             C.WORK[0] += work_of_change(size) if L[i, 0] > 0.0 else 0.0
@@ -80,7 +80,7 @@ def start_homotopy(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: 
         tableau.LOW[i], tableau.HIGH[i] = row.low, row.high
         if row.part == SINGLE and T[k, k] > 0.0:
             upper = L[m + i, 0] >= row.high or row.low == -np.inf
-            tableau.STATE[m + i], tableau.SIGN[m + i] = BOUND, 1.0 if upper else -1.0
+            tableau.MODE[m + i], tableau.SIGN[m + i] = BOUND, 1.0 if upper else -1.0
             T[k, size] = row.speed + bounded_rate(D, i, V)
             X[k] = L[m + i, 0]
     if not anew:
@@ -98,8 +98,8 @@ def set_direction_of_residuals(tableau: Tableau, m: int, X: FloatArray, BEGAN: I
     """Set p, the velocities per theta T[:, size + 1]: minus the residuals of the laws at impulses X (size,), at which
     the velocities are T[:, size] and contacts in the states BEGAN (m,) with friction of SIGN (m,)."""
     T, size = tableau.T, len(tableau.T)
-    for c in range(len(tableau.STATE)):
-        k, state = unknown_of(m, c), tableau.STATE[c]
+    for c in range(len(tableau.MODE)):
+        k, state = unknown_of(m, c), tableau.MODE[c]
         u, x = T[k, size], X[k]
         if state == BOUND:
             inside = tableau.LOW[c - m] < x < tableau.HIGH[c - m]
@@ -118,11 +118,11 @@ def set_opening_direction(tableau: Tableau, m: int) -> None:
     most = 0.0
     for k in range(size):
         most = max(most, abs(T[k, size]))
-    for c in range(len(tableau.STATE)):
+    for c in range(len(tableau.MODE)):
         k = unknown_of(m, c)
-        if tableau.STATE[c] == OPEN or tableau.STATE[c] == BOUND:
+        if tableau.MODE[c] == OPEN or tableau.MODE[c] == BOUND:
             amount = (1.0 + (0.618034 * c) % 1.0) * most
-            T[k, size + 1] = -tableau.SIGN[c] * amount if tableau.STATE[c] == BOUND else amount
+            T[k, size + 1] = -tableau.SIGN[c] * amount if tableau.MODE[c] == BOUND else amount
 
 
 @nonallocating
@@ -131,7 +131,7 @@ def remove_impulses(tableau: Tableau, m: int, X: FloatArray) -> None:
     at their bounds."""
     T, size = tableau.T, len(tableau.T)
     for k in range(size):
-        at_bound = k >= 2 * m and tableau.STATE[k - m] == BOUND
+        at_bound = k >= 2 * m and tableau.MODE[k - m] == BOUND
         change = (bound_of(tableau, m, k - m) if at_bound else 0.0) - X[k]
         if change != 0.0:
             for r in range(size):
@@ -142,15 +142,15 @@ def remove_impulses(tableau: Tableau, m: int, X: FloatArray) -> None:
 def restore_states(tableau: Tableau, m: int, X: FloatArray, BEGAN: IntArray, SIGN: FloatArray) -> None:
     """Pivot from open contacts and rows at bounds to the states of the impulses X (size,), of contacts BEGAN and
     SIGN (m,)."""
-    T, STATE, size = tableau.T, tableau.STATE, len(tableau.T)
-    for c in range(len(STATE)):
+    T, MODE, size = tableau.T, tableau.MODE, len(tableau.T)
+    for c in range(len(MODE)):
         k = unknown_of(m, c)
-        if STATE[c] == BOUND and tableau.LOW[c - m] < X[k] < tableau.HIGH[c - m]:
+        if MODE[c] == BOUND and tableau.LOW[c - m] < X[k] < tableau.HIGH[c - m]:
             bound = bound_of(tableau, m, c)
             pivot(tableau, k)
             T[k, size] += bound
-            STATE[c], tableau.SIGN[c] = INSIDE, 0.0
-        elif STATE[c] == OPEN and BEGAN[c] != OPEN:
+            MODE[c], tableau.SIGN[c] = INSIDE, 0.0
+        elif MODE[c] == OPEN and BEGAN[c] != OPEN:
             slip(tableau, c, SIGN[c])
             if BEGAN[c] == STICK:
                 stick(tableau, c)
@@ -159,11 +159,11 @@ def restore_states(tableau: Tableau, m: int, X: FloatArray, BEGAN: IntArray, SIG
 @nonallocating
 def set_impulses(tableau: Tableau, m: int, X: FloatArray, L: FloatArray) -> None:
     """Set the impulses L of the present states, by the unknowns X (size,) that these leave free."""
-    for c in range(len(tableau.STATE)):
-        k, state = unknown_of(m, c), tableau.STATE[c]
+    for c in range(len(tableau.MODE)):
+        k, state = unknown_of(m, c), tableau.MODE[c]
         if state == BOUND:
             L[c, 0] = bound_of(tableau, m, c)
-        elif state != OUT:
+        elif state != ABSENT:
             L[c, 0] = X[k] if state != OPEN else 0.0
             if c < m:
                 L[c, 1] = X[k + 1] if state == STICK else slope_of(tableau, c) * L[c, 0]
@@ -174,8 +174,8 @@ def correct_residual(problem: JointedProblem, tableau: Tableau, V: FloatArray, X
     """Correct the unknowns X (size,) by what the proximal term and the round-off of pivots leave of the velocities that
     the present states fix; V (k, 3) are those of the bodies."""
     ROWS, _, D, m = problem
-    for c in range(len(tableau.STATE)):
-        k, state = unknown_of(m, c), tableau.STATE[c]
+    for c in range(len(tableau.MODE)):
+        k, state = unknown_of(m, c), tableau.MODE[c]
         for z in range(2 if state == STICK else 1 if state in (SLIP, INSIDE) else 0):
             if c >= m:
                 off = D.ROWS[c - m].speed + bounded_rate(D, c - m, V)
@@ -198,7 +198,7 @@ def follow_homotopy(problem: JointedProblem, L: FloatArray, V: FloatArray, FREE:
     """
     m = problem.m
     tableau = start_homotopy(problem, L, V, anew)
-    T, count, size = tableau.T, len(tableau.STATE), len(tableau.T)
+    T, count, size = tableau.T, len(tableau.MODE), len(tableau.T)
     X = np.empty(size)
     # way: direction of theta, +-1.  nearest: way of theta to the next change of state, change `number` of `changed`.
     theta, way, changed, number = 1.0, -1.0, -1, 0

@@ -13,22 +13,22 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import inlined, nonallocating
 from .coulomb import OPEN, SLIP, STICK
 
-OUT, INSIDE, BOUND = 0, 4, 5  # states beside OPEN, STICK, SLIP: none; of bounded rows inside of their bounds, at one
+ABSENT, INSIDE, BOUND = 0, 4, 5  # states beside OPEN, STICK, SLIP: none; of bounded rows inside of their bounds, at one
 
 
 class Tableau(NamedTuple):
     """A place on the homotopy, of m contacts and n bounded rows: contact i has the unknowns 2 i (normal) and 2 i + 1
     (tangential), row i the unknown 2 m + i; size = 2 m + n.
 
-    STATE, SIGN (m + n,): states; sign of the friction that slips, or of the bound; else 0.  MU (m,): friction, as long
+    MODE, SIGN (m + n,): states; sign of the friction that slips, or of the bound; else 0.  MU (m,): friction, as long
     as the homotopy lasts.  LOW, HIGH (n,): bounds.  REST (m,): tangential velocity of contacts that stick, not 0 where
-    energy limits friction (`coulomb.state_of`). T (size, size + 2): an unknown is an impulse or a velocity less its
+    energy limits friction (`coulomb.mode_of`). T (size, size + 2): an unknown is an impulse or a velocity less its
     target; its state leaves one of both free, and fixes the other at 0. Row k has the free one of unknown k by changes
     of all fixed ones, then at theta = 0, and per theta. Where a contact slips, beta stands for beta - s mu lam.
     R (size + 2,): room for a row.
     """
 
-    STATE: IntArray
+    MODE: IntArray
     SIGN: FloatArray
     MU: FloatArray
     LOW: FloatArray
@@ -73,7 +73,7 @@ def slope_of(tableau: Tableau, c: int) -> float:
 def slip(tableau: Tableau, c: int, sign: float) -> None:
     """Let contact c, which is open, slip with friction of that sign: lam becomes free, and beta follows it."""
     T, n = tableau.T, 2 * c
-    tableau.STATE[c], tableau.SIGN[c] = SLIP, sign
+    tableau.MODE[c], tableau.SIGN[c] = SLIP, sign
     for i in range(len(T)):
         T[i, n] += slope_of(tableau, c) * T[i, n + 1]
     pivot(tableau, n)
@@ -86,20 +86,20 @@ def stick(tableau: Tableau, c: int) -> None:
     pivot(tableau, n + 1)
     for j in range(T.shape[1]):
         T[n + 1, j] += slope_of(tableau, c) * T[n, j]
-    tableau.STATE[c], tableau.SIGN[c] = STICK, 0.0
+    tableau.MODE[c], tableau.SIGN[c] = STICK, 0.0
 
 
 @nonallocating
 def change(tableau: Tableau, m: int, c: int, which: int, theta: float) -> int:
     """Let c make its change of state number `which` (`margin`) at theta; returns the number of the change back."""
-    T, state, sign = tableau.T, tableau.STATE[c], tableau.SIGN[c]
+    T, state, sign = tableau.T, tableau.MODE[c], tableau.SIGN[c]
     k, size = unknown_of(m, c), len(tableau.T)
     if state == OPEN:
         slides = T[k + 1, size] + theta * T[k + 1, size + 1]
         slip(tableau, c, 0.0 if tableau.MU[c] <= 0.0 else -1.0 if slides > 0.0 else 1.0)
         return 0
     if state == STICK:
-        tableau.STATE[c], tableau.SIGN[c] = SLIP, 1.0 if which == 0 else -1.0
+        tableau.MODE[c], tableau.SIGN[c] = SLIP, 1.0 if which == 0 else -1.0
         for j in range(size + 2):
             T[k + 1, j] -= slope_of(tableau, c) * T[k, j]
         pivot(tableau, k + 1)
@@ -111,17 +111,17 @@ def change(tableau: Tableau, m: int, c: int, which: int, theta: float) -> int:
         pivot(tableau, k)
         for i in range(size):
             T[i, k] -= slope_of(tableau, c) * T[i, k + 1]
-        tableau.STATE[c], tableau.SIGN[c] = OPEN, 0.0
+        tableau.MODE[c], tableau.SIGN[c] = OPEN, 0.0
         return 0
     if state == INSIDE:
-        tableau.STATE[c], tableau.SIGN[c] = BOUND, -1.0 if which == 0 else 1.0
+        tableau.MODE[c], tableau.SIGN[c] = BOUND, -1.0 if which == 0 else 1.0
         T[k, size] -= bound_of(tableau, m, c)
         pivot(tableau, k)
         return 0
     bound = bound_of(tableau, m, c)
     pivot(tableau, k)
     T[k, size] += bound
-    tableau.STATE[c], tableau.SIGN[c] = INSIDE, 0.0
+    tableau.MODE[c], tableau.SIGN[c] = INSIDE, 0.0
     return 1 if sign > 0.0 else 0
 
 
@@ -133,7 +133,7 @@ def margin(tableau: Tableau, m: int, c: int, which: int, z: int) -> float:
     open 0: u_n; slip 0: lam, 1: -sign u_t; stick 0, 1: mu lam -+ beta; inside 0, 1: its distance from the lower and
     upper bound; at a bound 0: -sign u.
     """
-    T, state, sign, column = tableau.T, tableau.STATE[c], tableau.SIGN[c], len(tableau.T) + z
+    T, state, sign, column = tableau.T, tableau.MODE[c], tableau.SIGN[c], len(tableau.T) + z
     k = unknown_of(m, c)
     if state == STICK:
         return float(tableau.MU[c] * T[k, column] + (T[k + 1, column] if which == 1 else -T[k + 1, column]))
@@ -142,7 +142,7 @@ def margin(tableau: Tableau, m: int, c: int, which: int, z: int) -> float:
         return float(T[k, column] - bound if which == 0 else bound - T[k, column])
     if state == SLIP and which == 1 and sign != 0.0:
         return float(-sign * T[k + 1, column])
-    if which == 0 and state != OUT:
+    if which == 0 and state != ABSENT:
         return float(-sign * T[k, column] if state == BOUND else T[k, column])
     return np.inf
 

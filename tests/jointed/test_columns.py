@@ -36,7 +36,7 @@ def test_what_joints_guide_on_a_line_does_not_stick_by_impulses_without_bound(
     C = Columns(np.array([0, 1]), one, N, T, np.zeros(1, np.int64), np.zeros(1))
     groups = Groups(np.array([0, -1]), np.array([0, 1]), one, one, none, np.array([STRUT_BETWEEN]))
     set_effective_masses(groups, C, rows, 1)
-    assert C.OUT[0] == 0
+    assert C.LEFT_OUT[0] == 0
     assert row.a_nn == pytest.approx(d[0] ** 2 / mass, rel=1e-12)
     assert math.isnan(row.w_nn) == (abs(error) < STRUT_BETWEEN)
     un, ut = -d[0] - 0.3, -d[1]

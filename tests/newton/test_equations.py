@@ -12,7 +12,7 @@ from eeca_pymunk.arrays import FloatArray
 from eeca_pymunk.compiled.records import kind_of, zeros
 from eeca_pymunk.joints.ordering import order_unknowns
 from eeca_pymunk.joints.workspace import workspace
-from eeca_pymunk.model.joint_steps import NO_BEND, OWN_TURN, BodyStep, JointStep
+from eeca_pymunk.model.joint_steps import STIFF_NONE, STIFF_TURNS, BodyStep, JointStep
 from eeca_pymunk.newton.angles import shared_turn
 from eeca_pymunk.newton.banded import back_banded, factor_banded
 from eeca_pymunk.newton.condensed import factor, substitute
@@ -158,8 +158,8 @@ def test_slopes_and_stiffness_are_derivatives(k: int) -> None:
     # The derivative of torques' common factor is good to the square of the difference of both turns.
     one = Iterate(0.05)
     found, bend = one.at(k)
-    stiff = one.stiff.copy() if bend != NO_BEND else np.zeros((6, 6))
-    if bend == OWN_TURN:
+    stiff = one.stiff.copy() if bend != STIFF_NONE else np.zeros((6, 6))
+    if bend == STIFF_TURNS:
         keep = np.zeros((6, 6))
         keep[2, 2], keep[5, 5] = stiff[2, 2], stiff[5, 5]
         stiff = keep
