@@ -46,4 +46,5 @@ def gap_and_rate(A: Scene, J: Joints, a: int, b: int, t: float, allowed: bool) -
     one = allowed_velocity(A, J, i, t) if allowed else rate(A.BODY, i, t)
     two = allowed_velocity(A, J, j, t) if allowed else rate(A.BODY, j, t)
     arm_i, arm_j = (px - xi) * ny - (py - yi) * nx, (px - xj) * ny - (py - yj) * nx
-    return g, opening_rate(nx, ny, arm_i, arm_j, one, two)
+    still = 0.0, 0.0, 0.0
+    return g, opening_rate(nx, ny, 0.0, arm_j, still, two) - opening_rate(nx, ny, 0.0, arm_i, still, one)

@@ -11,6 +11,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import inlined, kernel, nonallocating
 from ..model.contacts import Columns, JointedProblem, Problem, Row
+from ..model.parameters.impulses import ON_CONE
 from ..model.parameters.joints import DISC_WORK, SLIP_WORK, SWEEP_ENTRY_WORK, SWEEP_WORK
 from .bounded import FIRST_OF_DISC, SINGLE, bounded_rate, push_row, room_for_rows, sweep_bounded
 from .build import normal_rate, tangent_rate
@@ -86,7 +87,7 @@ def breach(problem: JointedProblem, L: FloatArray, V: FloatArray) -> float:
             worst = max(worst, ROWS[i].wake - normal_rate(ROWS[i], V))
             continue
         un, ut = normal_rate(ROWS[i], V) - ROWS[i].target, tangent_rate(ROWS[i], V)
-        state, sign = mode_of(ROWS[i], ut, L[i, 0], L[i, 1])
+        state, sign = mode_of(ROWS[i], ut, L[i, 0], L[i, 1], ON_CONE)
         worst = max(worst, -un if state == OPEN else abs(un))
         if state == STICK or sign != 0.0:
             off = ut - limited_slip(ROWS[i], L[i, 0], L[i, 1])

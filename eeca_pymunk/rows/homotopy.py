@@ -17,7 +17,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import inlined, kernel, nonallocating
 from ..model.contacts import JointedProblem
-from ..model.parameters.impulses import HOMOTOPY_CHANGES, HOMOTOPY_CHANGES_ANEW, HOMOTOPY_REFINEMENTS
+from ..model.parameters.impulses import HOMOTOPY_CHANGES, HOMOTOPY_CHANGES_ANEW, HOMOTOPY_REFINEMENTS, ON_CONE_SWEPT
 from ..model.parameters.joints import CHANGE_ENTRY_WORK, CHANGE_WORK, HOMOTOPY_WORK
 from .bounded import SINGLE, bounded_rate
 from .build import normal_rate, tangent_rate
@@ -71,7 +71,7 @@ def start_homotopy(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: 
             slides = tangent_rate(ROWS[i], V)
             tableau.REST[i] = limited_slip(ROWS[i], L[i, 0], L[i, 1])
             T[2 * i + 1, size] = slides - tableau.REST[i]
-            BEGAN[i], SIGN[i] = mode_of(ROWS[i], slides, L[i, 0], L[i, 1])
+            BEGAN[i], SIGN[i] = mode_of(ROWS[i], slides, L[i, 0], L[i, 1], ON_CONE_SWEPT)
             tableau.MU[i] = max(ROWS[i].friction, 0.0) if BEGAN[i] != SLIP or SIGN[i] != 0.0 else 0.0
             X[2 * i], X[2 * i + 1] = L[i, 0], L[i, 1]
             C.WORK[0] += work_of_change(size) if L[i, 0] > 0.0 else 0.0

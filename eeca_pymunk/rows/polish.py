@@ -15,7 +15,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import AnyProblem, Problem, Row
-from ..model.parameters.impulses import FACE_LINE
+from ..model.parameters.impulses import FACE_LINE, ON_CONE
 from .build import normal_rate, push_contact, slip_rate, tangent_rate
 from .cholesky import assemble_blocks, factor_blocks, make_factor, roots_of, solve_blocks
 from .coulomb import OPEN, STICK, limits_slip, lossless_slip, mode_of
@@ -58,7 +58,7 @@ def classify(
     """
     held, stuck, slip, rest = np.zeros(m, np.int64), np.zeros(m, np.int64), np.zeros(m), np.zeros(m)
     for i in range(m):
-        state, sign = mode_of(ROWS[i], tangent_rate(ROWS[i], V), L[i, 0], L[i, 1])
+        state, sign = mode_of(ROWS[i], tangent_rate(ROWS[i], V), L[i, 0], L[i, 1], ON_CONE)
         held[i], slip[i] = int(state != OPEN), sign * ROWS[i].friction
         if state == STICK:
             limited = limits_slip(ROWS[i], L[i, 0], L[i, 1])

@@ -14,6 +14,7 @@ ON_CONE = round_off(1e-12, "of the largest friction",
 WEDGED = heuristic(0.01, "of the speed",
     "Velocity that a solve leaves, or part of its impulses that the energy lock takes, from which on contacts count "
     "as wedged: without friction.")
+ON_CONE_SWEPT = round_off(1e-9, "of the largest friction", "The same at the start of a homotopy, after sweeps.")
 FACTOR_LEAST = round_off(0.001, "of a body's inertia",
     "Pivot of sparse factors, at least; it is 1 or more in exact arithmetic.")
 PROXIMAL_DENSE = round_off(100000000.0, "over the effective mass",
