@@ -143,7 +143,7 @@ def lawful(row: Row, V: FloatArray, lam0: float, beta0: float, stays: bool) -> t
     lam = lam0 - (row.w_nn * short + row.w_nt * ut)
     beta = beta0 - (row.w_nt * short + row.w_tt * ut)
     sticks = abs(beta) <= mu * lam
-    if sticks and not limits_slip(row, lam, beta):
+    if sticks and (beta * row.ut <= 0.0 if stays else not limits_slip(row, lam, beta)):
         return lam, beta, False
     if not qn < 0.0:
         off = ut - limited_slip(row, lam0, beta0)
@@ -152,7 +152,7 @@ def lawful(row: Row, V: FloatArray, lam0: float, beta0: float, stays: bool) -> t
         closed = beta * row.ut > 0.0 and abs(beta) <= mu * lam
         return (lam, beta, False) if closed else (0.0, 0.0, False)
     qt = ut - beta0 * att - lam0 * ant
-    if not sticks:
+    if not (sticks or stays):
         # Nearly all others slip in the direction of the motion without friction.
         slope = -mu if qt * ann > qn * ant else mu
         felt = ann + slope * ant
