@@ -95,9 +95,7 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
     before = step_linearly(W, h, length) if status == LINEAR else 0.0
     if status >= ELASTIC:
         status = take_gain(W, h, status, before)
-    elif abs(W.J.PART_LEDGER.closed) > kinetic_of_component(
-        local, W.bodies, NOW
-    ):  # works that cancel but for round-off
+    elif abs(W.J.PART_LEDGER.closed) > kinetic_of_component(local, W.bodies, NOW):  # but for round-off they cancel
         close_ledger(local, W.bodies, W.J.PART_LEDGER)
     ledger.gave = max(farthest(W) - apart, 0.0) if status >= ELASTIC else 0.0
     add_part(ledger, W.J.PART_LEDGER)

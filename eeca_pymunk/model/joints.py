@@ -195,18 +195,8 @@ class Joints(NamedTuple):
 
 # What a return to an earlier step restores; the rest is scratch that each step writes first.
 OF_JOINTS = (
-    "JOINT",
-    "HINGE",
-    "LOCAL",
-    "STIFF",
-    "PROGRESS",
-    "PARTS",
-    "PART_LEDGER",
-    "PIVOTS",
-    "KEPT",
-    "STEPPED",
-    "TALLY",
-)
+    "JOINT", "HINGE", "LOCAL", "STIFF", "PROGRESS", "PARTS", "PART_LEDGER", "PIVOTS", "KEPT", "STEPPED", "TALLY"
+)  # fmt: skip
 
 joints_of = Opener(Joints)
 
