@@ -13,18 +13,18 @@ Make = Callable[[pymunk.Space], ep.Stepper]
 
 
 @contextmanager
-def replaced(make: Make = ep.EECA) -> Iterator[dict[int, ep.Stepper]]:
-    """Within, every space is stepped by a stepper of its own, made at its first step; by id of the space."""
-    steppers: dict[int, ep.Stepper] = {}
+def replaced(make: Make = ep.EECA) -> Iterator[None]:
+    """Within, every space is stepped by a stepper of its own, made at its first step, which lives as long as it."""
     native = pymunk.Space.step
 
     def step(self: pymunk.Space, dt: float) -> None:
-        if id(self) not in steppers:
-            steppers[id(self)] = make(self)  # which holds the space, so that no other has its id
-        steppers[id(self)].step(dt)
+        stepper = vars(self).get("_stepper")
+        if stepper is None:
+            stepper = vars(self)["_stepper"] = make(self)
+        stepper.step(dt)
 
     pymunk.Space.step = step  # type: ignore[method-assign]
     try:
-        yield steppers
+        yield
     finally:
         pymunk.Space.step = native  # type: ignore[method-assign]
