@@ -199,7 +199,4 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     if A.BODY[j].inv_mass > 0.0:
         A.STATE[j].version += 1
     n = rejoin(A, a, b, t, n, lasts, lost)
-    n = list_ended(A, n)
-    for q in range(n):
-        A.RESTING[A.BLOCK[q]].longest = math.inf  # they move otherwise now
-    return n
+    return list_ended(A, n)

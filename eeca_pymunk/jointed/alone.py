@@ -6,14 +6,13 @@ from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..islands.local import open_until
 from ..joints.ledger import clear_interval
-from ..model.joint_steps import ELASTIC
 from ..model.joints import Joints
 from ..model.parameters.intervals import INTERVAL_RETRY
 from ..model.scene import Scene
 from ..model.step import AGAIN, DONE
 from ..pairs.rules import barred
 from .component import step_in_scratch
-from .gathered import gather_alone, restore_joints, save_joints
+from .gathered import gather_alone, gave_way, restore_joints, save_joints
 from .lengths import excess_alone
 
 
@@ -52,7 +51,7 @@ def begin_alone(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     save_joints(J, s)
     clear_interval(J.STEPPED[s])
     step_in_scratch(J, s, h, gather_alone(A, J, s, t, h), True)
-    far = 0.0 if last else 2.0 if J.STEPPED[s].status >= ELASTIC else excess_alone(A, J, s, t, h)
+    far = 0.0 if last else 2.0 if gave_way(J, s) else excess_alone(A, J, s, t, h)
     if far > INTERVAL_RETRY:
         restore_joints(J, s)
         return AGAIN, h / far

@@ -15,7 +15,7 @@ from ..model.parameters.intervals import INTERVAL_RETRY
 from ..model.parameters.joints import LINEAR_APART
 from ..model.scene import Scene
 from ..pairs.lists import mark_pair
-from .gathered import restore_joints
+from .gathered import gave_way, restore_joints
 from .ledger import account_component
 from .rest import end_rest
 from .solve import try_jointed
@@ -98,6 +98,6 @@ def left_apart(A: Scene, J: Joints, root: int) -> bool:
     if A.RESTING[root].strays > INTERVAL_RETRY:
         return True
     for s in components_of(A, J, root):
-        if J.STEPPED[s].status >= LINEAR or J.STEPPED[s].gave > LINEAR_APART:
+        if (J.STEPPED[s].status >= LINEAR and gave_way(J, s)) or J.STEPPED[s].gave > LINEAR_APART:
             return True
     return False

@@ -134,7 +134,7 @@ def solve_contacts(
     PREVIOUS = np.empty((len(isle.IM), 3))
     FORESEEN, UNKNOWN = np.empty((len(isle.IM), 3)), np.empty((0, 3))
     converged, best, worst, LEAST, USED, agreed = False, np.inf, 0.0, L.copy(), L.copy(), False
-    bent, reached, B = 0.0, np.inf, make_bounded(J, groups, m <= joints.COLUMN_CONTACTS)
+    better, bent, reached, B = 0, 0.0, np.inf, make_bounded(J, groups, m <= joints.COLUMN_CONTACTS)
     NOW = np.empty(len(B.OF))
     problem = JointedProblem(ROWS, C, B, m)
     free = len(isle.IM) == n and not has_partner(groups, J.COMPONENT, J.JOINED)
@@ -163,8 +163,10 @@ def solve_contacts(
                 agreed = True
                 break
             if off < best:
-                best = off
+                best, better = off, outer
                 copy(LEAST, L)
+            if exactly and outer >= joints.CHORD and (off > scale or outer - better > joints.CHORD):
+                break  # new columns have not helped either
         if not build and not fit_columns(interval, B, L, USED, NOW, PREVIOUS):
             advance(A, J, interval, L, B, True, FORESEEN)
             build = True

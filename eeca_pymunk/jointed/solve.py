@@ -14,8 +14,7 @@ from ..contacts.interval import make_contacts, recall, speeds
 from ..contacts.memory import remember_loads, shapes_of
 from ..islands import local
 from ..islands.candidates import pairs_within
-from ..islands.membership import lossy
-from ..model.joint_steps import ELASTIC
+from ..islands.membership import lossy, members_of
 from ..model.joints import Joints
 from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, LARGE_ISLAND, UNSOLVED_PART
@@ -28,7 +27,7 @@ from .advance import Interval, Motion, advance
 from .alone import account_turning, begin_alone, is_component, meets_no_other, set_path
 from .columns import make_columns
 from .fitting import project_velocities
-from .gathered import restore_joints, save_joints
+from .gathered import gave_way, restore_joints, save_joints
 from .groups import find_groups
 from .ledger import work_left
 from .lengths import excess, forced_deeper, sinks, too_deep_on_way, within_sagitta
@@ -44,7 +43,7 @@ def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
     if joints do not hold, work is short, or bodies move too far (`lengths`).
 
     A length that was too long is not tried again at once: the next interval is at most INTERVAL_RETRY times as long as
-    one that was shortened, unless there is an impact in between (`Rest.longest`).
+    one that was shortened, also after an impact (`Rest.longest`).
 
     Returns DONE; or, with everything as before, PUSHES_FULL, or SPENT if the step has no work left.
     """
@@ -61,7 +60,9 @@ def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
         status, h = try_jointed(A, J, root, t, h, last)
         if status != AGAIN:
             if status == DONE:
-                rest.longest = max(INTERVAL_RETRY * h, 0.0 if h < longest else rest.longest)
+                longer = max(INTERVAL_RETRY * h, 0.0 if h < longest else rest.longest)
+                for i in members_of(A, root):
+                    A.RESTING[i].longest = longer
                 if t == 0.0 and h == longest:
                     rest_if_still(A, J, root)
             return status
@@ -81,7 +82,7 @@ def excess_length(
     m, n, h = interval.m, interval.n, interval.h
     far = 2.0 if not solved and J.PROGRESS.effort > J.PROGRESS.share else 0.0
     for s in interval.groups.JOINTED:
-        if J.STEPPED[s].status >= ELASTIC:
+        if gave_way(J, s):
             far = 2.0
     if last and solved:
         A.RESTING[root].strays = too_deep_on_way(A, interval)

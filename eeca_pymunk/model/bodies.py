@@ -105,8 +105,8 @@ class Rest(Record):
     payable: float  # of the root: cost of the correction up to which losses pay; the rest is external work
     lost: float  # of the root: energy lost in this step; if negative, energy that later intervals have to take out
     until: float  # of the root: instant at which the interval ends
-    longest: float  # of the root of an island with joints: length with which its next interval is tried, at most
-    strays: float  # of such a root: how many times too long its interval has remained (`..jointed.solve`)
+    longest: float  # in an island with joints: length with which its next interval is tried, at most
+    strays: float  # of the root of such an island: how many times too long its interval has remained (`..jointed.solve`)
     rest_timer: float  # steps in a row at whose start the body was slow; negative after a failed test
     speed: float  # `Midstep`: bound of the speed of the body's points in the step, length/time
     rest_due: float  # `due` of a body at rest at the end of the last step
