@@ -21,7 +21,7 @@ from ..jointed.meet import end_before, locate_impact
 from ..model.bodies import AT_REST
 from ..model.contacts import SOLVED, JointedProblem, Row, Solved
 from ..model.joints import Joints
-from ..model.parameters.events import EVENT_LOOKS
+from ..model.parameters.events import EVENT_LOOKS, RESOLUTION
 from ..model.parameters.impulses import WEDGED
 from ..model.parameters.joints import CLOSES, IMPACT_ENERGY, IMPACT_LIMITS
 from ..model.scene import Scene
@@ -199,4 +199,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     if A.BODY[j].inv_mass > 0.0:
         A.STATE[j].version += 1
     n = rejoin(A, a, b, t, n, lasts, lost)
-    return list_ended(A, n)
+    n = list_ended(A, n)
+    for q in range(n):
+        A.RESTING[A.BLOCK[q]].longest *= RESOLUTION  # they move otherwise now, perhaps for long
+    return n

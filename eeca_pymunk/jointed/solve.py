@@ -43,7 +43,7 @@ def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
     if joints do not hold, work is short, or bodies move too far (`lengths`).
 
     A length that was too long is not tried again at once: the next interval is at most INTERVAL_RETRY times as long as
-    one that was shortened, also after an impact (`Rest.longest`).
+    one that was shortened, RESOLUTION times after an impact (`Rest.longest`).
 
     Returns DONE; or, with everything as before, PUSHES_FULL, or SPENT if the step has no work left.
     """

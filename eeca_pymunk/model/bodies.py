@@ -106,7 +106,7 @@ class Rest(Record):
     lost: float  # of the root: energy lost in this step; if negative, energy that later intervals have to take out
     until: float  # of the root: instant at which the interval ends
     longest: float  # in an island with joints: length with which its next interval is tried, at most
-    strays: float  # of the root of such an island: how many times too long its interval has remained (`..jointed.solve`)
+    strays: float  # of its root: how many times too long its interval has remained (`..jointed.solve`)
     rest_timer: float  # steps in a row at whose start the body was slow; negative after a failed test
     speed: float  # `Midstep`: bound of the speed of the body's points in the step, length/time
     rest_due: float  # `due` of a body at rest at the end of the last step

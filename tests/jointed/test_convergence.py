@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pymunk
@@ -11,13 +12,17 @@ import pytest
 import eeca_pymunk as ep
 from comparisons import meeting_scenes, program_joints
 from eeca_pymunk.contacts.interval import make_contacts
+from eeca_pymunk.jointed import press
 from eeca_pymunk.jointed.advance import Interval, Motion
 from eeca_pymunk.jointed.groups import Groups
 from eeca_pymunk.jointed.secant import fit_columns
 from eeca_pymunk.model.contacts import Columns
 from eeca_pymunk.model.islands import Island
+from eeca_pymunk.model.parameters.joints import CHORD
 from eeca_pymunk.rows.bounded import room_for_rows
 from eeca_pymunk.rows.columns import push_columns
+
+from .test_work import box_with, interval, with_weight
 
 Spaces = Callable[[], pymunk.Space]
 
@@ -90,3 +95,45 @@ def test_columns_answer_as_the_last_motion_did(unit: float) -> None:
     np.testing.assert_allclose(answer(new - old)[:2], fitted[:2], rtol=1e-12)
     np.testing.assert_allclose(answer(new - old)[2], was[2], rtol=1e-12)  # free bodies answer by their mass
     np.testing.assert_allclose(answer(across), was_across, rtol=1e-9, atol=1e-12 * unit)
+
+
+@pytest.mark.parametrize("floor", [False, True])
+def test_joints_that_contradict_one_another_do_not_stop_time(floor: bool) -> None:
+    """A gear far beyond a rotary limit: joints give way in an interval of any length, so a shorter one is of no use.
+    Steps are taken whole, by a small part of their work."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -10.0
+    a, b = pymunk.Body(1.0, 0.1), pymunk.Body(1.0, 0.1)
+    a.position, b.position = (0.0, 1.0), (1.0, 1.0)
+    space.add(a, b, pymunk.Circle(a, 0.3), pymunk.Circle(b, 0.3), pymunk.PivotJoint(a, b, (0.5, 1.0)))
+    space.add(pymunk.RotaryLimitJoint(a, b, -0.1, 0.1), pymunk.GearJoint(a, b, 0.6, 1.0))
+    if floor:
+        space.add(pymunk.Segment(space.static_body, (-9.0, 0.0), (9.0, 0.0), 0.1))
+    stepper = ep.EECA(space)
+    unmet, efforts = 0, []
+    for _ in range(40):
+        report = stepper.step(1 / 60)
+        unmet += not report.converged
+        loop = stepper.event_loop
+        assert loop is not None
+        assert loop.scene.PAR.dt == loop.scene.PAR.planned
+        efforts.append(loop.joints.PROGRESS.effort / loop.joints.PROGRESS.budget)
+        assert not floor or min(a.position.y, b.position.y) > 0.3
+    assert unmet > 20
+    assert np.median(efforts) <= 0.05
+
+
+@pytest.mark.parametrize(("off", "most"), [(1e9, CHORD), (1e-3, CHORD + 2)])
+def test_iterations_that_do_not_come_to_agree_end(monkeypatch: pytest.MonkeyPatch, off: float, most: int) -> None:
+    """Whether what contacts and components differ by is beyond all speeds or hardly changes: after new columns."""
+    solved = []
+
+    def laws(*arguments: Any) -> float:
+        solved.append(1)
+        return solve(*arguments)
+
+    solve = press.solve_columns
+    monkeypatch.setattr(press, "solve_columns", laws)
+    monkeypatch.setattr(press, "farthest_apart", lambda *_: off)
+    interval(*box_with(with_weight, True))
+    assert len(solved) == most

@@ -12,12 +12,13 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk.compiled.records import kind_of, zeros
+from eeca_pymunk.impacts.intervals import cut_short
 from eeca_pymunk.jointed.ends import take_back
 from eeca_pymunk.jointed.ledger import account_component
 from eeca_pymunk.jointed.losses import slip_of
 from eeca_pymunk.model.contacts import Pair, Pushed, Row
 from eeca_pymunk.model.joint_steps import JointLedger
-from eeca_pymunk.model.step import Step
+from eeca_pymunk.model.step import KINDS, Step
 
 from .measures import kinetic, moving
 
@@ -141,10 +142,9 @@ def test_contacts_of_an_island_stay_together_as_another_interval_is_taken_back()
 
 
 def test_ledger_closes_where_joints_contradict_each_other() -> None:
-    """Gears to a body that spins on, and a limit: intervals as short as their budgets allow, in which rows push without
-    bound, and works of limits, joints and supports cancelled but for the round-off of 1e10 times what was left.
-    Without shapes a step that ends early is due to nobody's contact."""
-    cut = 0
+    """Gears to a body that spins on, and a limit: rows push without bound, and works of limits, joints and supports
+    cancelled but for the round-off of 1e10 times what was left. Steps tell that, and are taken whole."""
+    told = 0
     for seed in range(30, 40):
         chance, space = Random(seed), pymunk.Space()
         axis = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
@@ -162,8 +162,23 @@ def test_ledger_closes_where_joints_contradict_each_other() -> None:
             assert ledger is not None
             scale = before + ep.measure(space).kinetic + abs(ledger.external) + ledger.restitution
             assert abs(ledger.residual) <= 1e-12 * scale
-            cut += any(unmet.name == "solves" for unmet in report.unmet)
-    assert cut > 0
+            assert all(unmet.name == "joints" for unmet in report.unmet)
+            told += not report.converged
+    assert told > 0
+
+
+def test_a_step_without_shapes_that_ends_early_is_due_to_no_contact() -> None:
+    space = pymunk.Space()
+    one, two = pymunk.Body(1.0, 1.0), pymunk.Body(1.0, 1.0)
+    two.position = 1.0, 0.0
+    space.add(one, two, pymunk.PinJoint(one, two))
+    stepper = ep.EECA(space)
+    stepper.step(0.1)
+    loop = stepper.event_loop
+    assert loop is not None
+    cut_short(loop.scene, loop.joints, 0, 0.05)
+    (missed,) = loop.missed
+    assert (KINDS[int(missed.kind)], missed.first, missed.second) == ("solves", -1.0, -1.0)
 
 
 @pytest.mark.parametrize("dt", [1e-9, 1e-10, 1e-11])

@@ -10,6 +10,7 @@ import pymunk
 import pytest
 
 import eeca_pymunk as ep
+from eeca_pymunk.model.parameters.events import RESOLUTION
 from scenes.linkages import body, empty
 from tests.programs.compositions import Composition
 
@@ -125,6 +126,23 @@ def test_how_long_intervals_may_be_is_known_until_a_body_is_edited(edited: bool,
         bob.velocity *= 0.9
     stepper.step(1 / 60)
     assert loop.scene.COUNT.solves == (1 if edited else 3)
+
+
+def test_how_long_intervals_may_be_is_remembered_beyond_an_impact() -> None:
+    """Two disks on a pin that fall on a floor in the middle of a step: what comes after is no more than RESOLUTION
+    times as long as what has been found, as an island that is hard to solve would be solved in vain."""
+    space = empty(0.0)
+    one, two = (body(space, 1.0, 0.1, (x, 0.0)) for x in (-1.0, 1.0))
+    floor = pymunk.Segment(space.static_body, (-9.0, -0.7), (9.0, -0.7), 0.1)
+    space.add(pymunk.Circle(one, 0.5), pymunk.Circle(two, 0.4), pymunk.PinJoint(one, two), floor)
+    one.velocity = two.velocity = (0.0, -12.0)
+    stepper = ep.EECA(space)
+    stepper.step(1e-9)
+    loop, dt = stepper.event_loop, 1 / 60
+    assert loop is not None
+    loop.scene.RESTING["longest"] = 1e-3 * dt
+    assert stepper.step(dt).contacts
+    assert max(loop.scene.RESTING["longest"][:2]) <= RESOLUTION * 1.5 * dt
 
 
 def test_a_joint_tells_its_force_whatever_the_intervals_of_a_step() -> None:
