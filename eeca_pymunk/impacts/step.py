@@ -4,6 +4,7 @@ written to it."""
 from __future__ import annotations
 
 from ..compiled import Table, kernel
+from ..islands.support import settle
 from ..jointed.ledger import account_joints, load_welds, start_joints
 from ..joints.pinned import put_pinned
 from ..model.joints import Joints, joints_of
@@ -46,6 +47,7 @@ def start(A: Scene, J: Joints, R: Reading, dt: float, gx: float, gy: float, half
 def finish(A: Scene, J: Joints, R: Reading, status: int) -> int:
     """Close the step, and write the states at its end; returns the bits of the step, or a negative code."""
     account_joints(A, J)
+    settle(A)
     close(A, R.IDS)
     if len(A.PINNED) > 0:
         load_welds(A, J, R)

@@ -33,32 +33,63 @@ from .rest import candidate_speed, postpone_test, spins_freely
 
 
 @nonallocating
+def add_load(
+    A: Scene, root: int, a: int, b: int, fx: float, fy: float, px: float, py: float, LOAD: FloatArray
+) -> None:  # fmt: skip
+    """Add to LOAD (., 3), a row for each body of the island in the order of A.PLACE, the changes of velocity by an
+    impulse f at the point p between shapes a and b, on b, if one of them is of the island and the other is not."""
+    BODY, STATE = A.BODY, A.STATE
+    i, j = A.LINK[a].owner, A.LINK[b].owner
+    of_a, of_b = BODY[i].inv_mass > 0.0 and STATE[i].island == root, BODY[j].inv_mass > 0.0 and STATE[j].island == root
+    if of_a == of_b:
+        return
+    k, sign = (j, 1.0) if of_b else (i, -1.0)
+    q = A.PLACE[k]
+    LOAD[q, 0] += sign * BODY[k].inv_mass * fx
+    LOAD[q, 1] += sign * BODY[k].inv_mass * fy
+    LOAD[q, 2] += sign * BODY[k].inv_inertia * ((px - BODY[k].x) * fy - (py - BODY[k].y) * fx)
+
+
+@nonallocating
 def support_loads(A: Scene, root: int, LOAD: FloatArray) -> None:
-    """Add to LOAD (., 3), a row for each body of the island in the order of A.PLACE, the changes of velocity that
-    contacts of other islands would cause in a whole step with their present forces."""
-    BODY = A.BODY
+    """Add to LOAD, as `add_load`, the changes of velocity that contacts of other islands would cause in a whole step
+    with their present forces."""
     for c in range(A.COUNT.pushes):
         r = A.PUSHED_BY[c].root
         if r < 0 or r == root:
             continue
         pushed = A.PUSHED[c]
-        for side in range(2):
-            j = A.LINK[A.PUSHED_BY[c].b if side > 0 else A.PUSHED_BY[c].a].owner
-            if BODY[j].inv_mass == 0.0 or A.STATE[j].island != root:
-                continue
-            q, part = A.PLACE[j], (2.0 * side - 1.0) * A.PAR.dt / pushed.length
-            fx = part * (pushed.normal * pushed.nx - pushed.tangential * pushed.ny)
-            fy = part * (pushed.normal * pushed.ny + pushed.tangential * pushed.nx)
-            LOAD[q, 0] += BODY[j].inv_mass * fx
-            LOAD[q, 1] += BODY[j].inv_mass * fy
-            LOAD[q, 2] += BODY[j].inv_inertia * ((pushed.px - BODY[j].x) * fy - (pushed.py - BODY[j].y) * fx)
+        part = A.PAR.dt / pushed.length
+        fx = part * (pushed.normal * pushed.nx - pushed.tangential * pushed.ny)
+        fy = part * (pushed.normal * pushed.ny + pushed.tangential * pushed.nx)
+        add_load(A, root, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, fx, fy, pushed.px, pushed.py, LOAD)
+
+
+@nonallocating
+def past_loads(A: Scene, root: int, LOAD: FloatArray) -> None:
+    """Add to LOAD, as `add_load`, the changes of velocity that contacts of other islands have caused in this step, at
+    its end: those that are logged, and those whose intervals last until then."""
+    for e in range(A.COUNT.logged):
+        one = A.LOG[e]
+        fx, fy = one.normal * one.nx - one.tangential * one.ny, one.normal * one.ny + one.tangential * one.nx
+        add_load(A, root, int(one.first), int(one.second), fx, fy, one.px, one.py, LOAD)
+    for c in range(A.COUNT.pushes):
+        r = A.PUSHED_BY[c].root
+        if r < 0 or r == root:
+            continue
+        pushed = A.PUSHED[c]
+        part = (A.PAR.dt - pushed.start) / pushed.length
+        fx = part * (pushed.normal * pushed.nx - pushed.tangential * pushed.ny)
+        fy = part * (pushed.normal * pushed.ny + pushed.tangential * pushed.nx)
+        add_load(A, root, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, fx, fy, pushed.px, pushed.py, LOAD)
 
 
 @kernel
-def supports_load(A: Scene, root: int) -> bool:
-    """Whether contacts of an island at rest can support the present loads; then their impulses are set to the forces
-    found. If not, the next tests for rest of its bodies are postponed."""
-    BODY, dt = A.BODY, A.PAR.dt
+def supports_load(A: Scene, root: int, past: bool) -> bool:
+    """Whether contacts of an island at rest can support the present loads, at the start of a step, or `past` ones, at
+    its end; then their impulses are set to the forces found. If not, the next tests for rest of its bodies are
+    postponed, unless the step is over."""
+    BODY, dt, planned = A.BODY, A.PAR.dt, A.PAR.planned / A.PAR.dt
     MINE = members_of(A, root)
     n = len(MINE)
     # One local body, the last, stands for all fixed ones that support the island.
@@ -71,7 +102,10 @@ def supports_load(A: Scene, root: int) -> bool:
         POSE[q, 0], POSE[q, 1], POSE[q, 2] = BODY[i].x, BODY[i].y, BODY[i].angle
         for c in range(3):
             START[q, c] = dt * A.PULL[i, c]
-    support_loads(A, root, START)
+    if past:
+        past_loads(A, root, START)
+    else:
+        support_loads(A, root, START)
     first, end = contact_range(A, root)
     ROWS, L, OF = empty(end - first, ROW), np.empty((end - first, 2)), np.empty(end - first, np.int64)
     open_to, m = 0.5 * candidate_speed(A.MEMBER[root].with_supports) * A.PAR.pulled * dt * dt, 0
@@ -88,19 +122,19 @@ def supports_load(A: Scene, root: int) -> bool:
         row.a, row.b = p if p >= 0 else n, q if q >= 0 else n
         row.nx, row.ny, row.gap, row.elasticity, row.friction, row.surface = pushed.nx, pushed.ny, 0.0, e, mu, 0.0
         place_row(row, pushed.px, pushed.py, POSE, IMS, IIS)
-        L[m, 0], L[m, 1], OF[m] = pushed.normal, pushed.tangential, c
+        L[m, 0], L[m, 1], OF[m] = pushed.normal / planned, pushed.tangential / planned, c
         m += 1
     clear_places(A, MINE)
     problem, slow = Problem(ROWS, IMS, IIS, POSE, n, m), REST_SPEED * A.PAR.pulled * dt
     found, factors = equilibrium(problem, L, START, FELT, slow, SUPPORT_FACTORS, False)
     A.COUNT.direct += factors
-    if not found:
-        postpone_test(A, MINE)
-    else:
+    if found:
         for z in range(m):
-            pushed = A.PUSHED[OF[z]]
-            pushed.normal, pushed.tangential, pushed.change = L[z, 0], L[z, 1], L[z, 0] / ROWS[z].k_n
+            pushed, normal = A.PUSHED[OF[z]], planned * L[z, 0]
+            pushed.normal, pushed.tangential, pushed.change = normal, planned * L[z, 1], normal / ROWS[z].k_n
             remember_forces(A, OF[z])
+    elif not past:
+        postpone_test(A, MINE)
     return found
 
 
@@ -148,9 +182,50 @@ def support(A: Scene) -> None:
                 continue
             more = True
             # After SUPPORT_ROUNDS: islands that support each other are solved as one.
-            if rounds < SUPPORT_ROUNDS and supports_load(A, i):
+            if rounds < SUPPORT_ROUNDS and supports_load(A, i, False):
                 MEMBER[i].new_forces = 1
             else:
                 begin_interval(A, wake(A, i, 0.0), 0.0)
                 all_moving = True
         rounds += 1
+
+
+@nonallocating
+def mark_loaded(A: Scene, root: int, whole: bool) -> bool:
+    """Mark the other islands at rest on which contacts press: those of island `root`, or with root -1 those of moving
+    islands that have ended, or begun, within the step; `whole`: all of these. Returns whether there are any."""
+    found = False
+    for c in range(A.COUNT.pushes):
+        r, counts = A.PUSHED_BY[c].root, True
+        if r >= 0:
+            late = whole or A.PUSHED[c].start > 0.0
+            counts = r == root if root >= 0 else late and A.MEMBER[r].rest != AT_REST
+        elif root >= 0:
+            continue
+        for end in range(2 if counts else 0):
+            j = A.LINK[A.PUSHED_BY[c].a if end == 0 else A.PUSHED_BY[c].b].owner
+            other = A.STATE[j].island
+            if A.BODY[j].inv_mass > 0.0 and other != r and other >= 0 and A.MEMBER[other].rest == AT_REST:
+                A.MEMBER[other].loaded, found = 1, True
+    return found
+
+
+@kernel
+def settle(A: Scene) -> None:
+    """At the end of a step: islands at rest whose loads have changed within it, as intervals of what moves on them have
+    ended early, get the impulses that balance the momenta of all loads; those of their contacts were for the loads at
+    its start. Where there are no such impulses the next step wakes them. All that bear moving islands are tested again
+    at the start of the next step: these may have left."""
+    if A.COUNT.may_support == 0:
+        return
+    more, rounds = mark_loaded(A, -1, False), 0
+    while more and rounds < SUPPORT_ROUNDS:
+        more = False
+        for i in range(A.BODY.shape[0] - 1):
+            if A.MEMBER[i].loaded == 0:
+                continue
+            A.MEMBER[i].loaded = 0
+            if A.STATE[i].island == i and A.MEMBER[i].rest == AT_REST and supports_load(A, i, True):
+                more = mark_loaded(A, i, True) or more
+        rounds += 1
+    mark_loaded(A, -1, True)

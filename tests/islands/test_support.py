@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import random
+
 import pymunk
 import pytest
 
@@ -109,3 +111,55 @@ def test_an_elastic_box_on_a_belt_leans_on_an_elastic_wall() -> None:
         assert report.ledger is not None
         assert report.ledger.external == pytest.approx(0.5 * 9.81 * 0.02 / 60, rel=1e-9)
     assert body.position == pytest.approx((-0.5, 0.5), abs=1e-12)
+
+
+def stacks(R: random.Random) -> tuple[pymunk.Space, list[list[pymunk.Body]], float]:
+    """A random scene: stacks of boxes, those of each, disks that bounce and roll between and on them, and dt."""
+    space, found = pymunk.Space(), []
+    space.gravity = 0.0, -G
+    e, mu = R.choice([0.0, 0.3, 0.8]), R.choice([0.3, 0.8])
+    floor = pymunk.Segment(space.static_body, (-30, 0), (30, 0), 0.0)
+    floor.elasticity, floor.friction = e, mu
+    space.add(floor)
+    for k in range(R.randint(1, 4)):
+        stack, y = [], 0.0
+        for _ in range(R.randint(1, 4)):
+            high, wide, mass = R.uniform(0.5, 1.0), R.uniform(1.5, 2.5), R.choice([0.1, 1.0, 5.0])
+            body = pymunk.Body(mass, pymunk.moment_for_box(mass, (wide, high)))
+            body.position = 6 * k - 12 + R.uniform(-0.1, 0.1), y + high / 2
+            y += high
+            shape: pymunk.Shape = pymunk.Poly.create_box(body, (wide, high))
+            shape.elasticity, shape.friction = e, mu
+            space.add(body, shape)
+            stack.append(body)
+        found.append(stack)
+    for _ in range(R.randint(2, 5)):
+        mass, r = R.choice([0.1, 1.0]), R.uniform(0.1, 0.3)
+        body = pymunk.Body(mass, pymunk.moment_for_circle(mass, 0.0, r))
+        body.position = R.choice([-15, -9, -3, 3, 9, 15]) + R.uniform(-0.8, 0.8), R.uniform(1.0, 6.0)
+        body.velocity = R.choice([0.0, R.uniform(-1.0, 1.0)]), 0.0
+        shape = pymunk.Circle(body, r)
+        shape.elasticity, shape.friction = R.choice([0.9, 1.0]), mu
+        space.add(body, shape)
+    return space, found, R.choice([1 / 240, 1 / 60, 1 / 60, 1 / 30, 0.1])
+
+
+@pytest.mark.parametrize("seed", [2, 3, 26, 61, 78])
+def test_arbiters_of_what_rests_hold_its_weight(seed: int) -> None:
+    """The impulses on a body that a step leaves at rest are those of its weight, whatever rolls on it, hits what rolls
+    on it, or has left it."""
+    space, found, dt = stacks(random.Random(seed))
+    stepper, checked = ep.EECA(space), 0
+    for _ in range(120):
+        before = {b: (b.position, b.angle, b.velocity.length) for stack in found for b in stack}
+        stepper.step(dt)
+        for body, (place, angle, speed) in before.items():
+            if speed > 0.0 or body.velocity.length > 0.0 or body.position != place or body.angle != angle:
+                continue
+            total: list[pymunk.Vec2d] = []
+            body.each_arbiter(lambda arbiter, kept: kept.append(arbiter.total_impulse), total)
+            weight = body.mass * G * dt
+            assert abs(sum(j.x for j in total)) <= 1e-7 * weight
+            assert abs(sum(j.y for j in total)) == pytest.approx(weight, rel=1e-7)
+            checked += 1
+    assert checked > 100
