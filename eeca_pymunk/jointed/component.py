@@ -113,8 +113,8 @@ def ready_in_step(J: Joints, s: int, h: float) -> bool:
     """Prepare the response of component s to impulses over the step h that `step_component` has just taken: the scratch
     is at its start again. False if there is none."""
     W = workspace(J, s)
-    J.TALLY.answers = prepare_response(W, STEP, h)
     J.TALLY.gives = int(W.J.JOINT[W.link[0].joint].compliance > 0.0)
+    J.TALLY.answers = prepare_response(W, STEP, h)
     return bool(J.TALLY.answers >= 0)
 
 

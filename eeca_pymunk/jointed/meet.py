@@ -214,6 +214,18 @@ def find_later(A: Scene, J: Joints, S: Meeting) -> bool:
 
 
 @kernel
+def end_meeting(A: Scene, J: Joints, SEARCH: Rows[Meeting], fits: bool) -> tuple[float, bool]:
+    """`end_before` the instant found, for both islands. Returns it, and whether the shapes are apart there: shapes that
+    close within PAR.instant, which is no interval, meet now."""
+    S = SEARCH[0]
+    g, crossed = S.gap, S.crossed > 0
+    for end in range(2):
+        if end_before(A, J, S.roots[end], S.t, fits, work_left(A, J) < 0.0):
+            g, crossed = math.inf if work_left(A, J) < 0.0 else gap(A, S.a, S.b, S.t)[0] - S.level, True
+    return S.t, crossed and g > max(S.touch, -S.rate * A.PAR.instant)
+
+
+@kernel
 def locate_impact(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
     """Bring the islands of shapes a and b, predicted to meet at instant t, to the instant at which they do. Returns it,
     and whether the shapes are apart there.
@@ -233,10 +245,4 @@ def locate_impact(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float,
     fits = find_apart_before(A, J, S)
     if S.rate >= 0.0 and S.t - S.least <= A.PAR.instant:
         fits = find_later(A, J, S)
-    then, g, crossed = S.t, S.gap, S.crossed > 0
-    for end in range(2):
-        if end_before(A, J, S.roots[end], then, fits, work_left(A, J) < 0.0):
-            g, crossed = math.inf if work_left(A, J) < 0.0 else gap(A, a, b, then)[0] - S.level, True
-    # Shapes that close within PAR.instant, which is no interval, meet now.
-    apart = crossed and g > max(SEARCH[0].touch, -SEARCH[0].rate * A.PAR.instant)
-    return then, apart
+    return end_meeting(A, J, SEARCH, fits)
