@@ -17,8 +17,7 @@ def point_rows(
     stiffens: bool, stiff: FloatArray,
 ) -> int:  # fmt: skip
     """`joint_rows` of pins, slides, pivots and springs; `measure` of a slide is its length at the end, of a spring its
-    mean force without damping. The arms of a bounded pivot end halfway between the anchors, which it may leave apart:
-    its force acts along one line. Names end in 0 at the start, 1 at the end, nothing at the mean of both."""
+    mean force without damping. Names end in 0 at the start, 1 at the end, nothing at the mean of both."""
     ca, sa, slope_a, lever_a = a.turn_cos, a.turn_sin, a.slope, a.lever
     cb, sb, slope_b, lever_b = b.turn_cos, b.turn_sin, b.slope, b.lever
     rax0, ray0, rbx0, rby0 = hinge.arm_a[0], hinge.arm_a[1], hinge.arm_b[0], hinge.arm_b[1]
@@ -31,9 +30,6 @@ def point_rows(
     dx, dy = 0.5 * (dx0 + dx1), 0.5 * (dy0 + dy1)
     # Derivatives of d1 by chi_a (ua) and chi_b (ub), each (x, y).
     uax, uay, ubx, uby = slope_a * ray1, -slope_a * rax1, -slope_b * rby1, slope_b * rbx1
-    common = kind == PIVOT and bounded
-    if common:
-        rax, ray, rbx, rby = rax + 0.5 * dx, ray + 0.5 * dy, rbx - 0.5 * dx, rby - 0.5 * dy
     if kind == PIVOT:
         fx, fy = hinge.lam[0], hinge.lam[1]
         hinge.value[0], hinge.value[1] = dx1, dy1
@@ -97,19 +93,10 @@ def point_rows(
             stiff[2, c] = -lever_a * (rax * uy - ray * ux)
             stiff[3, c], stiff[4, c] = ux, uy
             stiff[5, c] = lever_b * (rbx * uy - rby * ux)
-    if common:
-        filled = STIFF_ALL
-        for c in range(6):
-            stiff[0, c] = stiff[1, c] = stiff[3, c] = stiff[4, c] = 0.0
-        turn_a, turn_b = 0.25 * (uax * fy - uay * fx), 0.25 * (ubx * fy - uby * fx)
-        for r in (2, 5):  # both arms end at the same point
-            stiff[r, 0], stiff[r, 1], stiff[r, 3], stiff[r, 4] = 0.25 * fy, -0.25 * fx, -0.25 * fy, 0.25 * fx
-        stiff[2, 2], stiff[2, 5], stiff[5, 2], stiff[5, 5] = turn_a, -turn_b, -turn_a, turn_b
-    elif filled == STIFF_TURNS:
+    if filled == STIFF_TURNS:
         stiff[2, 2] = stiff[5, 5] = 0.0
-    if not common:
-        stiff[2, 2] += 0.5 * slope_a * (rax1 * fx + ray1 * fy)
-        stiff[5, 5] -= 0.5 * slope_b * (rbx1 * fx + rby1 * fy)
+    stiff[2, 2] += 0.5 * slope_a * (rax1 * fx + ray1 * fy)
+    stiff[5, 5] -= 0.5 * slope_b * (rbx1 * fx + rby1 * fy)
     hinge.force[0], hinge.force[1], hinge.force[2] = -fx, -fy, -lever_a * (rax * fy - ray * fx)
     hinge.force[3], hinge.force[4], hinge.force[5] = fx, fy, lever_b * (rbx * fy - rby * fx)
     return filled

@@ -16,8 +16,7 @@ offset; chi = h w_m, and *turned* the angle by which a body turns (`..model.join
 Where only J_b is given J_a is its negative, with the arm of a. p is the mean force of a spring over the step, l its
 length, c its `drag`. Each row satisfies g1 - g0 = J x, and a spring's work is exactly what it stores and damps. Bounded
 joints and motors have rows of velocity at the end, (J v1 - speed) h/2: a length or an angle as g is, and with the same
-derivative by v1, (h/2) J. For angles J = (-1, 1) or (-1/ratio, 1). The arms of a bounded pivot, whose anchors may be
-apart, end halfway between them, r_mb - d_m/2 and r_ma + d_m/2, so that its force acts along one line.
+derivative by v1, (h/2) J. For angles J = (-1, 1) or (-1/ratio, 1).
 """
 
 from __future__ import annotations
