@@ -39,7 +39,7 @@ def circle_circle(
     Args:
         dx, dy: from centre to centre, length.  ux, uy: relative velocity.  ax, ay: relative acceleration.
         extent: sum of the radii.  tolerance: length, a gap that counts as closed.
-        duration: time up to which is searched; lower bounds are at least that, or what ADVANCES steps reach.
+        duration: time up to which is searched; lower bounds are at least that. Infinite: the result is exact.
     """
     if ax == 0.0 and ay == 0.0:
         return ball_point(dx, dy, ux, uy, extent), True
@@ -65,7 +65,7 @@ def circle_circle(
         s += step
         if s > duration:
             return s, False
-    return s, False
+    return duration, False
 
 
 @nonallocating
@@ -143,7 +143,7 @@ def circle_outline(
         s += max(step, entry)
         if s > duration:
             return s, False
-    return s, False
+    return duration, False
 
 
 @nonallocating

@@ -2,7 +2,7 @@
 
 Results (t, certain) are functions of the two paths only, from the later `Body.since` on, and equal for (a, b) and
 (b, a). Certain: the shapes meet at t, never if t is infinite. Not certain: they do not meet before t, which is no
-earlier than the horizon unless the search has ended before. Instants count from the start of the step.
+earlier than the horizon. Instants count from the start of the step.
 """
 
 from __future__ import annotations

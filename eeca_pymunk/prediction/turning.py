@@ -159,7 +159,7 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
 
     Args:
         a, b: a < b.
-        horizon: finite instant; lower bounds are no earlier, unless the work or the looks are spent.
+        horizon: finite instant; lower bounds are no earlier, unless the work is spent.
         until: instant from which on the search is not continued, to note the sides there; else infinite.
     """
     BODY, SHAPE = A.BODY, A.SHAPE
@@ -219,7 +219,7 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
         if met:
             return start + s + safe, True
         s += safe if looks < ADVANCES else max(safe, interval / ADVANCES)
-        if s > duration:
+        if s > duration or looks > 2.0 * ADVANCES * RESOLUTION or start + s > until:
             return horizon, False
-        if looks > 2.0 * ADVANCES * RESOLUTION or start + s > until or (A.COUNT.work > most and until == math.inf):
+        if A.COUNT.work > most and until == math.inf:
             return start + s, False
