@@ -142,14 +142,14 @@ def deep_at_end(A: Scene, isle: Island, END: FloatArray, ROWS: Rows[Row], m: int
 def dips_too_far(A: Scene, isle: Island, contacts: IslandContacts, m: int, h: float) -> float:
     """How many times too long an interval is within which one of m contacts is too deep; 0 if it is not.
 
-    A contact that closes with u < 0 at the start and opens with u+ at the end is deepest between, by (1/2) h u^2 /
-    (u+ - u): an impact may end the interval there. Where a wall turns, the poses in the middle tell it, as in
-    `closes_too_far`.
+    A contact with elasticity that closes with u < 0 at the start and opens with u+ at the end is deepest between, by
+    (1/2) h u^2 / (u+ - u): an impact may end the interval there. Where a wall turns, the poses in the middle tell it,
+    as in `closes_too_far`.
     """
     ROWS, VN, far, MIDDLE = contacts.ROWS, contacts.VN, 0.0, np.empty((0, 3))
     for z in range(m):
         before, after = ROWS[z].un, normal_rate(ROWS[z], VN)
-        if before >= 0.0 or after <= 0.0:
+        if before >= 0.0 or after <= 0.0 or ROWS[z].elasticity == 0.0:
             continue
         a, b = shapes_of(A, ROWS[z])
         dip = 0.5 * h * before * before / (after - before)

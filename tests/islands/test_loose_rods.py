@@ -56,7 +56,7 @@ def room(R: random.Random) -> tuple[pymunk.Space, float]:
 
 
 @pytest.mark.parametrize(
-    ("seed", "dt"), [(76, 10.0), (472, 10.0), (523, 10.0), (546, 10.0), (318, 3.0), *((s, 10.0) for s in range(6))]
+    ("seed", "dt"), [(76, 10.0), (523, 10.0), (546, 10.0), (318, 3.0), *((s, 10.0) for s in range(6))]
 )
 def test_nothing_gets_out_of_a_room_with_loose_rods(seed: int, dt: float) -> None:
     space, wide = room(random.Random(seed))

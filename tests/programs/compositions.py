@@ -273,7 +273,7 @@ class Composition:
         return again.saved()
 
     def _again(self, start: bytes) -> tuple[float, int]:
-        """The processor time (s) of the next step of a saved run, the least of some, and 1 if it is beyond the bound."""
+        """The processor time (s) of the next step of a saved run, the least of four, and 1 if it is too long."""
         least = limit = math.inf
         for _ in range(4):
             _, stepper = pickle.loads(start)

@@ -95,7 +95,7 @@ FIT_RESIDUAL = accuracy(1e-06, "of the fastest closing contact",
 FIT_ENERGY = round_off(1e-12, "of the energy", "Change of energy by this projection that is round-off.")
 JOINTED_CORRECTION_SWEEPS = work(40, "sweeps", "Sweeps of the penetration correction of jointed bodies.")
 STEP_WORK = work(66000000.0, "operations",
-    "Work of a step with joints besides STEP_WORK_BODY; 5e9 operations take about a second.")
+    "Work of a step with joints besides STEP_WORK_BODY; 3e9 to 5e9 operations take about a second.")
 INTERVAL_SHARE = work(0.25, "of what is left of the budget",
     "Work of an interval after which it is solved again, shorter, if it has not converged.")
 STEP_WORK_BODY = work(250000.0, "operations", "Work of a step with joints for each body of the scene.")
