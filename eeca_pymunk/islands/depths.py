@@ -39,24 +39,12 @@ def known_depth(A: Scene, a: int, b: int) -> float:
 
 
 @nonallocating
-def room_below(A: Scene, a: int, b: int, gap: float) -> float:
-    """Depth (length) by which a contact of shapes a and b with this gap may become deeper in an interval:
-    `depth_limit`; of a wall no more than a part INTERVAL_DEPTH_WIDTH of what is left to `known_depth`, which nothing
-    then passes, however many intervals there are."""
-    deep = depth_limit(A, a, b)
-    left = known_depth(A, a, b) + gap
-    if gap < 0.0 < left and min(A.BODY[A.LINK[a].owner].inv_mass, A.BODY[A.LINK[b].owner].inv_mass) == 0.0:
-        deep = max(min(deep, intervals.INTERVAL_DEPTH_WIDTH * left), intervals.INTERVAL_DEPTH_LEAST * smaller(A, a, b))
-    return deep
-
-
-@nonallocating
 def too_deep(A: Scene, a: int, b: int, gap: float, closing: float) -> float:
     """How many times too long an interval is in which a contact of shapes a and b with this gap closes by `closing`
     (lengths); 0 if it is not."""
     if not closing > intervals.INTERVAL_DEPTH_LEAST * smaller(A, a, b):
         return 0.0
-    deep = room_below(A, a, b, gap)
+    deep = depth_limit(A, a, b)
     room = max(gap, 0.0) + deep
     return max(closing / room, 1.01 * intervals.INTERVAL_RETRY) if closing > room + 0.5 * deep else 0.0
 
@@ -131,34 +119,11 @@ def deep_at_end(A: Scene, isle: Island, END: FloatArray, ROWS: Rows[Row], m: int
     closing = gap - after
     if too_deep(A, a, b, gap, closing) == 0.0:
         return 0.0
-    S, V, room = isle.POSE, isle.V, max(gap, 0.0) + room_below(A, a, b, gap)
+    S, V, room = isle.POSE, isle.V, max(gap, 0.0) + depth_limit(A, a, b)
     _, nx, ny, x, y = gap_at(A, a, S[p, 0], S[p, 1], S[p, 2], b, S[q, 0], S[q, 1], S[q, 2])
     way = max(-h * gap_rate(S, V, p, q, nx, ny, x, y), 0.0)
     root = math.sqrt(max(way * way + 4.0 * (closing - way) * room, 0.0))
     return max((way + root) / (2.0 * room), 1.01 * intervals.INTERVAL_RETRY)
-
-
-@kernel
-def dips_too_far(A: Scene, isle: Island, contacts: IslandContacts, m: int, h: float) -> float:
-    """How many times too long an interval is within which one of m contacts is too deep; 0 if it is not.
-
-    A contact with elasticity that closes with u < 0 at the start and opens with u+ at the end is deepest between, by
-    (1/2) h u^2 / (u+ - u): an impact may end the interval there. Where a wall turns, the poses in the middle tell it,
-    as in `closes_too_far`.
-    """
-    ROWS, VN, far, MIDDLE = contacts.ROWS, contacts.VN, 0.0, np.empty((0, 3))
-    for z in range(m):
-        before, after = ROWS[z].un, normal_rate(ROWS[z], VN)
-        if before >= 0.0 or after <= 0.0 or ROWS[z].elasticity == 0.0:
-            continue
-        a, b = shapes_of(A, ROWS[z])
-        dip = 0.5 * h * before * before / (after - before)
-        deep = too_deep(A, a, b, ROWS[z].gap, dip)
-        if deep > far:
-            if len(MIDDLE) == 0:
-                MIDDLE = isle.POSE + 0.125 * h * (3.0 * isle.V + VN)
-            far = max(far, min(deep, 2.0 * deep_at_end(A, isle, MIDDLE, ROWS, m, 0.5 * h, z)))
-    return far
 
 
 @nonallocating
@@ -183,7 +148,7 @@ def times_too_long(A: Scene, isle: Island, contacts: IslandContacts, m: int, h: 
     """How many times too long a solved interval h of m contacts is, if more than INTERVAL_RETRY."""
     ROWS, VN = contacts.ROWS, contacts.VN
     far = max(excess_way(A, ROWS, isle.V, VN, m, h), closes_too_far(A, isle, ROWS, VN, m, h))
-    far = max(far, rises_too_far(A, ROWS, contacts.L, VN, m, h), dips_too_far(A, isle, contacts, m, h))
+    far = max(far, rises_too_far(A, ROWS, contacts.L, VN, m, h))
     if far <= intervals.INTERVAL_RETRY and len(A.SIDE) > 0:
         END = isle.POSE + 0.5 * h * (isle.V + VN)
         far = too_deep_at_end(A, isle, END, ROWS, m, h, False)

@@ -13,20 +13,8 @@ import math
 from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..model.parameters.events import ADVANCES, RESOLUTION, SEARCH_AHEAD
-from ..model.parameters.intervals import INTERVAL_DEPTH_LEAST
 from ..model.scene import Scene
 from .roots import ball_point, flat
-
-
-@nonallocating
-def longest_stride(pull: float, extent: float, duration: float) -> float:
-    """Time by which a search goes on where circles touch and part: duration / RESOLUTION, or less, as an acceleration
-    `pull` brings them no deeper within it than an interval allows (INTERVAL_DEPTH_LEAST of `extent`); 0 without end."""
-    if duration == math.inf:
-        return 0.0
-    deep = 2.0 * INTERVAL_DEPTH_LEAST * abs(extent)
-    stride = duration / RESOLUTION
-    return math.sqrt(deep / pull) if pull * stride * stride > deep else stride
 
 
 @nonallocating
@@ -49,7 +37,7 @@ def circle_circle(
         if dx * dx + dy * dy > reach * reach:
             return later, False
     pull = math.sqrt(ax * ax + ay * ay)
-    stride = longest_stride(pull, extent, duration)
+    stride = duration / RESOLUTION if duration < math.inf else 0.0
     s = 0.0
     for _ in range(ADVANCES):
         x, y = dx + (ux + 0.5 * ax * s) * s, dy + (uy + 0.5 * ay * s) * s
@@ -78,8 +66,7 @@ def circle_outline(
     The outline is the region inside all its sides, moved outward by `extent`, with round corners. The circle is apart
     at least until its centre is behind every side that it is in front of now; each side is a quadratic equation. If the
     centre passes the last of these sides beside its edge, that is the impact. Otherwise the corner may be hit: a closed
-    form for straight paths, else the bound above. Centres inside a polygon leave through the nearest side. A circle
-    that overlaps a side and parts meets it when it has come out and is back, else when it is as deep again.
+    form for straight paths, else the bound above. Centres inside a polygon leave through the nearest side.
 
     Args:
         x, y: centre, length.  vx, vy: velocity.  ax, ay: acceleration.  extent: radius and b's rounding together.
@@ -89,7 +76,7 @@ def circle_outline(
     sides = count if count > 1 else 0
     straight = ax == 0.0 and ay == 0.0
     pull = math.sqrt(ax * ax + ay * ay)
-    stride = longest_stride(pull, extent, duration)
+    stride = duration / RESOLUTION if duration < math.inf else 0.0
     s = 0.0
     for _ in range(ADVANCES):
         px, py = x + (vx + 0.5 * ax * s) * s, y + (vy + 0.5 * ay * s) * s
@@ -109,11 +96,6 @@ def circle_outline(
                     entry, last = enters, j
         corner, beside = first, False
         nx, ny = 0.0, 0.0
-        if sides > 0 and last < 0 and beside_edge(VERTEX, first, count, near, px, py)[1]:  # in overlap
-            nx, ny = VERTEX[first + near, 2], VERTEX[first + near, 3]
-            entry, last = flat(apart - extent, ux * nx + uy * ny, ax * nx + ay * ny), near
-            if entry == math.inf:
-                return math.inf, True
         if sides > 0:
             edge, qx, qy = near, px, py
             if last >= 0:
@@ -126,6 +108,8 @@ def circle_outline(
                     corner, beside = beside_edge(VERTEX, first, count, near, px, py)
             nx, ny = VERTEX[first + near, 2], VERTEX[first + near, 3]
         if straight:
+            if beside:  # in overlap
+                return (0.0 if ux * nx + uy * ny < 0.0 else math.inf), True
             return ball_point(px - VERTEX[corner, 0], py - VERTEX[corner, 1], ux, uy, extent), True
         gap = apart - extent
         if not beside:
