@@ -80,6 +80,8 @@ MUTATIONS = (
              "return has_moving_partner(A, J, s)", "return False", "jointed/test_rest.py", "partner_that_starts"),
     Mutation("rest: other laws of pairs wake nothing", "islands/at_rest.py", "= rules != A.PAR.rules, rules",
              "= False, rules", "islands/test_at_rest.py", "handler"),
+    Mutation("support: loads that change within a step are forgotten", "impacts/step.py", "    settle(A)\n", "",
+             "islands/test_support.py", "hold_its_weight"),
     Mutation("jointed: walls turn in one interval", "jointed/solve.py", "if shorter < h and not last:", "if False:",
              "contacts/test_turning.py", "joints_connect and 0.4"),
     Mutation("jointed: what joints do not allow opens a gap", "jointed/meet.py",

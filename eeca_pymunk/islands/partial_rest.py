@@ -29,7 +29,7 @@ from .intervals import begin_interval, set_lifts
 from .local import bodies_of, clear_places, local_island, open_interval, set_places
 from .membership import lossy, unite
 from .rest import candidate_speed, postpone_test, speed
-from .support import support_loads
+from .support import add_loads
 
 
 @nonallocating
@@ -60,7 +60,7 @@ def test_rest(A: Scene, MINE: IntArray, V0: FloatArray, with_supports: int, free
     found = pairs_within(A, root, 0.0, A.PAR.dt, True, MINE)
     LOAD = np.zeros((n, 3))
     if not freezing:
-        support_loads(A, root, LOAD)
+        add_loads(A, root, False, LOAD)
     p = len(found)
     isle = local_island(A, MINE, found, 0.0)
     clear_places(A, MINE)

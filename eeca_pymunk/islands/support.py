@@ -51,25 +51,11 @@ def add_load(
 
 
 @nonallocating
-def support_loads(A: Scene, root: int, LOAD: FloatArray) -> None:
-    """Add to LOAD, as `add_load`, the changes of velocity that contacts of other islands would cause in a whole step
-    with their present forces."""
-    for c in range(A.COUNT.pushes):
-        r = A.PUSHED_BY[c].root
-        if r < 0 or r == root:
-            continue
-        pushed = A.PUSHED[c]
-        part = A.PAR.dt / pushed.length
-        fx = part * (pushed.normal * pushed.nx - pushed.tangential * pushed.ny)
-        fy = part * (pushed.normal * pushed.ny + pushed.tangential * pushed.nx)
-        add_load(A, root, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, fx, fy, pushed.px, pushed.py, LOAD)
-
-
-@nonallocating
-def past_loads(A: Scene, root: int, LOAD: FloatArray) -> None:
-    """Add to LOAD, as `add_load`, the changes of velocity that contacts of other islands have caused in this step, at
-    its end: those that are logged, and those whose intervals last until then."""
-    for e in range(A.COUNT.logged):
+def add_loads(A: Scene, root: int, past: bool, LOAD: FloatArray) -> None:
+    """Add to LOAD, as `add_load`, the changes of velocity by contacts of other islands: those that their present forces
+    would cause in a whole step; or, if `past`, at the end of a step, those of this step, by impulses that are logged
+    and by intervals that last until then."""
+    for e in range(A.COUNT.logged if past else 0):
         one = A.LOG[e]
         fx, fy = one.normal * one.nx - one.tangential * one.ny, one.normal * one.ny + one.tangential * one.nx
         add_load(A, root, int(one.first), int(one.second), fx, fy, one.px, one.py, LOAD)
@@ -78,7 +64,7 @@ def past_loads(A: Scene, root: int, LOAD: FloatArray) -> None:
         if r < 0 or r == root:
             continue
         pushed = A.PUSHED[c]
-        part = (A.PAR.dt - pushed.start) / pushed.length
+        part = (A.PAR.dt - (pushed.start if past else 0.0)) / pushed.length
         fx = part * (pushed.normal * pushed.nx - pushed.tangential * pushed.ny)
         fy = part * (pushed.normal * pushed.ny + pushed.tangential * pushed.nx)
         add_load(A, root, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, fx, fy, pushed.px, pushed.py, LOAD)
@@ -102,10 +88,7 @@ def supports_load(A: Scene, root: int, past: bool) -> bool:
         POSE[q, 0], POSE[q, 1], POSE[q, 2] = BODY[i].x, BODY[i].y, BODY[i].angle
         for c in range(3):
             START[q, c] = dt * A.PULL[i, c]
-    if past:
-        past_loads(A, root, START)
-    else:
-        support_loads(A, root, START)
+    add_loads(A, root, past, START)
     first, end = contact_range(A, root)
     ROWS, L, OF = empty(end - first, ROW), np.empty((end - first, 2)), np.empty(end - first, np.int64)
     open_to, m = 0.5 * candidate_speed(A.MEMBER[root].with_supports) * A.PAR.pulled * dt * dt, 0
@@ -153,6 +136,18 @@ def remember_forces(A: Scene, c: int) -> None:
         )
 
 
+@nonallocating
+def mark_loaded(A: Scene, c: int) -> bool:
+    """Mark the islands at rest on which contact c of another one presses; returns whether there are any."""
+    found = False
+    for shape in (A.PUSHED_BY[c].a, A.PUSHED_BY[c].b):
+        j = A.LINK[shape].owner
+        other = A.STATE[j].island
+        if A.BODY[j].inv_mass > 0.0 and other != A.PUSHED_BY[c].root and other >= 0 and A.MEMBER[other].rest == AT_REST:
+            A.MEMBER[other].loaded, found = 1, True
+    return found
+
+
 @kernel
 def support(A: Scene) -> None:
     """At the start of a step, after moving islands have been solved: solve the forces in islands at rest that support
@@ -166,11 +161,7 @@ def support(A: Scene) -> None:
             root = A.PUSHED_BY[c].root
             if root < 0 or not (MEMBER[root].new_forces == 1 if MEMBER[root].rest == AT_REST else all_moving):
                 continue
-            for shape in (A.PUSHED_BY[c].a, A.PUSHED_BY[c].b):
-                j = A.LINK[shape].owner
-                other = STATE[j].island
-                if BODY[j].inv_mass > 0.0 and other != root and other >= 0 and MEMBER[other].rest == AT_REST:
-                    MEMBER[other].loaded = 1
+            mark_loaded(A, c)
         more, all_moving = False, False
         for i in range(BODY.shape[0] - 1):
             MEMBER[i].new_forces = 0
@@ -191,22 +182,14 @@ def support(A: Scene) -> None:
 
 
 @nonallocating
-def mark_loaded(A: Scene, root: int, whole: bool) -> bool:
-    """Mark the other islands at rest on which contacts press: those of island `root`, or with root -1 those of moving
-    islands that have ended, or begun, within the step; `whole`: all of these. Returns whether there are any."""
+def mark_under_moving(A: Scene, since: float) -> bool:
+    """`mark_loaded` by the contacts of moving islands whose intervals have ended, or have begun after instant `since`;
+    returns whether there are any."""
     found = False
     for c in range(A.COUNT.pushes):
-        r, counts = A.PUSHED_BY[c].root, True
-        if r >= 0:
-            late = whole or A.PUSHED[c].start > 0.0
-            counts = r == root if root >= 0 else late and A.MEMBER[r].rest != AT_REST
-        elif root >= 0:
-            continue
-        for end in range(2 if counts else 0):
-            j = A.LINK[A.PUSHED_BY[c].a if end == 0 else A.PUSHED_BY[c].b].owner
-            other = A.STATE[j].island
-            if A.BODY[j].inv_mass > 0.0 and other != r and other >= 0 and A.MEMBER[other].rest == AT_REST:
-                A.MEMBER[other].loaded, found = 1, True
+        root = A.PUSHED_BY[c].root
+        if root < 0 or (A.PUSHED[c].start > since and A.MEMBER[root].rest != AT_REST):
+            found = mark_loaded(A, c) or found
     return found
 
 
@@ -218,7 +201,7 @@ def settle(A: Scene) -> None:
     at the start of the next step: these may have left."""
     if A.COUNT.may_support == 0:
         return
-    more, rounds = mark_loaded(A, -1, False), 0
+    more, rounds = mark_under_moving(A, 0.0), 0
     while more and rounds < SUPPORT_ROUNDS:
         more = False
         for i in range(A.BODY.shape[0] - 1):
@@ -226,6 +209,8 @@ def settle(A: Scene) -> None:
                 continue
             A.MEMBER[i].loaded = 0
             if A.STATE[i].island == i and A.MEMBER[i].rest == AT_REST and supports_load(A, i, True):
-                more = mark_loaded(A, i, True) or more
+                first, end = contact_range(A, i)
+                for c in range(first, end):
+                    more = mark_loaded(A, c) or more
         rounds += 1
-    mark_loaded(A, -1, True)
+    mark_under_moving(A, -1.0)

@@ -98,6 +98,6 @@ def left_apart(A: Scene, J: Joints, root: int) -> bool:
     if A.RESTING[root].strays > INTERVAL_RETRY:
         return True
     for s in components_of(A, J, root):
-        if (J.STEPPED[s].status >= LINEAR and gave_way(J, s)) or J.STEPPED[s].gave > LINEAR_APART:
+        if (J.STEPPED[s].status == LINEAR and gave_way(J, s)) or J.STEPPED[s].gave > LINEAR_APART:
             return True
     return False

@@ -7,7 +7,7 @@ from ..compiled import nonallocating
 from ..geometry.flight import pose, rate
 from ..joints.ledger import clear_interval
 from ..joints.parts import meets_limit
-from ..model.joint_steps import ELASTIC, EXACT, LINEAR
+from ..model.joint_steps import ELASTIC
 from ..model.joints import GIVES_WAY, LEFT_APART, RATCHET, Joints
 from ..model.scene import Scene
 from ..newton.motion import read_body, seat, size_up
@@ -35,11 +35,13 @@ def restore_joints(J: Joints, s: int) -> None:
 def gave_way(J: Joints, s: int) -> bool:
     """Whether joints of component s hold worse in the interval that it has just taken than they did at its start:
     elastically, or by linear rows. Those that contradict one another do so in an interval of any length."""
-    held = EXACT
+    if J.STEPPED[s].status < ELASTIC:
+        return False
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         touched = J.KEPT[J.COUPLING[k].joint].touched
-        held = max(held, ELASTIC if touched == GIVES_WAY else LINEAR if touched == LEFT_APART else EXACT)
-    return bool(J.STEPPED[s].status >= ELASTIC and J.STEPPED[s].status > held)
+        if touched == LEFT_APART or (touched == GIVES_WAY and J.STEPPED[s].status == ELASTIC):
+            return False
+    return True
 
 
 @nonallocating

@@ -14,7 +14,7 @@ from ..contacts.interval import make_contacts, recall, speeds
 from ..contacts.memory import remember_loads, shapes_of
 from ..islands import local
 from ..islands.candidates import pairs_within
-from ..islands.membership import lossy, members_of
+from ..islands.membership import lossy
 from ..model.joints import Joints
 from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, LARGE_ISLAND, UNSOLVED_PART
@@ -61,8 +61,10 @@ def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
         if status != AGAIN:
             if status == DONE:
                 longer = max(INTERVAL_RETRY * h, 0.0 if h < longest else rest.longest)
-                for i in members_of(A, root):
+                i = root
+                while i >= 0:
                     A.RESTING[i].longest = longer
+                    i = A.MEMBER[i].following
                 if t == 0.0 and h == longest:
                     rest_if_still(A, J, root)
             return status

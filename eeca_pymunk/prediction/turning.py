@@ -21,7 +21,7 @@ from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..geometry import sides
 from ..geometry.convex import place_vertices
-from ..geometry.flight import opening_rate, pose
+from ..geometry.flight import pose
 from ..geometry.gap import gap_round_off
 from ..geometry.manifold import common_face
 from ..model.bodies import Body
@@ -36,9 +36,9 @@ from .work import most_work
 
 @nonallocating
 def opening(a: MotionState, b: MotionState, nx: float, ny: float, px: float, py: float) -> float:
-    """`opening_rate` (length/time) of b from a at the point p along n."""
-    arm_a, arm_b = (px - a.x) * ny - (py - a.y) * nx, (px - b.x) * ny - (py - b.y) * nx
-    return float(opening_rate(nx, ny, arm_a, arm_b, (a.vx, a.vy, a.spin), (b.vx, b.vy, b.spin)))
+    """Velocity (length/time) of b less that of a at the point p along n."""
+    u = nx * (b.vx - b.spin * (py - b.y) - a.vx + a.spin * (py - a.y))
+    return u + ny * (b.vy + b.spin * (px - b.x) - a.vy - a.spin * (px - a.x))
 
 
 @nonallocating

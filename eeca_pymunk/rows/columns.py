@@ -86,11 +86,11 @@ def breach(problem: JointedProblem, L: FloatArray, V: FloatArray) -> float:
         if ROWS[i].wake < np.inf:
             worst = max(worst, ROWS[i].wake - normal_rate(ROWS[i], V))
             continue
-        un, ut = normal_rate(ROWS[i], V) - ROWS[i].target, tangent_rate(ROWS[i], V)
-        state, sign = mode_of(ROWS[i], ut, L[i, 0], L[i, 1], ON_CONE)
+        un = normal_rate(ROWS[i], V) - ROWS[i].target
+        state, sign = mode_of(ROWS[i], V, L[i, 0], L[i, 1], ON_CONE)
         worst = max(worst, -un if state == OPEN else abs(un))
         if state == STICK or sign != 0.0:
-            off = ut - limited_slip(ROWS[i], L[i, 0], L[i, 1])
+            off = tangent_rate(ROWS[i], V) - limited_slip(ROWS[i], L[i, 0], L[i, 1])
             worst = max(worst, abs(off) if state == STICK else sign * off)
     for i in range(D.USED[0]):
         row, x = D.ROWS[i], L[m + i, 0]

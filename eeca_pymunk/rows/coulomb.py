@@ -90,17 +90,18 @@ def lossless_slip(row: Row, lam: float, beta: float) -> float:
 
 
 @nonallocating
-def mode_of(row: Row, slip: float, lam: float, beta: float, near: float) -> tuple[int, float]:
-    """The mode of a contact with these impulses whose u_t+ is `slip`, and the sign of its friction in SLIP, which is 0
-    without friction: beta = sign mu lam, from `near` of it on. So is that of a slip that has reversed by less than its
-    size, where the contact has no other loss: friction would give energy. In STICK, u_t+ is to be `limited_slip`."""
+def mode_of(row: Row, V: FloatArray, lam: float, beta: float, near: float) -> tuple[int, float]:
+    """The mode of a contact with these impulses at velocities V (k, 3), and the sign of its friction in SLIP, which is
+    0 without friction: beta = sign mu lam, from `near` of it on. So is that of a slip that has reversed by less than
+    its size, where the contact has no other loss: friction would give energy. In STICK, u_t+ is to be
+    `limited_slip`."""
     if not lam > 0.0:
         return OPEN, 0.0
     most = row.friction * lam
     if not abs(beta) < most * (1.0 - near):
         return SLIP, 0.0 if beta == 0.0 or most <= 0.0 else 1.0 if beta > 0.0 else -1.0
-    reverses = beta == 0.0 and slip * row.ut < 0.0 and lam * min(row.un + row.target, 0.0) == 0.0
-    return SLIP if reverses else STICK, 0.0
+    lossless = beta == 0.0 and lam * min(row.un + row.target, 0.0) == 0.0
+    return SLIP if lossless and tangent_rate(row, V) * row.ut < 0.0 else STICK, 0.0
 
 
 @inlined

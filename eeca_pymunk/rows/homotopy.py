@@ -68,10 +68,9 @@ def start_homotopy(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: 
         if C.LEFT_OUT[i] == 0 and not ROWS[i].wake < np.inf:
             tableau.MODE[i] = OPEN
             T[2 * i, size] = normal_rate(ROWS[i], V) - ROWS[i].target
-            slides = tangent_rate(ROWS[i], V)
             tableau.REST[i] = limited_slip(ROWS[i], L[i, 0], L[i, 1])
-            T[2 * i + 1, size] = slides - tableau.REST[i]
-            BEGAN[i], SIGN[i] = mode_of(ROWS[i], slides, L[i, 0], L[i, 1], ON_CONE_SWEPT)
+            T[2 * i + 1, size] = tangent_rate(ROWS[i], V) - tableau.REST[i]
+            BEGAN[i], SIGN[i] = mode_of(ROWS[i], V, L[i, 0], L[i, 1], ON_CONE_SWEPT)
             tableau.MU[i] = max(ROWS[i].friction, 0.0) if BEGAN[i] != SLIP or SIGN[i] != 0.0 else 0.0
             X[2 * i], X[2 * i + 1] = L[i, 0], L[i, 1]
             C.WORK[0] += work_of_change(size) if L[i, 0] > 0.0 else 0.0

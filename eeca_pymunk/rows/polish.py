@@ -58,7 +58,7 @@ def classify(
     """
     held, stuck, slip, rest = np.zeros(m, np.int64), np.zeros(m, np.int64), np.zeros(m), np.zeros(m)
     for i in range(m):
-        state, sign = mode_of(ROWS[i], tangent_rate(ROWS[i], V), L[i, 0], L[i, 1], ON_CONE)
+        state, sign = mode_of(ROWS[i], V, L[i, 0], L[i, 1], ON_CONE)
         held[i], slip[i] = int(state != OPEN), sign * ROWS[i].friction
         if state == STICK:
             limited = limits_slip(ROWS[i], L[i, 0], L[i, 1])

@@ -39,7 +39,7 @@ def test_an_interval_is_as_long_as_the_poses_at_its_end_allow(unit: float) -> No
         report = stepper.step(DT)
         assert report.converged
         assert min(axis.world_to_local(rod.position).y for rod in rods) >= -1.5 * LIMIT * unit
-        assert (report.contacts.duration > 0.0).sum() <= 6  # two points of each rod, in one interval
+        assert len(report.contacts) <= 6  # two points of each rod, in one interval
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
