@@ -42,7 +42,7 @@ def gather_contacts(
         free: whether impulses move all k bodies.
 
     Returns:
-        The number of rows, or -1 if they need more memory.
+        The number of rows, two at most for each pair.
     """
     SHAPE, LINK = A.SHAPE, A.LINK
     POSE, V, EXTENT, PAIRS = isle.POSE, isle.V, isle.EXTENT, isle.PAIRS
@@ -60,8 +60,6 @@ def gather_contacts(
         count = manifold(A, s, r, POSE, a, b, reach, MANIFOLD_ROUND_OFF * small, NOW)
         if count == 0:
             continue
-        if m + count > len(ROWS):
-            return -1
         note_side(A, s, r, NOW[0, 0], NOW[0, 1], True)
         # How far points of both bodies move against each other in h/2; about: in the frame of a wall that turns.
         way = half * (

@@ -32,7 +32,7 @@ from ..rows.gentle import excessive, unwedge
 from ..rows.inplace import copy
 from ..rows.sweeps import velocities
 from .geometry import gather_contacts
-from .memory import find, remember_loads
+from .memory import find, remember_loads, table_has_room
 from .relaxation import relax
 from .statics import find_static_forces
 from .targets import target
@@ -122,7 +122,7 @@ def begin_contacts(A: Scene, isle: Island, contacts: IslandContacts, n: int, h: 
     slow, fast, pull = speeds(isle.V, isle.ACC, isle.EXTENT, isle.IM, n, h, REACH)
     REACH = np.maximum(REACH, least)
     m = gather_contacts(A, isle, contacts, isle.POSE + 0.5 * h * isle.V, REACH, h, k == n)
-    if m < 0 or 2 * (A.COUNT.remembered + m) > len(A.KEYS):
+    if not table_has_room(A, m):
         return Begun(-1, np.empty(0), slow, fast, pull)
     copy(contacts.VN, isle.V + h * isle.ACC)
     contacts.JUMP[:] = 0.0

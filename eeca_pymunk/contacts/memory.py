@@ -42,6 +42,12 @@ def find(KEYS: IntArray, key: int) -> int:
 
 
 @nonallocating
+def table_has_room(A: Scene, contacts: int) -> bool:
+    """Whether the table has room for the forces of so many more contacts: it is to be half full at most."""
+    return bool(2 * (A.COUNT.remembered + contacts) <= A.KEYS.shape[0])
+
+
+@nonallocating
 def remember_force(
     KEYS: IntArray, FORCES: Rows[Force], COUNT: Count, key: int, normal: float, tangential: float, load: float,
     length: float, stamp: float,

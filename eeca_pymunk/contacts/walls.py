@@ -21,14 +21,14 @@ from .memory import shapes_of
 
 
 @kernel
-def stop_at_walls(A: Scene, problem: AnyProblem, n: int, OUT: IntArray, L: FloatArray, V: FloatArray) -> None:
+def stop_at_walls(A: Scene, problem: AnyProblem, n: int, LEFT_OUT: IntArray, L: FloatArray, V: FloatArray) -> None:
     """Bring contacts with bodies without mobility, those from number n on, to u_n >= b at velocities V (k, 3), where
     they are deeper than an interval allows. Normal impulses L only grow, so that frictions remain within their limits.
-    OUT (m,): not 0 for contacts that no impulse moves."""
+    LEFT_OUT (m,): not 0 for contacts that no impulse moves."""
     LACK = np.full(problem.m, inf)
     for i in range(problem.m):
         row = problem.ROWS[i]
-        if max(row.a, row.b) >= n and row.wake == inf and OUT[i] == 0:
+        if max(row.a, row.b) >= n and row.wake == inf and LEFT_OUT[i] == 0:
             a, b = shapes_of(A, row)
             LACK[i] = -row.target if row.gap < -depth_limit(A, a, b) else inf
     keep_walls(problem, n, LACK, np.zeros(problem.m), L[:, 0], V)

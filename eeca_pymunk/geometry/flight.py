@@ -22,6 +22,12 @@ def has_velocity(body: Body) -> bool:
 
 
 @nonallocating
+def fastest(body: Body) -> float:
+    """Bound of the speed of a body's points at SINCE: that of its centre, and the one that its spin adds at most."""
+    return norm(body.vx, body.vy) + abs(body.spin) * body.extent
+
+
+@nonallocating
 def pose(BODY: Rows[Body], i: int, t: float) -> tuple[float, float, float]:
     """Position (length) and angle (rad) of body i at instant t; at t = SINCE the stored ones exactly."""
     s = t - BODY[i].since

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from ..compiled import inlined, kernel, nonallocating
 from ..contacts.counts import note_unmet
+from ..contacts.memory import table_has_room
 from ..contacts.single import alone, strike_disk
 from ..geometry.sides import remembers
 from ..islands.accounting import end_interval, lift_within_step
@@ -122,7 +123,7 @@ def run_events(A: Scene, may_persist: bool, most: float) -> int:
 def has_room(A: Scene) -> bool:
     """Whether there is memory for the contacts that an impact on islands with joints may add."""
     more = 2 * A.COUNT.pushes + _ROOM
-    return bool(more <= A.PUSHED.shape[0] and 2 * (A.COUNT.remembered + more) <= A.KEYS.shape[0])
+    return bool(more <= A.PUSHED.shape[0] and table_has_room(A, more))
 
 
 @nonallocating

@@ -8,7 +8,7 @@ contacts too, and all is solved again, MIDSTEP_PASSES times at most.
 from __future__ import annotations
 
 from ..compiled import kernel, nonallocating
-from ..geometry.flight import norm, pose
+from ..geometry.flight import fastest, norm, pose
 from ..geometry.gap import gap
 from ..geometry.sides import smaller
 from ..islands.candidates import travel_bound
@@ -112,7 +112,7 @@ def act_together(A: Scene, J: Joints) -> int:
     n = BODY.shape[0] - 1
     A.RESTING[n].speed = 0.0
     for i in range(n):
-        A.RESTING[i].speed = norm(BODY[i].vx, BODY[i].vy) + abs(BODY[i].spin) * BODY[i].extent
+        A.RESTING[i].speed = fastest(BODY[i])
     for solves in range(MIDSTEP_PASSES + 1):
         undo_intervals(A)
         if not join_all(A):

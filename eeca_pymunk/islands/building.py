@@ -10,8 +10,9 @@ import numpy as np
 
 from ..arrays import IntArray
 from ..compiled import kernel, nonallocating
+from ..contacts.memory import table_has_room
 from ..contacts.single import move_to
-from ..geometry.flight import norm
+from ..geometry.flight import fastest, norm
 from ..geometry.sides import half_width, smaller
 from ..model.bodies import AT_REST
 from ..model.contacts import ENDED, LASTED
@@ -51,9 +52,7 @@ def join_neighbours(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
             small = smaller(A, s, o)
             reach = TOUCH * small
             if busy:
-                speed = norm(BODY[i].vx, BODY[i].vy) + norm(BODY[j].vx, BODY[j].vy)
-                speed += abs(BODY[i].spin) * BODY[i].extent + abs(BODY[j].spin) * BODY[j].extent
-                reach += TRAVEL_MARGIN * (speed + pulled * dt) * h
+                reach += TRAVEL_MARGIN * (fastest(BODY[i]) + fastest(BODY[j]) + pulled * dt) * h
             if far_apart(A, s, o, t, reach + TOUCH * small):
                 continue
             other = STATE[j].island
@@ -136,7 +135,7 @@ def build_islands(A: Scene) -> int:
                 # Two points for each pair; pairs of two moving shapes are in two lists.
                 wanted += 1 if A.POOL[w] < A.LIST.shape[0] else 2
     wanted *= 2 if COUNT.may_support > 0 else 1
-    if kept + wanted > A.PUSHED.shape[0] or 2 * (COUNT.remembered + wanted) > A.KEYS.shape[0]:
+    if kept + wanted > A.PUSHED.shape[0] or not table_has_room(A, wanted):
         return PUSHES_FULL
     drop_contacts(A, LASTED, ENDED)
     # A solve may make another body the root of its island, which then would be solved again.

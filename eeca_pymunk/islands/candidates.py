@@ -9,7 +9,7 @@ from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..contacts.memory import shapes_of
 from ..contacts.targets import hardly_bounces
-from ..geometry.flight import norm
+from ..geometry.flight import fastest, norm
 from ..geometry.sides import smaller
 from ..model.contacts import Row
 from ..model.parameters import intervals
@@ -44,7 +44,7 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
     together, since = A.COUNT.together > 0, A.PAR.stamp - 1.0
     for q in range(n):
         i = MINE[q]
-        own = norm(BODY[i].vx, BODY[i].vy) + abs(BODY[i].spin) * BODY[i].extent
+        own = fastest(BODY[i])
         for s in range(STATE[i].first_shape, STATE[i].first_shape + STATE[i].shapes):
             for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
                 o = int(A.POOL[w])
@@ -56,8 +56,10 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                     continue
                 small = smaller(A, s, o)
                 busy = A.MEMBER[i].busy > 0 or A.MEMBER[j].busy > 0
-                speed = own + norm(BODY[j].vx, BODY[j].vy) + abs(BODY[j].spin) * BODY[j].extent
-                reach = intervals.TRAVEL_MARGIN * (speed * h + A.PAR.pulled * h * h) + intervals.TOUCH * small
+                reach = (
+                    intervals.TRAVEL_MARGIN * ((own + fastest(BODY[j])) * h + A.PAR.pulled * h * h)
+                    + intervals.TOUCH * small
+                )
                 if together:
                     reach = travel_bound(A, i, h) + travel_bound(A, j, h) + intervals.TOUCH * small
                 if far_apart(A, s, o, t, reach):

@@ -128,7 +128,8 @@ def deep_at_end(A: Scene, isle: Island, END: FloatArray, ROWS: Rows[Row], m: int
 
 @nonallocating
 def rises_too_far(A: Scene, ROWS: Rows[Row], L: FloatArray, VN: FloatArray, m: int, h: float) -> float:
-    """How many times too long an interval h is within which one of m contacts is too far open; 0 if it is not.
+    """How many times too long an interval h is within which one of m contacts is too far open, if more
+    than INTERVAL_RETRY.
 
     A contact with an impulse that opens with u at the start and closes with u+ at the end has a constant force in
     between, under which it rises to (1/2) h u^2 / (u - u+); in truth it is open, without a force, and rises to u^2/2a

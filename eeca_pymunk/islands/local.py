@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
-from ..contacts.memory import shapes_of
+from ..contacts.memory import shapes_of, table_has_room
 from ..contacts.works import carried
 from ..model.islands import Island, IslandContacts
 from ..model.scene import Scene
@@ -53,7 +53,7 @@ def clear_places(A: Scene, MINE: IntArray) -> None:
 @nonallocating
 def needs_memory(A: Scene, p: int) -> bool:
     """Whether the contacts of p more pairs of shapes need more memory (PUSHES_FULL)."""
-    return bool(A.COUNT.pushes + 2 * p > A.PUSHED.shape[0] or 2 * (A.COUNT.remembered + 2 * p) > A.KEYS.shape[0])
+    return bool(A.COUNT.pushes + 2 * p > A.PUSHED.shape[0] or not table_has_room(A, 2 * p))
 
 
 @nonallocating

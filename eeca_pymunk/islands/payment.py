@@ -66,7 +66,7 @@ def payment(
 
     Args:
         lost: energy that contacts have lost in the interval.
-        before: in the step before; what is owed if below 0.
+        before: earlier in this step; what is owed if below 0.
         placed: whether it `was_placed` into.  jointed: whether the island has joints.
     """
     drives = driven(A, isle, ROWS, n, m)

@@ -1,7 +1,7 @@
 """Which islands are put to rest.
 
-An island is at rest if it has no motion at all, or was slow at the start of two steps (without losses: slower than
-REST_SPEED |a| dt, so that none is made), and `..contacts.statics` finds static forces.
+An island is at rest if it has no motion at all, or was slow at the start of this step and an island before it
+(without losses: slower than REST_SPEED |a| dt, so that none is made), and `..contacts.statics` finds static forces.
 """
 
 from __future__ import annotations
@@ -46,7 +46,8 @@ def motionless(A: Scene, MINE: IntArray) -> bool:
 
 @nonallocating
 def postpone_test(A: Scene, MINE: IntArray) -> None:
-    """Postpone the next test for static forces of the bodies MINE by REST_RETRY steps."""
+    """Postpone the next test for static forces of the bodies MINE by REST_RETRY slow steps; a fast one ends that
+    (`at_rest.restart_paths`)."""
     for q in range(len(MINE)):
         A.RESTING[MINE[q]].rest_timer = -float(REST_RETRY)
 

@@ -17,7 +17,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import empty
-from ..contacts.memory import find, key_of, remember_force
+from ..contacts.memory import find, key_of, remember_force, table_has_room
 from ..model.bodies import AT_REST
 from ..model.contacts import ROW, Problem
 from ..model.parameters.rest import REST_SPEED, SUPPORT_FACTORS, SUPPORT_ROUNDS
@@ -128,7 +128,7 @@ def remember_forces(A: Scene, c: int) -> None:
     key = key_of(A.SHAPE.shape[0], a, b)
     if c > 0 and A.PUSHED_BY[c - 1].a == a and A.PUSHED_BY[c - 1].b == b:
         key += 1  # the other end of a face
-    if find(A.KEYS, key) >= 0 or 2 * (A.COUNT.remembered + 1) <= A.KEYS.shape[0]:
+    if find(A.KEYS, key) >= 0 or table_has_room(A, 1):
         pushed = A.PUSHED[c]
         force = pushed.normal / pushed.length
         remember_force(

@@ -119,7 +119,7 @@ def is_movable(groups: Groups, row: Row, mobility: float) -> bool:
 
 @nonallocating
 def set_effective_masses(groups: Groups, C: Columns, ROWS: Rows[Row], m: int) -> None:
-    """Compute k, a and w of the rows from the columns, and leave out (OUT) contacts that hardly any impulse moves. At a
+    """Compute k, a and w of the rows from the columns, and LEFT_OUT: whether hardly any impulse moves a contact. At a
     given normal rate impulses change the slip by a_tt - a_nt^2/a_nn; if that is the error of the response, bodies can
     move in one direction only: it is set to 0, so that no stick is solved for."""
     for i in range(m):

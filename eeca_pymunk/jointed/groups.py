@@ -8,8 +8,8 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
-from ..compiled.records import Rows
-from ..model.joints import Component, ComponentBody, Joints
+from ..model.islands import Island
+from ..model.joints import Joints
 from ..model.parameters.joints import STRUT, STRUT_BETWEEN
 
 
@@ -67,10 +67,11 @@ def least_mobility(groups: Groups, a: int, b: int) -> float:
 
 
 @nonallocating
-def has_partner(groups: Groups, COMPONENT: Rows[Component], JOINED: Rows[ComponentBody]) -> bool:
-    """Whether a component of the island has a joint to a body that joints cannot move."""
+def is_free(isle: Island, groups: Groups, n: int, J: Joints) -> bool:
+    """Whether an island of n bodies is free: it has neither a contact nor a joint with a body that impulses do not
+    move."""
     for s in groups.JOINTED:
-        for i in range(COMPONENT[s].first_body, COMPONENT[s].end_body):
-            if JOINED[i].freedoms == 0:
-                return True
-    return False
+        for i in range(J.COMPONENT[s].first_body, J.COMPONENT[s].end_body):
+            if J.JOINED[i].freedoms == 0:
+                return False
+    return len(isle.IM) == n

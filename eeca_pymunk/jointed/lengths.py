@@ -15,7 +15,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..contacts.memory import key_of, shapes_of
-from ..geometry.flight import norm
+from ..geometry.flight import fastest, norm
 from ..geometry.sides import depth_limit, smaller
 from ..islands.depths import closes_too_far, too_deep_at_end
 from ..model.joints import Joints
@@ -40,8 +40,7 @@ def may_meet_others(A: Scene, i: int, way: float, t: float, h: float, KEY: IntAr
         for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
             o = int(A.POOL[w])
             b = A.BODY[A.LINK[o].owner]
-            speed = norm(b.vx, b.vy) + abs(b.spin) * b.extent
-            if barred(A, s, o) or far_apart(A, s, o, t, 2.0 * (way + speed * h + A.PAR.pulled * h * h)):
+            if barred(A, s, o) or far_apart(A, s, o, t, 2.0 * (way + fastest(b) * h + A.PAR.pulled * h * h)):
                 continue
             known = False
             for z in range(m):
@@ -122,8 +121,8 @@ def points_part(interval: Interval, L: FloatArray) -> float:
 
 @kernel
 def excess(A: Scene, interval: Interval, L: FloatArray) -> float:
-    """How many times too long an interval is for the motion of its bodies under impulses L (m, 2) of its contacts; 0 if
-    it is not."""
+    """How many times too long an interval is for the motion of its bodies under impulses L (m, 2) of its contacts,
+    if more than INTERVAL_RETRY."""
     isle, _, ROWS, motion, _, m, n, t, h = interval
     far, KEY = 0.0, np.empty(m, np.int64)
     for z in range(m):
@@ -147,13 +146,13 @@ def too_deep_on_way(A: Scene, interval: Interval) -> float:
 
 @nonallocating
 def forced_deeper(A: Scene, interval: Interval) -> int:
-    """A contact that joints force deeper than an interval allows, -1 if there is none; only one that is left out (OUT)
+    """A contact that joints force deeper than an interval allows, -1 if there is none; only one that is LEFT_OUT
     can be, as no impulse moves it."""
-    ROWS, OUT, WAY = interval.ROWS, interval.C.LEFT_OUT, interval.motion.WAY
+    ROWS, LEFT_OUT, WAY = interval.ROWS, interval.C.LEFT_OUT, interval.motion.WAY
     for z in range(interval.m):
         closed = normal_rate(ROWS[z], WAY)
         a, b = shapes_of(A, ROWS[z])
-        if OUT[z] != 0 and closed < 0.0 and ROWS[z].gap + closed < -depth_limit(A, a, b):
+        if LEFT_OUT[z] != 0 and closed < 0.0 and ROWS[z].gap + closed < -depth_limit(A, a, b):
             return z
     return -1
 

@@ -27,7 +27,7 @@ from .advance import Interval, Motion
 from .columns import fill_free, fill_group, make_columns, set_effective_masses
 from .component import close_at_poses, ready_at_poses
 from .gathered import find_places, gather_component
-from .groups import find_groups, has_partner
+from .groups import find_groups, is_free
 from .motors import keeps_speed
 
 
@@ -120,7 +120,7 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget
     set_effective_masses(groups, C, KEEP, m)
     D = np.zeros_like(V)
     raise_gaps(JointedProblem(KEEP, C, room_for_rows(0, 0), m), n, GAPS, D, 1e-3 * -deepest)
-    free = len(isle.IM) == n and not has_partner(groups, J.COMPONENT, J.JOINED)
+    free = is_free(isle, groups, n, J)
     if free:
         keep_centre(D, isle.IM, n)
     cost, part = -against(isle.ACC, isle.IM, isle.II, n, D), admissible(D, isle.EXTENT, n, size)

@@ -8,8 +8,9 @@ from ..model.contacts import Bounded, Row
 from ..model.joints import Joints
 from ..model.parameters.joints import PRESS_LOCKS
 from ..model.scene import Scene
-from ..rows.build import normal_rate, slip_rate, tangent_rate
+from ..rows.build import normal_rate, slip_rate
 from ..rows.columns import push_columns
+from ..rows.energy import loss_of_scaled
 from .advance import Interval, advance_aligned
 from .bounded_rows import settle_bounded
 
@@ -50,25 +51,16 @@ def lock_jointed(
     error: float,
 ) -> None:  # fmt: skip
     """Scale the impulses L of contacts by s until these lose at least `owed`, or if `elastic` exactly that, up to
-    `error`. The loss is D(s) = s p - s^2 q. s follows from the slope p - 2 q at s = 1, again for each new motion."""
-    ROWS, motion, C, m = interval.ROWS, interval.motion, interval.C, interval.m
+    `error`. s follows from the slope p - 2 q at s = 1, again for each new motion."""
+    motion, C, m = interval.motion, interval.C, interval.m
     for tries in range(PRESS_LOCKS + 1):
         loss = lost(interval, L)
         if loss >= owed - error and (not elastic or loss <= owed + error):
             break
-        p, q = 0.0, 0.0
         FREE = motion.MEAN.copy()
         push_columns(C, L, m, -1.0, FREE)
         settle_bounded(B, FREE)
-        for i in range(m):
-            for tangent in range(2):
-                before = ROWS[i].ut if tangent == 1 else ROWS[i].un
-                if tangent == 1:
-                    without, after = tangent_rate(ROWS[i], FREE), tangent_rate(ROWS[i], motion.MEAN)
-                else:
-                    without, after = normal_rate(ROWS[i], FREE), normal_rate(ROWS[i], motion.MEAN)
-                p -= 0.5 * L[i, tangent] * (before + without)
-                q += 0.5 * L[i, tangent] * (after - without)
+        p, q = loss_of_scaled(interval.ROWS, L, motion.MEAN, FREE, m)
         slope = p - 2.0 * q
         s = 1.0 + (owed - loss) / slope if slope < 0.0 else 0.0
         if tries == PRESS_LOCKS or J.PROGRESS.effort > J.PROGRESS.share or (elastic and not 0.0 < s < 2.0):

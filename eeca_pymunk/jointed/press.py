@@ -33,7 +33,7 @@ from .advance import Interval, advance, advance_aligned, align, farthest_apart
 from .bounded_rows import make_bounded, settle_bounded, with_bounded
 from .columns import count_operations, fill_free, leave_out, set_effective_masses
 from .gentle import solve_gently
-from .groups import Groups, has_partner
+from .groups import Groups, is_free
 from .losses import lock_jointed, lost, work_error
 from .secant import fit_columns
 
@@ -92,7 +92,7 @@ def solve_contacts(
 
     Each iteration steps the components under L, and ends if their velocities agree with FORESEEN, those that the
     contacts' laws gave before; else it solves these laws with the columns, for L and FORESEEN. Columns are computed
-    again in every CHORD-th iteration, else updated (`secant`). Iterations end in four ways:
+    again in every CHORD-th iteration, else updated (`secant`). Iterations end in five ways:
 
     | because | `agreed` | `converged` | impulses |
     |---|---|---|---|
@@ -100,6 +100,7 @@ def solve_contacts(
     | of many contacts, the laws' residual is larger than their difference | yes | as the laws' last solution | L |
     | the laws' last solution gives the present motion | yes | as that solution | USED, those of this motion |
     | iterations or work are used up | no | as that solution, if it agrees | L, or LEAST if these agreed better |
+    | of few contacts, CHORD iterations have come no nearer, or nowhere near | no | likewise | likewise |
 
     Impulses that are excessive, or have not converged, are replaced by gentle ones (`gentle`). The energy lock comes
     last.
@@ -137,7 +138,7 @@ def solve_contacts(
     better, bent, reached, B = 0, 0.0, np.inf, make_bounded(J, groups, m <= joints.COLUMN_CONTACTS)
     NOW = np.empty(len(B.OF))
     problem = JointedProblem(ROWS, C, B, m)
-    free = len(isle.IM) == n and not has_partner(groups, J.COMPONENT, J.JOINED)
+    free = is_free(isle, groups, n, J)
     for outer in range(rounds):
         if J.PROGRESS.effort > J.PROGRESS.share:
             break

@@ -34,7 +34,8 @@ def limit_gap(W: Workspace, k: int, side: int) -> float:
 
 @inlined
 def inactive(link: Rows[Coupling], k: int) -> bool:
-    """Whether joint k, if it is a limit, would be met at a bound: it stands on none, and its force is not bounded."""
+    """Whether joint k stands on no bound, and its force is not bounded: if it is a limit, it may meet one. True of all
+    joints that are no limits, whose gaps are infinite (`limit_gap`)."""
     return link[k].side == 0 and link[k].bounded == 0
 
 

@@ -128,7 +128,7 @@ def restore_speeds(W: Workspace) -> None:
 
 @nonallocating
 def release(W: Workspace, what: int) -> bool:
-    """Release the limit that pulls most, lam side > 0; False if none pulls. POSES: by its impulse in a step. SPEEDS: by
+    """Release the limit that pulls most, lam side > 0; False if none pulls. STEP: by its impulse. SPEEDS: by
     that of a projection, by more than round-off, and unless it was released in this part of the step already."""
     hinge, link = W.J.HINGE, W.link
     which, most = -1, 0.0

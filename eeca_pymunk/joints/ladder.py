@@ -21,7 +21,7 @@ from ..newton.effort import work_of_iteration
 from ..newton.motion import go_back
 from ..newton.solve import drop_impulses
 from .correct import NOW, SAVED, kinetic_of_component
-from .foresight import forget_parts, predict_part, recalls, remember_part
+from .foresight import PARTS, forget_parts, predict_part, recalls, remember_part
 from .ledger import clear_ledger
 from .limits import step_with_limits
 from .lock import lock_energy, supports_rest
@@ -84,7 +84,7 @@ def take_parts(W: Workspace, h: float, length: float, rung: int, parts: int, giv
     for p in range(parts):
         if parts > 1:
             W.J.COMPONENT[W.s].parts = 0
-        piece = h / parts if rung >= 0 else (1.0 - 4.0 * SUZUKI) * h if p == 2 else SUZUKI * h
+        piece = h / parts if rung >= 0 else (1.0 - 4.0 * SUZUKI) * h if p == PARTS // 2 else SUZUKI * h
         warm = 0.0 if cold else piece / before
         for k in range(W.joints):
             W.J.HINGE[k].lam[0] *= warm
@@ -157,7 +157,9 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
         forget_parts(W)
     progress.most_epsilon = joints.REDUNDANT_MOST
     while rung < RUNGS and not progress.effort > progress.limit:
-        parts = 5 if rung == ORDER_4 else 1 if rung == ELASTIC_RUNG else 1 << rung if rung < 3 else joints.ELASTIC_PARTS
+        parts = (
+            PARTS if rung == ORDER_4 else 1 if rung == ELASTIC_RUNG else 1 << rung if rung < 3 else joints.ELASTIC_PARTS
+        )
         compliance = compliance_on(rung, h, yields, first.compliance)
         clear_ledger(W.J.PART_LEDGER)
         done = take_parts(W, h, length, rung, parts, compliance / (h / parts) ** 2, cold)

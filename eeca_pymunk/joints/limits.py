@@ -25,7 +25,7 @@ Each solution of an interval first tries the limits, and their instants, that th
 from __future__ import annotations
 
 from ..compiled import inlined, nonallocating
-from ..model.joint_steps import POSES, SPEEDS, JointLedger, Parts
+from ..model.joint_steps import SPEEDS, STEP, JointLedger, Parts
 from ..model.joints import Workspace
 from ..model.parameters import joints
 from ..newton.motion import accept_part
@@ -100,7 +100,7 @@ def end_part(W: Workspace, S: Parts, linear: bool, h: float, whole: bool, ledger
 def at_end(W: Workspace, S: Parts, linear: bool, h: float, whole: bool, ledger: JointLedger) -> int:
     """Decide what follows a solve to the end of the step. Arguments as of `step_with_limits`."""
     most = joints.LIMIT_SOLVES if linear else 2 * W.joints + 100  # after these, none is released or searched
-    if S.solves < most and release(W, POSES):
+    if S.solves < most and release(W, STEP):
         return GOES_ON
     k, side, instant = bounds.first_bound(W, S.when)
     if k < 0 or linear:

@@ -87,7 +87,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
 
     | state | `lasting`, `ready` | factors | next |
     |---|---|---|---|
-    | kept | yes, yes | of an earlier iteration, or of the step before | kept; new if `slow`: errors fall too little |
+    | kept | yes, yes | of an earlier iteration or part of the step | kept; new if `slow`: errors fall too little |
     | new | yes, no | computed now (`fresh`) | kept; full if `slow` |
     | full | no, no | computed now, of `component.system` | full |
 
@@ -102,7 +102,6 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
     best, last, stalls = 1e300, 1e300, 0
     system = DUAL if component.rigid > 1 else component.system
     lasting = system == DUAL or not has_bounded(W.link, W.joints)
-    # A wide matrix is expensive to factor: the parts of a step share one while errors fall with it.
     # ready: factors can be used again; fresh: those of the last iteration were new; since: iteration from which on each
     # has new ones (full Newton).
     ready, fresh, since = lasting and component.factored > 0, False, 0
@@ -114,6 +113,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
         floor = JOINT_ROUND_OFF_KEPT if lasting else NEWTON_FLOOR if stalls > 1 else JOINT_ROUND_OFF
         at_floor = iteration > since + 1 and 0.5 * best < worst < floor
         if iteration > 0 and (worst <= max(JOINT_TOLERANCE, progress.near) or at_floor):
+            # A wide matrix is expensive to factor: the parts of a step share one while errors fall with it.
             component.factored = 1 if ready and system == CONDENSED and boxes == 0 else 0
             balance_velocities(local, W.bodies, h)
             return True

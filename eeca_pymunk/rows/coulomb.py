@@ -92,9 +92,15 @@ def lossless_slip(row: Row, lam: float, beta: float) -> float:
 @nonallocating
 def mode_of(row: Row, V: FloatArray, lam: float, beta: float, near: float) -> tuple[int, float]:
     """The mode of a contact with these impulses at velocities V (k, 3), and the sign of its friction in SLIP, which is
-    0 without friction: beta = sign mu lam, from `near` of it on. So is that of a slip that has reversed by less than
-    its size, where the contact has no other loss: friction would give energy. In STICK, u_t+ is to be
-    `limited_slip`."""
+    0 without friction.
+
+    | mode | where | law |
+    |---|---|---|
+    | OPEN | lam = 0 | u_n >= target |
+    | SLIP | abs(beta) >= (1 - near) mu lam | beta = sign mu lam, sign u_t <= 0 |
+    | SLIP, sign 0 | beta = 0, no loss along n, slip reversed: friction against it would give energy | none |
+    | STICK | else | u_t = `limited_slip` |
+    """
     if not lam > 0.0:
         return OPEN, 0.0
     most = row.friction * lam
@@ -122,8 +128,8 @@ def lawful(row: Row, V: FloatArray, lam0: float, beta0: float, stays: bool) -> t
     are the velocities with these, and with its own (lam0, beta0). An inactive contact (`Row.wake`) becomes active.
 
     Where friction alone could separate the surfaces, a_nn < mu |a_nt|, a contact may stick although it would open
-    without its impulses. If `stays`, a sticking contact then remains; it also stays closed if energy limits its
-    friction, and its slip to `limited_slip`.
+    without its impulses. If `stays`, a contact that sticks then remains closed, with u_t = `limited_slip`, as long as
+    its friction is inside the cone.
     """
     ann, ant, att, mu = row.a_nn, row.a_nt, row.a_tt, row.friction
     short = normal_rate(row, V) - row.target

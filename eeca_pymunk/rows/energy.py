@@ -11,7 +11,8 @@ import math
 
 from ..arrays import FloatArray
 from ..compiled import inlined, nonallocating
-from ..model.contacts import AnyProblem
+from ..compiled.records import Rows
+from ..model.contacts import AnyProblem, Row
 from .build import normal_rate, tangent_rate
 from .sweeps import velocities
 
@@ -66,24 +67,28 @@ def scale_to_lose(p: float, q: float, owed: float, exact: bool) -> float:
 
 
 @nonallocating
+def loss_of_scaled(ROWS: Rows[Row], L: FloatArray, V: FloatArray, FREE: FloatArray, m: int) -> tuple[float, float]:
+    """p and q of the loss D(s) = s p - s^2 q of s times the impulses L (m, 2): with u* the velocities of FREE (k, 3),
+    without these impulses, and u+ those of V (k, 3), p = -lam.(u- + u*)/2, q = lam.(u+ - u*)/2; tangents likewise."""
+    p, q = 0.0, 0.0
+    for i in range(m):
+        lam, beta = L[i, 0], L[i, 1]
+        if lam != 0.0 or beta != 0.0:
+            n0, t0 = normal_rate(ROWS[i], FREE), tangent_rate(ROWS[i], FREE)
+            p -= 0.5 * (lam * (ROWS[i].un + n0) + beta * (ROWS[i].ut + t0))
+            q += 0.5 * (lam * (normal_rate(ROWS[i], V) - n0) + beta * (tangent_rate(ROWS[i], V) - t0))
+    return p, q
+
+
+@nonallocating
 def lock(problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, owed: float, exact: bool) -> float:
     """Energy lock: one scale s for all impulses, so that the island loses at least `owed`; exactly that if `exact`.
     Updates L and V.
 
-    With u* the velocities of FREE, s L loses D(s) = -s lam.(u- + u*)/2 - s^2 lam.A.lam/2 (tangents likewise). Of the
-    two roots of D(s) = owed the one nearer to 1 is taken; s = 1 if no change is needed. Without a root, s gives the
-    largest loss of these impulses. Returns s.
+    Of the two roots of D(s) = owed (`loss_of_scaled`) the one nearer to 1 is taken; s = 1 if no change is needed.
+    Without a root, s gives the largest loss of these impulses. Returns s.
     """
-    ROWS, m = problem.ROWS, problem.m
-    p, q = 0.0, 0.0
-    for i in range(m):
-        lam, beta = L[i, 0], L[i, 1]
-        if lam == 0.0 and beta == 0.0:
-            continue
-        n0 = normal_rate(ROWS[i], FREE)
-        t0 = tangent_rate(ROWS[i], FREE)
-        p -= 0.5 * (lam * (ROWS[i].un + n0) + beta * (ROWS[i].ut + t0))
-        q += 0.5 * (lam * (normal_rate(ROWS[i], V) - n0) + beta * (tangent_rate(ROWS[i], V) - t0))
+    p, q = loss_of_scaled(problem.ROWS, L, V, FREE, problem.m)
     s = scale_to_lose(p, q, owed, exact)
     if s != 1.0:
         for i in range(problem.m):

@@ -30,7 +30,7 @@ TRAVEL_MARGIN = accuracy(1.1, "of the way by the speeds and accelerations at its
     "Reach of shapes within an interval. Smaller: impulses within it bring shapes together that are not in it. Larger: "
     "more candidates.")
 INTERVAL_DEPTH = heuristic(0.05, "of the smaller shape", "Depth by which a contact may close in one interval.")
-INTERVAL_DEPTH_WIDTH = heuristic(0.1, "of both widths",
+INTERVAL_DEPTH_WIDTH = heuristic(0.1, "of both half widths",
     "Depth by which a contact may close in one interval, or an impact that is passed over by the end of the step: a "
     "tenth of the way through. Larger: cheaper and deeper piles.")
 INTERVAL_DEPTH_LEAST = heuristic(0.0001, "of the smaller shape",

@@ -40,7 +40,7 @@ RESPONSE_PASSES = work(2, "number", "Refinements of the response of a component.
 JOINT_TOLERANCE = round_off(3e-16, "of the component", "Error of joints and momenta at which Newton iterations end.")
 JOINT_ROUND_OFF = round_off(3e-14, "of the component", "An error below it that no longer halves is round-off.")
 JOINT_ROUND_OFF_KEPT = round_off(2e-15, "of the component",
-    "Error below which one that no longer halves is round-off, with factors of an earlier step.")
+    "The same, where factors are used in several iterations.")
 NEWTON_PROGRESS = work(0.03, "ratio of errors",
     "Progress of an iteration with earlier factors below which they are computed again; it ends at JOINT_TOLERANCE "
     "with either.")
