@@ -63,6 +63,7 @@ class Pile:
              if owner[s] != owner[r] and min(owner[s], owner[r]) < self.n], np.int64,
         ).reshape(-1, 4)  # fmt: skip
         self.m = 0
+        self.contacts = make_contacts(0, k)
         # The scene of these bodies: its shapes, its memory of forces.
         thin = moving_thin(world.link, world.vertex, moving := int((owner < len(world.body) - 1).sum()))
         measured = moving, max(2, int(world.link["vertices"].max())), thin, int((world.shape["elasticity"] < 1.0).any())
@@ -71,9 +72,8 @@ class Pile:
         self.room(64)
 
     def room(self, size: int) -> None:
-        """Rows for `size` contacts, and memory for four times as many."""
+        """Memory of the forces of four times `size` contacts."""
         self.size = size
-        self.contacts = make_contacts(size // 2, len(self.im))
         self.clean(8 * size)
 
     def clean(self, size: int) -> None:
@@ -103,6 +103,7 @@ class Pile:
         a, b = self.all[:, 2], self.all[:, 3]
         near = (np.hypot(*(x[a] - x[b]).T) <= 1.1 * (far[a] + far[b])) | (b >= self.n)
         pairs = np.ascontiguousarray(self.all[near])
+        self.contacts = make_contacts(len(pairs), len(self.im))
         before = self.kinetic()
         isle = Island(
             np.arange(len(self.im)), self.pose, self.v, self.acc, self.im, self.ii, self.extent, self.extent, pairs
