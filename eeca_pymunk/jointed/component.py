@@ -12,11 +12,12 @@ from ..joints.start import springs_of
 from ..joints.step import take_step
 from ..joints.workspace import workspace
 from ..model.joint_steps import POSES, SPEEDS, STEP
-from ..model.joints import GEAR, Joints, Workspace
+from ..model.joints import Joints, Workspace
 from ..model.parameters.joints import COMPONENT_WORK, COMPONENT_WORK_BODY, CORRECTION_JOINTS
 from ..model.scene import Scene
 from ..newton.entries import acts
 from ..newton.response import prepare_response, respond
+from ..newton.rows import unit_of
 from .gathered import gather_component
 
 
@@ -54,7 +55,7 @@ def step_component(
 def size_joints(W: Workspace, length: float) -> None:
     """Units of the joints' functions in a component of size `length`."""
     for k in range(W.joints):
-        W.J.HINGE[k].size = 1.0 if W.link[k].kind >= GEAR else length
+        W.J.HINGE[k].size = unit_of(W.J.JOINT[W.link[k].joint], length)
 
 
 @nonallocating

@@ -19,6 +19,16 @@ from .start import closing_share, compute_rows, springs_of
 
 
 @nonallocating
+def error_of(W: Workspace, k: int) -> float:
+    """|g| of joint k, of its rows that act. Rows must be those of the present poses."""
+    error = 0.0
+    for r in range(W.link[k].rows):
+        if acts(W.link, k, r):
+            error += W.J.HINGE[k].value[r] ** 2
+    return float(np.sqrt(error))
+
+
+@nonallocating
 def find_apart(W: Workspace, h: float) -> tuple[bool, bool, bool, bool]:
     """Set the targets of joints that are apart to the part of their error that remains after this step, and set or
     release limits that are passed or left.
@@ -43,11 +53,7 @@ def find_apart(W: Workspace, h: float) -> tuple[bool, bool, bool, bool]:
         elif link[k].side != 0 and limit_gap(W, k, link[k].side) > JOINT_APART * hinge[k].size:
             link[k].side = 0
         joint_rows(W, k, 2.0, False)
-        error = 0.0
-        for r in range(rows):
-            if acts(link, k, r):
-                error += hinge[k].value[r] ** 2
-        error = np.sqrt(error)
+        error = error_of(W, k)
         if error > JOINT_APART * hinge[k].size and was == GIVES_WAY:
             joint[j].touched = GIVES_WAY
         elif error > JOINT_APART * hinge[k].size:
@@ -62,14 +68,12 @@ def find_apart(W: Workspace, h: float) -> tuple[bool, bool, bool, bool]:
 
 @nonallocating
 def farthest(W: Workspace) -> float:
-    """The largest |g| of a row that acts and is exact, over the unit of its g. Rows must be those of the present
-    poses."""
-    link = W.link
+    """The largest error of an exact joint by its own formula, over the size of the component or in rad. Rows must be
+    those of the present poses."""
     worst = 0.0
     for k in range(W.joints):
-        for r in range(link[k].rows):
-            if link[k].bounded == 0 and acts(link, k, r):
-                worst = max(worst, abs(W.J.HINGE[k].value[r]) / W.J.HINGE[k].size)
+        if W.link[k].bounded == 0:
+            worst = max(worst, error_of(W, k) / W.J.HINGE[k].size)
     return worst
 
 

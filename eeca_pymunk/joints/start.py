@@ -10,7 +10,7 @@ from ..model.joint_steps import POSES
 from ..model.joints import BOUNDED, BOXED, GEAR, GROOVE, MOTOR, PIN, ROTARY_SPRING, SPRING, Joint, Workspace
 from ..model.parameters.joints import STALLED
 from ..newton.entries import is_limit
-from ..newton.rows import joint_rows
+from ..newton.rows import joint_rows, unit_of
 from ..newton.saturation import bound_otherwise
 from ..newton.systems import first_iterate
 from .bounds import limit_gap, limit_gap_rate
@@ -93,7 +93,7 @@ def read_joints(W: Workspace, h: float, length: float) -> tuple[bool, bool]:
         hinge[k].total[0] = hinge[k].total[1] = 0.0
         hinge[k].target[0] = hinge[k].target[1] = hinge[k].scale[0] = hinge[k].scale[1] = 0.0
         hinge[k].bound = joint[j].max_force
-        hinge[k].size = 1.0 if kind >= GEAR else length
+        hinge[k].size = unit_of(joint[j], length)
         joint[j].work = 0.0
         for end in range(2):
             for c in range(3):
@@ -128,9 +128,9 @@ def springs_of(W: Workspace) -> float:
 @nonallocating
 def closing_share(joint: Rows[Joint], j: int, error: float, h: float) -> float:
     """Share of the error of joint j that pymunk corrects in a step h: 1 - error_bias^h, at most at the speed max_bias.
-    error: an amount, length or rad."""
+    error: an amount of g, length or rad."""
     part = 1.0 - joint[j].error_bias ** h
-    return float(min(part, joint[j].max_bias * h / error)) if error > 0.0 else part
+    return float(min(part, joint[j].max_bias * h * unit_of(joint[j], 1.0) / error)) if error > 0.0 else part
 
 
 @nonallocating

@@ -64,7 +64,7 @@ class JointStep(Record):
     target: Annotated[FloatArray, 2]  # what the functions g shall be at the end; of bounded joints: the speed
     scale: Annotated[FloatArray, 2]  # 1/sqrt of the diagonal of J M^-1 J^T
     bound: float  # largest force of a bounded joint: max_force, or that of a stalled motor (`..joints.start`)
-    size: float  # unit of g: length of the component, or 1 for angles
+    size: float  # unit of g (`..newton.rows.unit_of`): length of the component, 1 for angles, 1/|ratio| for gears
     measure: float  # of limits what they bound, at the end: length, angle, place in a groove; of springs the mean force
     total: Annotated[FloatArray, 2]  # impulse over all parts of the step
     pushed: Annotated[FloatArray, 2]  # impulse of a correction

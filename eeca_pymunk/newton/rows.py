@@ -24,7 +24,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compiled import inlined, nonallocating
-from ..model.joints import GEAR, GROOVE, PIVOT, ROTARY_SPRING, SPRING, Workspace
+from ..model.joints import GEAR, GROOVE, PIVOT, ROTARY_SPRING, SPRING, Joint, Workspace
 from .angles import angle_rows
 from .points import groove_rows, point_rows
 
@@ -91,6 +91,15 @@ def start_joint(W: Workspace, k: int, h: float) -> None:
         mobility = local[a].mobility[0] + local[b].mobility[0]
         mobility += local[a].mobility[2] * turn_a * turn_a + local[b].mobility[2] * turn_b * turn_b
         hinge[k].drag = drag(joint[j].damping, mobility, h)
+
+
+@nonallocating
+def unit_of(joint: Joint, length: float) -> float:
+    """Unit of g of a joint in a component of size `length`: g over it is the error by the joint's own formula, over
+    that size or in rad. A gear's is angle_b ratio - angle_a - phase = ratio g."""
+    if joint.kind == GEAR:
+        return float(1.0 / abs(joint.ratio))
+    return 1.0 if joint.kind > GEAR else length
 
 
 @nonallocating

@@ -26,7 +26,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import inlined
 from ..model.joint_steps import LINEAR_STEP, POSES, SPEEDS, STEP, STIFF_NONE
-from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, WHOLE, Workspace
+from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, GEAR, WHOLE, Workspace
 from ..model.parameters.joints import STIFFEST
 from .banded import back_banded, factor_banded
 from .boxes import leave_box
@@ -133,7 +133,8 @@ def assemble(W: Workspace, what: int, h: float, give: float, first: bool, system
             leave_box(W, k, system, build)
         else:
             off = put_exact(W, what, k, h, give, system, build)
-        worst = max(worst, off / hinge[k].size)
+        # What a gear holds are angles: their round-off is that of rad, whatever its ratio.
+        worst = max(worst, off / (max(hinge[k].size, 1.0) if link[k].kind == GEAR else hinge[k].size))
     return worst
 
 

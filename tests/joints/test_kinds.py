@@ -9,6 +9,7 @@ import pymunk
 import pytest
 
 import eeca_pymunk as ep
+from eeca_pymunk.model.parameters.joints import NEARLY_HELD
 from scenes.linkages import body, empty, pendulum, point_double
 
 from .driving import Driven, error, ledger_closes, momenta, run
@@ -90,6 +91,45 @@ def test_gear_keeps_its_ratio_and_the_energy(ratio: float) -> None:
         stepper.step(1 / 60)
         assert abs(a.angle - ratio * b.angle) < 1e-13 * max(1.0, abs(a.angle))
     ledger_closes(stepper, 10.0)
+
+
+@pytest.mark.parametrize("ratio", [1.0, 10.0, -10.0, 0.1])
+def test_a_step_converges_if_its_gears_hold_by_their_own_formula(ratio: float) -> None:
+    """`angle_b ratio - angle_a - phase`, as a program computes it, not the angle of b that it means: three gears, whose
+    ratios contradict one another by a millionth, give way as their axle turns (random scene 46000216)."""
+    space = empty(0.0)
+    axle = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    near, far = body(space, 1.0, 1.0, (0.0, 0.0)), body(space, 1.0, 1.0, (5.0, 0.0))
+    axle.angular_velocity = near.angular_velocity = 1.0
+    far.angular_velocity = 1.0 / ratio
+    gears = [pymunk.GearJoint(axle, near, 0.0, 1.0), pymunk.GearJoint(near, far, 0.0, ratio)]
+    gears.append(pymunk.GearJoint(axle, far, 0.0, ratio * (1.0 + 1e-6)))
+    space.add(axle, *gears)
+    stepper, seen = ep.EECA(space), set()
+    for _ in range(12):
+        report = stepper.step(1 / 60)
+        off = max(abs(gear.ratio * gear.b.angle - gear.a.angle - gear.phase) for gear in gears)
+        assert report.converged == (off <= NEARLY_HELD)
+        seen.add(report.converged)
+    assert seen == {True, False}
+
+
+@pytest.mark.parametrize("ratio", [1.0, 4.0, -0.25])
+def test_a_gear_closes_as_fast_as_native(ratio: float) -> None:
+    """At `max_bias` rad of its formula in a second, then by `error_bias`; pymunk begins one step later."""
+    ways: list[list[float]] = []
+    for native in (True, False):
+        space = empty(0.0)
+        wheel = body(space, 1.0, 1.0, (0.0, 0.0))
+        gear = pymunk.GearJoint(space.static_body, wheel, 0.1, ratio)
+        gear.max_bias = 0.5
+        space.add(gear)
+        step = space.step if native else ep.EECA(space).step
+        ways.append([])
+        for _ in range(10):
+            step(1 / 60)
+            ways[-1].append(ratio * wheel.angle)
+    assert ways[1][:-1] == pytest.approx(ways[0][1:], rel=1e-6)
 
 
 def test_tank_rubs_to_rest_as_coulomb_says() -> None:
