@@ -32,6 +32,7 @@ from ..model.parameters.joints import (
     BOX_REDUNDANT,
     BOX_RESIDUAL,
     BOX_ROUNDS,
+    BOX_ROW_WORK,
     BOX_SWEEPS,
     BOX_WORK,
     DISC_WORK,
@@ -236,7 +237,7 @@ def bound_impulses(W: Workspace, n: int, h: float, fresh: bool) -> None:
     w = STRIDE * component.dual_size + (n + 1) * (component.unknowns + component.impulses)
     u = w + 3 * n * n
     measure_boxes(W, w, u, n, h, fresh)
-    sweep = BOX_WORK * n * n + DISC_WORK * count_discs(W.J.MORE, u, n)
+    sweep = n * (BOX_ROW_WORK + BOX_WORK * n) + DISC_WORK * count_discs(W.J.MORE, u, n)
     W.J.PROGRESS.effort += sweep * solve_boxes(W.J.MORE, w, u, n)
     W.J.PROGRESS.effort += BOX_COLUMN_WORK * n * (component.unknowns + component.impulses)
     apply_boxes(W, u, n)

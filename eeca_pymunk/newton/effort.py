@@ -18,8 +18,10 @@ def work_of_rows(joints: int) -> float:
 def work_of_factors(system: int, component: Component) -> float:
     """Operations to factor a system."""
     size, band = (component.dual_size, component.dual_band) if system == DUAL else (component.unknowns, component.band)
-    # Wide bands are factored several numbers at a time; in those of whole systems most entries are 0.
-    each = 0.5 if system == WHOLE or band >= FACTOR_BAND else 2.0
+    if system == WHOLE:  # in whose bands most entries are 0
+        return float(0.5 * size * (FACTOR_WORK + 0.5 * band * band))
+    # Wide bands are factored several numbers at a time.
+    each = 0.5 if band >= FACTOR_BAND else 2.0
     return float(size * (FACTOR_WORK + each * band * band))
 
 

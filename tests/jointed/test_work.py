@@ -106,7 +106,7 @@ Part = tuple[Any, str, Callable[..., float]]  # a function of a module, and how 
 ROWS: list[Part] = [(module, "assemble", lambda W, *_: W.joints + 1) for module in (systems, response)]
 FACTORS: list[Part] = [
     (systems, "factor", lambda matrix, size, band: size),
-    (systems, "factor_banded", lambda matrix, size, band, *_: size),
+    (systems, "factor_banded", lambda matrix, size, band, *_: 0.5 * size),
     (systems, "factor_dual", lambda W, *_: W.J.COMPONENT[W.s].dual_size),
 ]
 BACK: list[Part] = [
@@ -116,6 +116,7 @@ BACK: list[Part] = [
 ]
 REFINEMENTS: list[Part] = [(systems, "back_condensed", lambda W, passes, *_: passes * W.joints)]
 BOX_SWEEPS: list[Part] = [(boxes, "sweep_boxes", lambda more, w, u, n: n * n)]
+BOX_ROWS: list[Part] = [(boxes, "sweep_boxes", lambda more, w, u, n: n)]
 BOX_DISCS: list[Part] = [(boxes, "sweep_boxes", lambda *_: 1)]
 BOX_COLUMNS: list[Part] = [(boxes, "measure_boxes", lambda W, w, u, n, *_: n * size_of(W))]
 # The box is the only body: each contact and each row has one entry.
@@ -152,6 +153,7 @@ def counted(function: Callable[..., Any], amount: Callable[..., float], done: li
         (ON_FLOOR, effort, "FACTOR_WORK", FACTORS),
         (ON_FLOOR, effort, "BACK_WORK", BACK),
         (IN_AIR, boxes, "BOX_WORK", BOX_SWEEPS),
+        (IN_AIR, boxes, "BOX_ROW_WORK", BOX_ROWS),
         (IN_AIR, boxes, "DISC_WORK", BOX_DISCS),
         (IN_AIR, boxes, "BOX_COLUMN_WORK", BOX_COLUMNS),
         (ON_FLOOR, columns, "DISC_WORK", DISCS),

@@ -13,7 +13,7 @@ BOX_RESIDUAL = round_off(1e-15, "of the largest impulse", "Change of an impulse 
 BOX_REDUNDANT = round_off(1e-12, "of the diagonal", "Term added to redundant bounded rows.")
 BOX_SECULAR = work(40, "iterations", "Iterations for the multiplier of a friction disc.")
 CONDENSED_PASSES = work(3, "number", "Refinements of a condensed solution.")
-REFINEMENT_WORK = work(300.0, "operations", "Work of each of them for the rows of a joint.")
+REFINEMENT_WORK = work(400.0, "operations", "Work of each of them for the rows of a joint.")
 STIFFEST = round_off(10000000.0, "of the bodies' inertia", "Stiffness of rows in a condensed system, at most.")
 JOINT_SPEED_ROUND_OFF = round_off(1e-14, "of the speeds", "Velocity along a joint row that is round-off.")
 JOINT_SPEED_LEFT = heuristic(0.01, "of the speeds along a row",
@@ -55,14 +55,15 @@ CLOSINGS = work(8, "iterations", "Iterations to close joints that are apart, at 
 REDUNDANT_PASSES = work(12, "number", "Passes of a projection of velocities, at most, beside three for each joint.")
 FACTOR_BAND = work(16, "rows",
     "Half-width of the band from which on factors and solutions take rows as views, several numbers at a time.")
-ROW_WORK = work(250.0, "operations", "Work of the rows of a joint in an iteration, for the budget of a step.")
-FACTOR_WORK = work(215.0, "operations", "Work of the factors of a row besides that of its band.")
-BACK_WORK = work(3.0, "operations", "Work of a solution for each row and each number in its band.")
+ROW_WORK = work(430.0, "operations", "Work of the rows of a joint in an iteration, for the budget of a step.")
+FACTOR_WORK = work(210.0, "operations", "Work of the factors of a row besides that of its band.")
+BACK_WORK = work(4.0, "operations", "Work of a solution for each row and each number in its band.")
 JOINT_APART = accuracy(1e-10, "of the component", "Error of a joint above which it closes at pymunk's rate.")
 ELASTIC_PARTS = work(7, "number", "Parts of a step of elastic joints.")
 HASTE = work(0.25, "of what a component may take", "Work of its step after which limits are located roughly.")
 COMPONENT_BUDGET = work(0.5, "of what is left", "Work of one step of a component, at most.")
-NEARLY_HELD = accuracy(1e-08, "of the component", "Error of elastic joints up to which the step counts as converged.")
+NEARLY_HELD = accuracy(1e-08, "of the component, or rad",
+    "Error of elastic joints, by their own formulas, up to which the step counts as converged.")
 REPAID = accuracy(1e-3, "of the kinetic energy",
     "Gain of closing joints that an earlier step left apart, up to which it is locked.")
 JOINT_GAIN = round_off(1e-12, "of the kinetic energy before and after",
@@ -94,15 +95,15 @@ FIT_RESIDUAL = accuracy(1e-06, "of the fastest closing contact",
     "Residual of the impulses that keep contacts from closing in this projection.")
 FIT_ENERGY = round_off(1e-12, "of the energy", "Change of energy by this projection that is round-off.")
 JOINTED_CORRECTION_SWEEPS = work(40, "sweeps", "Sweeps of the penetration correction of jointed bodies.")
-STEP_WORK = work(66000000.0, "operations",
-    "Work of a step with joints besides STEP_WORK_BODY; 3e9 to 5e9 operations take about a second.")
+STEP_WORK = work(64000000.0, "operations",
+    "Work of a step with joints besides STEP_WORK_BODY; 4e9 operations take about a second.")
 INTERVAL_SHARE = work(0.25, "of what is left of the budget",
     "Work of an interval after which it is solved again, shorter, if it has not converged.")
 STEP_WORK_BODY = work(250000.0, "operations", "Work of a step with joints for each body of the scene.")
-CUT_WORK = work(10000000.0, "operations",
+CUT_WORK = work(8000000.0, "operations",
     "Work for the intervals with joints that end where a step is cut short, beside its budget.")
-COMPONENT_WORK = work(2000.0, "operations", "Work of a step of a component, beside its iterations.")
-COMPONENT_WORK_BODY = work(1200.0, "operations", "What each of its bodies adds to it.")
+COMPONENT_WORK = work(1100.0, "operations", "Work of a step of a component, beside its iterations.")
+COMPONENT_WORK_BODY = work(650.0, "operations", "What each of its bodies adds to it.")
 MEET = round_off(1e-13, "of the smaller shape", "Gap at the located instant of an impact on a component.")
 MEET_LOADED = accuracy(1e-06, "of the smaller shape", "Gap at that instant if contacts push on the component.")
 MEET_MANY = accuracy(0.0001, "of the smaller shape", "Gap at that instant if many contacts push on it.")
@@ -140,20 +141,21 @@ FIT_ROUND_OFF = round_off(1e-12, "of the size of a body",
 OUTER_FLOOR = round_off(1e-08, "of the speed",
     "Difference of the velocities that is round-off of stiff components if it does not fall.")
 PRESS_WORK_ROUND_OFF = round_off(4e-14, "of impulses times speed", "Round-off of the work of contacts of components.")
-SWEEP_WORK = work(75.0, "operations", "Work of a sweep for each contact and bounded row.")
-SWEEP_ENTRY_WORK = work(30.0, "operations", "Work of a sweep for each entry of their columns.")
-SLIP_WORK = work(250.0, "operations", "Work of a contact in a sweep beside that if it does not stick.")
-BOX_WORK = work(10.0, "operations", "Work of a sweep over boxed rows for each two of them.")
-BOX_COLUMN_WORK = work(20.0, "operations", "Work of an iteration for each entry of the columns of boxed rows.")
+SWEEP_WORK = work(38.0, "operations", "Work of a sweep for each contact and bounded row.")
+SWEEP_ENTRY_WORK = work(15.0, "operations", "Work of a sweep for each entry of their columns.")
+SLIP_WORK = work(125.0, "operations", "Work of a contact in a sweep beside that if it does not stick.")
+BOX_WORK = work(15.0, "operations", "Work of a sweep over boxed rows for each two of them.")
+BOX_ROW_WORK = work(150.0, "operations", "Work of a sweep over boxed rows for each of them.")
+BOX_COLUMN_WORK = work(27.0, "operations", "Work of an iteration for each entry of the columns of boxed rows.")
 DISC_WORK = work(700.0, "operations", "Work of a sweep over bounded rows for each two of a disc.")
-HOMOTOPY_WORK = work(7500.0, "operations", "Work of a homotopy besides that of its matrix.")
-MATRIX_WORK = work(23.0, "operations",
+HOMOTOPY_WORK = work(6000.0, "operations", "Work of a homotopy besides that of its matrix.")
+MATRIX_WORK = work(12.0, "operations",
     "Work of the matrix of a homotopy, or of a direct solution, for each of its entries.")
-CHANGE_WORK = work(75.0, "operations", "Work of a change of state in a homotopy for each unknown.")
-CHANGE_ENTRY_WORK = work(0.8, "operations", "Work of a change of state for each entry of the matrix.")
-CONTACT_WORK = work(1200.0, "operations",
+CHANGE_WORK = work(56.0, "operations", "Work of a change of state in a homotopy for each unknown.")
+CHANGE_ENTRY_WORK = work(0.6, "operations", "Work of a change of state for each entry of the matrix.")
+CONTACT_WORK = work(1300.0, "operations",
     "Work of a contact in an iteration between contacts and components, besides sweeps and homotopies.")
-INTERVAL_WORK = work(2200.0, "operations", "Work of an interval of an island with joints for each pair of shapes.")
+INTERVAL_WORK = work(6600.0, "operations", "Work of an interval of an island with joints for each pair of shapes.")
 PRESS_WORK_TAUT = round_off(1e-09, "of impulses times speed",
     "Round-off of the work of contacts on taut joints, at most.")
 CHORD = work(5, "steps of the components", "Iterations after which the response is computed anew.")
