@@ -64,7 +64,7 @@ class EECA(RunningStepper):
             world.load()
         saved, self._saved = self._saved, None
         if past is None and saved is not None and saved.resume(world, self.decisions):
-            self._use(saved.method)
+            self._use(saved.method, None)
             return
         self._use(self.make_method(world))
         loop = self.event_loop

@@ -15,7 +15,7 @@ from .report import Details, Outcome, StepReport
 from .space.sleeping import Sleep
 from .space.world import World
 from .transfer import EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES
-from .unmet import of_missed
+from .unmet import Unmet, of_missed
 
 
 class HookedStepper(PackedSpace):
@@ -33,11 +33,11 @@ class HookedStepper(PackedSpace):
             if joints.replan or joints.ends_moved:
                 loop = self.event_loop
                 assert loop is not None  # other methods refuse joints
-                world.read_states(*world.gravity, world.half_damping(dt))
+                world.read_states(*world.gravity, world.damped ** (0.5 * dt))
                 loop.rejoin(world.BODY, world.SHAPE, world.LINK, joints.linkage, joints.replan)
                 joints.planned(loop.held)
-            parted = world.find_parted()
-        if parted or (world.collisions and world.rules is not self._ruled):
+            parted = joints.parted is None and world.find_parted()
+        if parted or world.rules is not self._ruled:
             self._ruled = world.rules
             self._method.rule(world.laws())
 
@@ -51,7 +51,7 @@ class HookedStepper(PackedSpace):
             status bits or a negative code of `transfer.py`.
         """
         gx, gy = world.gravity
-        if not world.plain:
+        if world.joints is not None or world.rules is not self._ruled:
             self.adjust(world, dt)
         return self._method.step(world.reading, dt, gx, gy, half_damping)
 
@@ -106,7 +106,7 @@ class HookedStepper(PackedSpace):
         | write the states, and call `post_solve` of constraints | `_write_hooked_end` |
         """
         world = self._start_hooked(world)
-        half_damping = world.half_damping(dt)
+        half_damping: float = world.damped ** (0.5 * dt)
         try:
             if world.joints is not None:
                 world.joints.refresh()
@@ -207,20 +207,15 @@ class HookedStepper(PackedSpace):
         """After the end of the step was written: update `time`, make the report, and let the program read impulses of
         joints. `lost`: energy lost by damping 0 at the end."""
         self.time += dt
-        report = self._report(world, dt, status, outcome, lost)
-        if not world.plain:
-            world.show_joints()
-        return report
-
-    def _report(self, world: World, dt: float, status: int, outcome: Outcome, lost: float) -> StepReport:
-        """The report of the step with this outcome; `lost` is entered in its book as a loss by damping."""
         book, lock, converged, iterations = outcome
         if lost and book is not None:
             book[BOOK_DAMPING] += lost
             book[BOOK_AFTER] -= lost
-        loop = self.event_loop
-        unmet = () if converged or loop is None else partial(of_missed, loop.missed, world.bodies.items, world.owner)
+        if world.joints is not None:
+            world.show_joints(world.joints)
+        unmet: Callable[[], tuple[Unmet, ...]] | tuple[Unmet, ...] = ()
+        if not converged and (loop := self.event_loop) is not None:
+            unmet = partial(of_missed, loop.missed, world.bodies.items, world.owner)
         if not status & EVENTS:
-            return StepReport(self.time, world.empty, converged=converged, book=book, unmet=unmet)
-        details = self.details(world, dt)
-        return StepReport(self.time, details, iterations, lock, converged, book, unmet)
+            return StepReport(self.time, world.without_contacts, 0, 1.0, converged, book, unmet)
+        return StepReport(self.time, self.details(world, dt), iterations, lock, converged, book, unmet)

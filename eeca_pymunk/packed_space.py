@@ -18,7 +18,7 @@ from .impacts.run import ENERGY
 from .impacts.scene import EventLoop
 from .space.arbiters import Touches, touches_of
 from .space.checks import check_ignored
-from .space.decisions import Decisions, Rules
+from .space.decisions import NO_RULES, Decisions, Rules
 from .space.describe import describe
 from .space.sleep_groups import put_to_sleep, sleeping_groups, wake_neighbours
 from .space.sleeping import AT_FIRST, Sleep
@@ -112,9 +112,9 @@ class PackedSpace(Stepper):
         rows have changed; None for a world that was read for the first time, or after `refresh`."""
         self._use(self.make_method(world))
 
-    def _use(self, method: Method) -> None:
-        """Step the present world by this method, which has no rules yet."""
-        self._method, self._ruled = method, None
+    def _use(self, method: Method, ruled: Rules | None = NO_RULES) -> None:
+        """Step the present world by this method, which has these rules; None if they are unknown."""
+        self._method, self._ruled = method, ruled
 
     @property
     def event_loop(self) -> EventLoop | None:

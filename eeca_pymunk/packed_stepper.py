@@ -27,6 +27,7 @@ from .hooked_stepper import HookedStepper
 from .layout import WRITTEN
 from .reentry import BUSY, refuse_within
 from .report import Details, StepReport
+from .space.decisions import NO_RULES
 from .space.sleeping import Sleep
 from .space.world import World
 from .stepper import check_dt
@@ -77,7 +78,7 @@ class PackedStepper(HookedStepper):
             self.time += dt
             if self.sync:
                 self._sync.call_back()
-            return StepReport(self.time, world.empty, book=self._idle_book)
+            return StepReport(self.time, world.without_contacts, book=self._idle_book)
         if changed or (sleep.any_asleep and sleep.wake_ahead(dt)):
             world = self._update_world(anew=True)
         report = self._step(world, dt)
@@ -126,12 +127,12 @@ class PackedStepper(HookedStepper):
 
     def _calls(self, world: World) -> bool:
         """Whether a step of a world calls functions of the program."""
-        return not world.plain and (world.hooked or (world.joints is not None and world.joints.calls_back()))
+        return world.hooked or (world.joints is not None and world.joints.calls_back())
 
     def _is_silent(self, world: World, dt: float, half_damping: float) -> bool:
         """Whether a step of a world that has `only_handlers` calls none of them. If so, its states were read, and its
         rehearsal was done or left out."""
-        if self._sleep is not None or self.decisions.laws or world.rules.any_pair:
+        if self._sleep is not None or self.decisions.laws or world.rules is not NO_RULES:
             return False
         if world.joints is not None and world.joints.calls_back():
             return False
@@ -162,7 +163,7 @@ class PackedStepper(HookedStepper):
 
     def _step(self, world: World, dt: float) -> StepReport:
         """A step of the awake bodies, of the kind that the functions of the space require."""
-        half_damping = world.half_damping(dt)
+        half_damping: float = world.damped ** (0.5 * dt)
         if not world.plain and self._calls(world):
             if world.only_handlers and self._is_silent(world, dt, half_damping):
                 return self._silent_step(world, dt, half_damping)

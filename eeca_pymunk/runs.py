@@ -50,8 +50,7 @@ class RunningStepper(PackedStepper):
     def adjusted(self, dt: float) -> World:
         """The result of `current`, with joints and rules of the method updated for a step of length dt."""
         world = self.current()
-        if not world.plain:
-            self.adjust(world, dt)
+        self.adjust(world, dt)
         return world
 
     def current(self) -> World:
@@ -139,8 +138,6 @@ class RunningStepper(PackedStepper):
             return False
         if found.elasticity and bool(loop.scene.COUNT.lossy) != bool((world.SHAPE["elasticity"] < 1.0).any()):
             return False
-        if not world.collisions:
-            loop.rule({})
         loop.reset(found.reach or found.moved, found.moved)
         if sides is not None:
             sides.recall(world, loop)
@@ -172,7 +169,7 @@ class RunningStepper(PackedStepper):
         world = self.adjusted(dt)
         rows = np.array([world.bodies.row[body] for body in kept], np.int64)
         moments = 1 + steps // every if every else 0
-        buffers = RunBuffers(dt, world.gravity, world.half_damping(dt), self.time, rows, moments, every, events)
+        buffers = RunBuffers(dt, world.gravity, world.damped ** (0.5 * dt), self.time, rows, moments, every, events)
         if every:
             buffers.frames[0] = world.STATES[READ, rows, :6]
             buffers.progress.frame = 1
@@ -214,5 +211,5 @@ class RunningStepper(PackedStepper):
         if bits & FORCES:
             world.reset_forces()
         self.write_end(world, dt, bits)
-        if not world.plain:
-            world.show_joints()
+        if world.joints is not None:
+            world.show_joints(world.joints)

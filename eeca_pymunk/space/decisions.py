@@ -44,11 +44,6 @@ class Rules:
     ignored: frozenset[ShapePair] = frozenset()
     changed: Mapping[ShapePair, Law] = field(default_factory=dict)
 
-    @property
-    def any_pair(self) -> bool:
-        """Whether they are about any pair."""
-        return bool(self.ignored or self.changed)
-
     @classmethod
     def of_arbiters(cls, arbiters: Iterable[pymunk.Arbiter], world: World) -> Rules:
         """The decisions that arbiters of pymunk contain."""
@@ -75,6 +70,9 @@ class Rules:
             pair: (-1.0, 0.0, *_law(SHAPE, *pair)[2:]) if pair in never else self.changed[pair]
             for pair in sorted(never.union(self.changed))
         }
+
+
+NO_RULES = Rules()  # those of all steps in which no decision applies
 
 
 def _law(SHAPE: Rows[Shape], a: int, b: int) -> Law:

@@ -7,6 +7,7 @@ there are neither, a rehearsal would call no handler.
 from __future__ import annotations
 
 import math
+import struct
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +15,7 @@ import numpy as np
 import pymunk
 
 from ..arrays import IntArray
-from ..compiled.records import Rows, rows
+from ..compiled.records import Rows, from_bytes
 from ..layout import BODY_ROW
 from ..model.shapes import HandledShape
 from .edits import type_changes
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from .world import World
 
 _MOST = 1024  # pairs; with more of them a test of all in each step saves no time
+_HANDLED = struct.Struct("q12d")  # a `HandledShape`
 _WIDER = 0.01  # part of its size by which a box is wider than the shape, so that round-off hides no pair
 
 
@@ -45,8 +47,9 @@ class HandledPairs:
         pairs = self._pairs(list(world.records))
         place = {shape: k for k, shape in enumerate(dict.fromkeys(shape for pair in pairs or () for shape in pair))}
         self.arrays: tuple[Rows[HandledShape], IntArray] | None = None
-        HANDLED = rows(HandledShape, len(place))
-        if pairs is not None and all(_put_box(HANDLED[k], world, shape) for shape, k in place.items()):
+        boxes = [box for shape in place if (box := _box(world, shape)) is not None]
+        if pairs is not None and len(boxes) == len(place):
+            HANDLED: Rows[HandledShape] = from_bytes(HandledShape, boxes)
             # Static shapes do not meet each other, nor do those of one body.
             body = HANDLED["body"].tolist()
             found = [(place[a], place[b]) for a, b in pairs if body[place[a]] != body[place[b]]]
@@ -72,8 +75,8 @@ class HandledPairs:
         return any(one in (None, a) and two in (None, b) for a, b in found | swapped for one, two in self.handled)
 
 
-def _put_box(box: HandledShape, world: World, shape: Any) -> bool:
-    """Set the box of a shape; False if its body is not in the space, or its kind is unknown."""
+def _box(world: World, shape: Any) -> bytes | None:
+    """The `HandledShape` of a shape; None if its body is not in the space, or its kind is unknown."""
     record = world.records[shape]
     if record is None or record.outside:
         body, points, radius = shape.body, private_shapes.outline(shape), shape.radius
@@ -81,21 +84,19 @@ def _put_box(box: HandledShape, world: World, shape: Any) -> bool:
         body, points, radius = record.body, record.vertices, record.numbers[0]
     row = world.bodies.row.get(body)
     if row is None or points is None:
-        return False
-    xs, ys = [x for x, _ in points], [y for _, y in points]
+        return None
+    xs, ys = zip(*points, strict=True)
+    left, right, low, high = min(xs), max(xs), min(ys), max(ys)
+    x, y, tilt, half_x, half_y = 0.5 * (right + left), 0.5 * (high + low), 0.0, 0.5 * (right - left), 0.5 * (high - low)
     if len(points) == 2:
-        along = xs[1] - xs[0], ys[1] - ys[0]
-        box.angle, box.half_x = math.atan2(along[1], along[0]), 0.5 * math.hypot(*along)
-    else:
-        box.half_x, box.half_y = 0.5 * (max(xs) - min(xs)), 0.5 * (max(ys) - min(ys))
-    middle = pymunk.Vec2d(0.5 * (max(xs) + min(xs)), 0.5 * (max(ys) + min(ys)))
-    size, arm = math.hypot(box.half_x, box.half_y) + radius, middle - body.center_of_gravity
-    box.rounding, box.extent = radius + _WIDER * size, arm.length + size
-    box.x, box.y = arm.rotated(-box.angle)
-    if world.IDS[BODY_ROW, row] >= 0:
-        box.body = row
-        return True
-    at, angle = body.local_to_world(middle), body.angle + box.angle
-    box.body, box.at_x, box.at_y, box.reach = -1, at.x, at.y, box.rounding
-    box.cos, box.sin = math.cos(angle), math.sin(angle)
-    return True
+        dx, dy = xs[1] - xs[0], ys[1] - ys[0]
+        tilt, half_x, half_y = math.atan2(dy, dx), 0.5 * math.hypot(dx, dy), 0.0
+    cx, cy = body.center_of_gravity
+    arm_x, arm_y, c, s = x - cx, y - cy, math.cos(tilt), math.sin(tilt)
+    size = math.hypot(half_x, half_y) + radius
+    rounding, extent = radius + _WIDER * size, math.hypot(arm_x, arm_y) + size
+    box = c * arm_x + s * arm_y, c * arm_y - s * arm_x, tilt, half_x, half_y, rounding, extent
+    if world.IDS.item(BODY_ROW, row) >= 0:
+        return _HANDLED.pack(row, *box, 0.0, 0.0, 0.0, 0.0, 0.0)
+    angle, at = body.angle + tilt, body.local_to_world((x, y))
+    return _HANDLED.pack(-1, *box, *at, math.cos(angle), math.sin(angle), rounding)

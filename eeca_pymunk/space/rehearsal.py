@@ -24,7 +24,7 @@ from ..layout import BEFORE_CALL, CHANGES_BEFORE, READ, REHEARSAL_START
 from ..model.shapes import HandledShape
 from ..rehearsing import place_for_rehearsal, record_changes
 from ..transfer import TURNS
-from .decisions import Decisions, Rules
+from .decisions import NO_RULES, Decisions, Rules
 from .edits import type_changes
 from .handled_pairs import HandledPairs
 from .private import shapes as private_shapes
@@ -244,7 +244,7 @@ class Rehearsal:
         if self.decided:
             self._decision_steps = self.space.collision_persistence + 1
         if self._decision_steps <= 0 and not earlier.laws:
-            return Rules() if self.world.rules.any_pair else self.world.rules
+            return NO_RULES
         rules = earlier.rules(self.world)
         self._decision_steps = max(self._decision_steps - 1, 1.0 if rules.ignored else 0.0)
-        return rules
+        return rules if rules.ignored or rules.changed else NO_RULES

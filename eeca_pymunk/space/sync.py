@@ -74,9 +74,10 @@ class Sync:
         """Whether this step may leave the shapes late, to be reindexed when they are read. Not if pymunk has taken a
         step since the last rest step, nor if arbiters were read after the last step, other than for a picture, nor if
         reindexing costs more than a rest step."""
+        shapes = self._shapes
         if self.were_read or self._timestamp() != self._rested:
             return False
-        return not self._shapes.cost_more(self._world.moving_shapes)
+        return not (shapes.hashed and shapes.cost_more(self._world.moving_shapes))
 
     def leave_late(self, dt: float) -> None:
         """End a step that `reindexes`: the shapes are late."""
@@ -105,7 +106,8 @@ class Sync:
 
     def call_back(self) -> None:
         """Do waiting additions and removals, and call post-step callbacks."""
-        private.finish_step(self.space)
+        if self.waits():
+            private.finish_step(self.space)
 
     def accept(self) -> None:
         """Count the steps that pymunk has taken until now as parts of EECA steps."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import pymunk
@@ -12,11 +12,11 @@ import pymunk
 from ..arrays import BoolArray
 from ..impacts.scene_memory import SceneMemory
 from ..layout import BODY_ROW, KNOWN_ID
-from ..report import Details, nothing
+from ..report import nothing
 from .bodies import Bodies
 from .body_states import BodyStates
 from .checks import has_friction, settings
-from .decisions import Rules
+from .decisions import NO_RULES
 from .edits import Counts, clock, counts, edited_since
 from .hooks import Hooks
 from .joints import JointRows
@@ -45,7 +45,9 @@ class World(BodyStates):
         BODY, SHAPE, LINK, VERTEX: see `..model`.  disks, dynamic: BODY[:disks] are single disks, BODY[disks:dynamic]
             other dynamic bodies; then come kinematic bodies, and last the ground, which has all static shapes.
         STATES, IDS, EXTRA, ENDS, HOOKED: the arrays exchanged with pymunk, see `layout.py`.
-        gravity: length/time².  damping: pymunk's, the factor on velocities in one second; 1 is none.
+        gravity: length/time².  damping: pymunk's, the factor on velocities in one second; 1 is none.  damped: the
+            same, but 1 instead of 0, for which `alter_end` sets velocities to 0 at the end of the step.
+        without_contacts: function that makes the arrays of a report without contacts.
         hooks: functions of bodies and constraints.  collisions: whether the space has collision handlers.
         hooked: whether a step calls functions of bodies or handlers, or damping is 0.  only_handlers: whether collision
             handlers are the only reason for that.  plain: neither hooked nor with joints.
@@ -93,7 +95,8 @@ class World(BodyStates):
         self.eccentric = eccentric > 0
         self.patches = 0
         self.parted: set[tuple[int, int]] = set()
-        self.rules = Rules()
+        self.rules = NO_RULES
+        self.without_contacts = partial(nothing, self.bodies.items)
         self.joints: JointRows | None = None
         if past is not None and past.joints is not None:
             self.joints = past.joints
@@ -104,13 +107,14 @@ class World(BodyStates):
         """Read and check the settings of the space, and its joints if they have changed or if `anew`; record later
         changes."""
         self.gravity, self.damping = settings(self.space)
+        self.damped = self.damping or 1.0
         self._read_joints(anew)
         self._seen = [self._edits[0]]  # a list, because `current` reads its later values
         self._known = self._edits.in_place
         self.collisions = bool(private.handlers(self.space))
         if "rehearsal" in self.__dict__:
             self.rehearsal.forget_old_handlers()
-        self._forget_rules()
+        self.rules = NO_RULES
         self.hooks = Hooks(self.space, self.bodies, self.joints, *self._functions)
         self.hooked = self.collisions or self.hooks.any_body or self.damping == 0.0
         self.only_handlers = self.collisions and not self.hooks.any_body and self.damping != 0.0
@@ -119,11 +123,7 @@ class World(BodyStates):
 
     def is_silent(self) -> bool:
         """Whether collision handlers were not called in the last steps, and no decision of theirs applies."""
-        return "rehearsal" in self.__dict__ and not self.rules.any_pair and self.rehearsal.is_silent()
-
-    def _forget_rules(self) -> None:
-        if self.rules.any_pair:
-            self.rules = Rules()
+        return "rehearsal" in self.__dict__ and self.rules is NO_RULES and self.rehearsal.is_silent()
 
     def _read_joints(self, anew: bool) -> None:
         past = self.joints
@@ -170,11 +170,6 @@ class World(BodyStates):
             return private.pointers([items[i] for i in sorted(set(self.owner[: self._moving_shapes].tolist()))])
         return private.pointers(body for body, count in shape_counts(self.bodies, self.records).items() if count)
 
-    @cached_property
-    def empty(self) -> Details:
-        """The arrays of a report without contacts."""
-        return nothing(self.bodies.items)
-
     def stale(self, contents: tuple[int, ...]) -> set[Any] | None:
         """Shapes and bodies to be read again: those edited, in the space or outside, and the bodies of shapes that were
         added or removed, whose mass may have changed; None if unknown. `contents`: the result of `_count` now."""
@@ -196,21 +191,19 @@ class World(BodyStates):
             self._seen[0] = self._edits[0]
             if self.current():
                 self._known = self._edits.in_place
-                self._forget_rules()
+                self.rules = NO_RULES
             else:
                 self.read_settings()
             self.read_states(0.0, 0.0, 1.0)
         return found
 
-    def show_joints(self) -> None:
+    def show_joints(self, joints: JointRows) -> None:
         """Let the program read impulses and notches of the step. Also, where pymunk has rounded positions as it wrote
         them (`eccentric`), accept these as unedited."""
-        joints = self.joints
-        if joints is not None:
-            joints.write()
-            if self.eccentric and self.current():
-                self.gather()
-                self.accept_rounding()
+        joints.write()
+        if self.eccentric and self.current():
+            self.gather()
+            self.accept_rounding()
 
     def find_parted(self) -> bool:
         """Find the pairs of shapes that do not collide because of joints of their bodies; returns whether they have
@@ -240,7 +233,3 @@ class World(BodyStates):
     def edited(self) -> bool:
         """Whether a shape or body was edited in place."""
         return self._edits.in_place != self._known
-
-    def half_damping(self, dt: float) -> float:
-        """Factor of half a step's damping; 1 for damping 0, whose velocities `alter_end` sets to 0 at the end."""
-        return 1.0 if self.damping in (0.0, 1.0) else self.damping ** (0.5 * dt)

@@ -162,9 +162,7 @@ def step_without_end(space: pymunk.Space, dt: float) -> None:
 
 
 def finish_step(space: pymunk.Space) -> None:
-    """Do the additions and removals by callbacks of the last step, and call its post-step callbacks, if any wait."""
-    if not waits(space):
-        return
+    """Do the additions and removals by callbacks of the last step, and call its post-step callbacks."""
     added = list(space._add_later)
     space._add_later.clear()
     space.add(*added)
