@@ -28,15 +28,14 @@ class HookedStepper(PackedSpace):
         parted = False
         joints = world.joints
         if joints is not None:
-            if not joints.idle():
-                joints.update(world.state, world.bodies.row, dt)
+            joints.update(world.state, world.bodies.row, dt)
             if joints.replan or joints.ends_moved:
                 loop = self.event_loop
                 assert loop is not None  # other methods refuse joints
                 world.read_states(*world.gravity, world.damped ** (0.5 * dt))
                 loop.rejoin(world.BODY, world.SHAPE, world.LINK, joints.linkage, joints.replan)
                 joints.planned(loop.held)
-            parted = joints.parted is None and world.find_parted()
+            parted = world.find_parted()
         if parted or world.rules is not self._ruled:
             self._ruled = world.rules
             self._method.rule(world.laws())
@@ -51,7 +50,8 @@ class HookedStepper(PackedSpace):
             status bits or a negative code of `transfer.py`.
         """
         gx, gy = world.gravity
-        if world.joints is not None or world.rules is not self._ruled:
+        joints = world.joints
+        if world.rules is not self._ruled or not (joints is None or joints.unchanged()):
             self.adjust(world, dt)
         return self._method.step(world.reading, dt, gx, gy, half_damping)
 

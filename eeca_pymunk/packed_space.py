@@ -159,7 +159,8 @@ class PackedSpace(Stepper):
             self._warned = True
             warnings.warn(f"{type(self).__name__} steps on without the friction of this space", stacklevel=4)
         self.reads += 1
-        self._sync = Sync(world, WeakMethod(self._touches), None if past is None else self._sync)
+        last = None if past is None else self._sync
+        self._sync = Sync(world, WeakMethod(self._touches) if last is None else last.touches, last)
         self._sleep = Sleep(world, self._sleep, self._sync) if world.sleeps else None
         slept, self._slept = self._slept, None
         if self._sleep is not None and slept is not None:

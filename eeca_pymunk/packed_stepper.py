@@ -27,7 +27,6 @@ from .hooked_stepper import HookedStepper
 from .layout import WRITTEN
 from .reentry import BUSY, refuse_within
 from .report import Details, StepReport
-from .space.decisions import NO_RULES
 from .space.sleeping import Sleep
 from .space.world import World
 from .stepper import check_dt
@@ -129,17 +128,8 @@ class PackedStepper(HookedStepper):
         """Whether a step of a world calls functions of the program."""
         return world.hooked or (world.joints is not None and world.joints.calls_back())
 
-    def _is_silent(self, world: World, dt: float, half_damping: float) -> bool:
-        """Whether a step of a world that has `only_handlers` calls none of them. If so, its states were read, and its
-        rehearsal was done or left out."""
-        if self._sleep is not None or self.decisions.laws or world.rules is not NO_RULES:
-            return False
-        if world.joints is not None and world.joints.calls_back():
-            return False
-        return world.rehearsal.is_silent_again(dt, half_damping, self._sync)
-
     def _silent_step(self, world: World, dt: float, half_damping: float) -> StepReport:
-        """A step for which `_is_silent` has returned True."""
+        """A step that calls none of the functions of a space (`Rehearsal.is_silent_again`)."""
         left_out = world.rehearsal.left_out
         try:
             status = self.advance(world, dt, half_damping)
@@ -164,8 +154,9 @@ class PackedStepper(HookedStepper):
     def _step(self, world: World, dt: float) -> StepReport:
         """A step of the awake bodies, of the kind that the functions of the space require."""
         half_damping: float = world.damped ** (0.5 * dt)
-        if not world.plain and self._calls(world):
-            if world.only_handlers and self._is_silent(world, dt, half_damping):
+        if not world.plain and (world.hooked or self._calls(world)):
+            known = self._sleep is None and not self.decisions.laws
+            if known and world.only_handlers and world.rehearsal.is_silent_again(dt, half_damping, self._sync):
                 return self._silent_step(world, dt, half_damping)
             return self._hooked_step(world, dt)
         world.gather()
@@ -190,6 +181,6 @@ class PackedStepper(HookedStepper):
             self._undo(world, world.state)
             raise
         report = self._finish(world, dt, status, outcome)
-        if self.sync or (world.joints is not None and world.joints.calls_any()):
+        if self._sync.waits() and (self.sync or (world.joints is not None and world.joints.calls_any())):
             self._sync.call_back()
         return report

@@ -78,7 +78,8 @@ class Copy:
         T, world = job.frames.shape[1], self.world
         buffers = RunBuffers(
             job.dt, world.gravity, world.damped ** (0.5 * job.dt), 0.0, self.rows, (last - first) * T, job.every,
-            job.full, job.states[first:last], None if job.push is None else job.push[first:last], job.frames[first:last],
+            job.full, job.states[first:last], None if job.push is None else job.push[first:last],
+            job.frames[first:last],
         )  # fmt: skip
         buffers.arrays = buffers.arrays._replace(OWN=self.loop.own, FRESH=self.loop.fresh)
         RUN = buffers.progress

@@ -23,18 +23,16 @@ def read(body: pymunk.Body) -> bytes:
     Raises:
         ValueError: for a dynamic body whose mass or moment is not positive, or whose mass is not finite.
     """
-    kind, masses = _KIND[body.body_type], FIXED
+    native, mass, moment, x, y, steered, moved = private.body_values(body)
+    kind, masses = _KIND[native], FIXED
     if kind == DYNAMIC:
-        mass, moment = body.mass, body.moment
         if not (0.0 < mass < math.inf and moment > 0.0):
             raise ValueError(
                 f"{body} has mass {mass} and moment {moment}: a dynamic body needs a finite mass > 0 and a moment > 0; "
                 "set body.mass and body.moment, or the mass or density of its shapes"
             )
         masses = mass, moment, 1.0 / mass, 1.0 / moment
-    # The public properties cannot be used: they return pymunk's default when no function is set.
-    hooks = private.velocity_function(body) is not None, private.position_function(body) is not None
-    return _VALUES.pack(kind, 0, *hooks, *masses, *body.center_of_gravity, 0.0, 0.0, 0.0, -1, 0)
+    return _VALUES.pack(kind, 0, steered, moved, *masses, x, y, 0.0, 0.0, 0.0, -1, 0)
 
 
 def masses(values: bytes) -> tuple[float, ...]:

@@ -13,9 +13,9 @@ from ..errors import UnsupportedFeature
 
 def shape_body(shape: pymunk.Shape) -> pymunk.Body:
     """The body of a shape; ValueError if it has none."""
-    if shape.body is None:
+    if (body := shape.body) is None:
         raise ValueError(f"{shape} has no body: create it with its body, or remove it from the space")
-    return shape.body
+    return body
 
 
 def settings(space: pymunk.Space) -> tuple[tuple[float, float], float]:

@@ -90,6 +90,8 @@ def edited_since(time: int) -> tuple[set[Any], set[Any]] | None:
         shapes, whose mass and moment may follow. `all`: `reshaped`, and the shapes with other edits. Objects that no
         longer exist are None. None if there were more edits than `_KEPT`.
     """
+    if _clock == time:
+        return set(), set()
     if _clock - time > len(_edited):
         return None
     edited = [(thing(), reshapes) for thing, reshapes in islice(reversed(_edited), _clock - time)]

@@ -174,9 +174,10 @@ class JointRows(Listing):
         """Whether there are edited constraints that were not read since."""
         return len(self._edits.rows) > 0
 
-    def idle(self) -> bool:
-        """Whether `update` has nothing to do."""
-        return not (self._edits.rows or self.functions or self.partners.outside)
+    def unchanged(self) -> bool:
+        """Whether nothing has changed since the last step, and `update` has nothing to do."""
+        changed = self._edits.rows or self.replan or self.ends_moved or self.parted is None
+        return not (changed or self.functions or self.partners.outside)
 
     def update(self, state: FloatArray, place: Mapping[pymunk.Body, int], dt: float) -> None:
         """Update what the step needs: edited constraints, poses of partners, laws of springs with functions.

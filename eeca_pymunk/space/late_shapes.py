@@ -82,7 +82,9 @@ def late_shapes(space: pymunk.Space) -> Late:
     if not _replaced:
         _replaced = True
         _replace_readers()
-    return _known.setdefault(space, Late())
+    if (known := _known.get(space)) is None:
+        known = _known[space] = Late()
+    return known
 
 
 def move_late(space: pymunk.Space | None) -> None:

@@ -50,7 +50,9 @@ class Listing:
     def __init__(self, space: pymunk.Space, past: Listing | None) -> None:
         self.items: list[pymunk.Constraint] = list(space.constraints)
         if past is not None and past.items == self.items:
-            self.__dict__.update((name, vars(past)[name]) for name in _LISTED)
+            own, before = vars(self), vars(past)
+            for name in _LISTED:
+                own[name] = before[name]
             self.fresh: list[int] = []
             return
         known = {} if past is None else {item: (past.values[j], past.calls[j]) for item, j in past.row.items()}

@@ -62,8 +62,8 @@ def read(shape: pymunk.Shape, ground: pymunk.Body | None = None) -> ShapeRecord:
     Raises:
         ValueError, UnsupportedFeature: see `check_shape`.
     """
-    numbers, words = _surface(shape)
-    body, outline = shape_body(shape), local_outline(shape)
+    body = shape_body(shape)
+    (numbers, words), outline = _surface(shape), local_outline(shape)
     if ground is not None:
         to_world, to_ground = body.local_to_world, ground.world_to_local
         outline = [tuple(to_ground(to_world((v[0], v[1])))) for v in outline]
@@ -84,7 +84,7 @@ def _surface(shape: pymunk.Shape) -> tuple[tuple[float, ...], tuple[int, int, in
     """`numbers` and `filter` of the record of a shape."""
     numbers = private_shapes.surface(shape)
     rounding, elasticity, friction, *_ = numbers
-    if shape.body is None or not (rounding >= 0.0 and elasticity >= 0.0 and friction >= 0.0 and isfinite(sum(numbers))):
+    if not (rounding >= 0.0 and elasticity >= 0.0 and friction >= 0.0 and isfinite(sum(numbers))):
         check_shape(shape)  # raises with the name of the value; the test above costs less
     group, categories, mask = private_shapes.filter_of(shape)
     return numbers, (group & _WORD, categories & _WORD, mask & _WORD)
@@ -105,7 +105,7 @@ def records_of(
     unknown.update(thing for thing in stale if thing in records)
     for shape in shapes if unknown else ():
         if shape in unknown:
-            here = shape.body is None or shape.body in row
+            here = (body := shape.body) is None or body in row
             records[shape] = None if shape.sensor else read(shape, None if here else space.static_body)
     return records, len(unknown)
 

@@ -15,7 +15,7 @@ import numpy as np
 import pymunk
 from pymunk import batch
 
-from ..arrays import IntArray
+from ..arrays import FloatArray, IntArray
 from ..compiled.records import Rows, over, selected
 from ..errors import NotFiniteError
 from ..joints.partners import PARTNER_NOT_FINITE, read_partners
@@ -45,16 +45,22 @@ class Partners:
         """`joint`: the joints of these bodies, n + row; those of bodies that are new or differ from `past` are marked
         as EDITED."""
         self.items, self._joint, self._n = tuple(items), joint, n
-        before = {} if past is None else {body: i for i, body in enumerate(past.items)}
-        past_rows = [before.get(body, -1) for body in self.items]
-        # Rows of new bodies are written by `read_partners` below.
-        self._memory: bytearray = selected(Body, bytearray() if past is None else past._memory, past_rows)
-        self.PARTNER = over(Body, self._memory)
-        # See `read_partners`.
-        self._fixed, self._known = np.full((len(items), 3), np.nan), np.full((len(items), 6), np.nan)
-        for i, row in enumerate(past_rows):
-            if past is not None and row >= 0:
-                self._fixed[i], self._known[i] = past._fixed[row], past._known[row]
+        self.PARTNER: Rows[Body]
+        self._memory: bytearray
+        self._fixed: FloatArray  # this and the next one: see `read_partners`
+        self._known: FloatArray
+        if past is not None and past.items == self.items:
+            self._memory, self.PARTNER, self._fixed, self._known = past._memory, past.PARTNER, past._fixed, past._known
+        else:
+            before = {} if past is None else {body: i for i, body in enumerate(past.items)}
+            past_rows = [before.get(body, -1) for body in self.items]
+            # Rows of new bodies are written by `read_partners` below.
+            self._memory = selected(Body, bytearray() if past is None else past._memory, past_rows)
+            self.PARTNER = over(Body, self._memory)
+            self._fixed, self._known = np.full((len(items), 3), np.nan), np.full((len(items), 6), np.nan)
+            for i, row in enumerate(past_rows):
+                if past is not None and row >= 0:
+                    self._fixed[i], self._known[i] = past._fixed[row], past._known[row]
         # Moved static bodies of the space are found where the states of all its bodies are read.
         self.outside = [i for i, body in enumerate(self.items) if body.space is not space]
         self._clock = clock()

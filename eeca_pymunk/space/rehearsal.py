@@ -87,11 +87,17 @@ class Rehearsal:
     def is_silent_again(self, dt: float, half_damping: float, sync: Sync) -> bool:
         """Whether this step is silent as the last one was; if so, its rehearsal is done or left out here. For worlds in
         which only handlers can be called (`only_handlers`). Reads the states at the start of the step."""
-        if self._untested != _SILENT or sync is not self._sync:
+        world, pairs = self.world, self._pairs
+        if self._untested != _SILENT or sync is not self._sync or pairs is None:
             return False
-        self.world.gather()
-        self._settings = dt, *self.world.gravity, half_damping
-        if self._place(*self._settings) != 0 or not (sync.continues() and self._calls_none(near=False)):
+        if world.rules is not NO_RULES or (world.joints is not None and world.joints.calls_back()):
+            return False
+        if pairs.type_changes != type_changes() or not sync.is_ours():
+            return False
+        world.gather()
+        gx, gy = world.gravity
+        self._settings = dt, gx, gy, half_damping
+        if self._place(dt, gx, gy, half_damping) != 0:
             return False
         self._step_without_calls(dt, sync)
         return True

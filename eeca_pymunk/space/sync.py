@@ -124,7 +124,8 @@ class Sync:
             self._shapes.reindexings = private_shapes.REINDEXINGS
             private_shapes.forget_corrections(self._world.movers)
         self._be_late()
-        self.call_back()
+        if self.waits():
+            self.call_back()
 
     def is_ours(self) -> bool:
         """Whether pymunk has taken no step of its own since the last EECA step."""

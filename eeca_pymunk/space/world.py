@@ -201,7 +201,8 @@ class World(BodyStates):
         """Let the program read impulses and notches of the step. Also, where pymunk has rounded positions as it wrote
         them (`eccentric`), accept these as unedited."""
         joints.write()
-        if self.eccentric and self.current():
+        # Where the step has called no function, nothing can have changed.
+        if self.eccentric and (not (self.hooked or joints.functions or joints.calling) or self.current()):
             self.gather()
             self.accept_rounding()
 

@@ -111,6 +111,18 @@ def test_what_shapes_say_of_themselves() -> None:
     assert private_shapes.filter_of(shape) == shape.filter == (7, 1 << 31, 3)
 
 
+def test_values_of_bodies() -> None:
+    body = pymunk.Body(2.0, 3.0)
+    body.center_of_gravity = 0.5, -0.25
+    assert private.body_values(body) == (pymunk.Body.DYNAMIC, 2.0, 3.0, 0.5, -0.25, False, False)
+    body.position_func = lambda body, dt: pymunk.Body.update_position(body, dt)
+    assert private.body_values(body)[5:] == (False, True)
+    body.velocity_func = lambda body, gravity, damping, dt: pymunk.Body.update_velocity(body, gravity, damping, dt)
+    assert private.body_values(body)[5:] == (True, True)
+    body.body_type = pymunk.Body.KINEMATIC
+    assert private.body_values(body)[0] == pymunk.Body.KINEMATIC
+
+
 def test_bodies_that_sleep() -> None:
     space, bodies = pymunk.Space(), [pymunk.Body(1.0, 1.0) for _ in range(3)]
     space.add(*bodies)
