@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import struct
-from itertools import product
+from itertools import chain, product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -45,9 +45,10 @@ class HandledPairs:
         self._space, self.type_changes = world.space, type_changes()
         self.handled = private_versions.handled(world.space)
         pairs = self._pairs(list(world.records))
-        place = {shape: k for k, shape in enumerate(dict.fromkeys(shape for pair in pairs or () for shape in pair))}
+        place = {shape: k for k, shape in enumerate(dict.fromkeys(chain.from_iterable(pairs or ())))}
         self.arrays: tuple[Rows[HandledShape], IntArray] | None = None
-        boxes = [box for shape in place if (box := _box(world, shape)) is not None]
+        values = world.bodies.center_of_gravity.tolist(), world.state.tolist(), world.IDS[BODY_ROW].tolist()
+        boxes = [box for shape in place if (box := _box(world, shape, *values)) is not None]
         if pairs is not None and len(boxes) == len(place):
             HANDLED: Rows[HandledShape] = from_bytes(HandledShape, boxes)
             # Static shapes do not meet each other, nor do those of one body.
@@ -58,8 +59,8 @@ class HandledPairs:
     def _pairs(self, shapes: list[pymunk.Shape]) -> list[tuple[pymunk.Shape, pymunk.Shape]] | None:
         """All pairs of shapes whose types have handlers; None if there are more than `_MOST`."""
         of: dict[int, list[pymunk.Shape]] = {}
-        for shape in shapes:
-            of.setdefault(shape.collision_type, []).append(shape)
+        for shape, kind in zip(shapes, private_shapes.collision_types(shapes), strict=True):
+            of.setdefault(kind, []).append(shape)
         found: list[tuple[pymunk.Shape, pymunk.Shape]] = []
         for kinds in self.handled:
             one, two = (shapes if kind is None else of.get(kind, []) for kind in kinds)
@@ -75,8 +76,11 @@ class HandledPairs:
         return any(one in (None, a) and two in (None, b) for a, b in found | swapped for one, two in self.handled)
 
 
-def _box(world: World, shape: Any) -> bytes | None:
-    """The `HandledShape` of a shape; None if its body is not in the space, or its kind is unknown."""
+def _box(
+    world: World, shape: Any, centres: list[list[float]], states: list[list[float]], rows: list[int]
+) -> bytes | None:
+    """The `HandledShape` of a shape; None if its body is not in the space, or its kind is unknown. Of each body:
+    `centres`, its centre of gravity; `states`, its state; `rows`, its row in BODY."""
     record = world.records[shape]
     if record is None or record.outside:
         body, points, radius = shape.body, private_shapes.outline(shape), shape.radius
@@ -91,12 +95,14 @@ def _box(world: World, shape: Any) -> bytes | None:
     if len(points) == 2:
         dx, dy = xs[1] - xs[0], ys[1] - ys[0]
         tilt, half_x, half_y = math.atan2(dy, dx), 0.5 * math.hypot(dx, dy), 0.0
-    cx, cy = body.center_of_gravity
+    cx, cy = centres[row]
     arm_x, arm_y, c, s = x - cx, y - cy, math.cos(tilt), math.sin(tilt)
     size = math.hypot(half_x, half_y) + radius
     rounding, extent = radius + _WIDER * size, math.hypot(arm_x, arm_y) + size
     box = c * arm_x + s * arm_y, c * arm_y - s * arm_x, tilt, half_x, half_y, rounding, extent
-    if world.IDS.item(BODY_ROW, row) >= 0:
+    if rows[row] >= 0:
         return _HANDLED.pack(row, *box, 0.0, 0.0, 0.0, 0.0, 0.0)
-    angle, at = body.angle + tilt, body.local_to_world((x, y))
+    to_x, to_y, turn, *_ = states[row]
+    c, s, angle = math.cos(turn), math.sin(turn), turn + tilt
+    at = to_x + c * x - s * y, to_y + s * x + c * y
     return _HANDLED.pack(-1, *box, *at, math.cos(angle), math.sin(angle), rounding)

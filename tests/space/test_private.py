@@ -109,6 +109,8 @@ def test_what_shapes_say_of_themselves() -> None:
     shape.filter = pymunk.ShapeFilter(7, 1 << 31, 3)
     assert private_shapes.surface(shape) == (1.0, 0.25, 0.5, 3.0, -4.0)
     assert private_shapes.filter_of(shape) == shape.filter == (7, 1 << 31, 3)
+    shape.collision_type = 5
+    assert private_shapes.collision_types([shape, pymunk.Circle(None, 1.0)]) == [5, 0]
 
 
 def test_values_of_bodies() -> None:

@@ -11,6 +11,7 @@ from pymunk._chipmunk_cffi import lib
 
 OF_LIBRARY = (
     "cpShapeGetElasticity", "cpShapeGetFriction", "cpShapeGetSurfaceVelocity", "cpShapeGetFilter",
+    "cpShapeGetCollisionType",
     "cpSpaceReindexShapesForBody", "cpBodyUpdatePosition", "cpCircleShapeGetOffset", "cpSegmentShapeGetA",
     "cpSegmentShapeGetB", "cpPolyShapeGetCount", "cpPolyShapeGetVert",
 )  # fmt: skip
@@ -31,6 +32,12 @@ def filter_of(shape: pymunk.Shape) -> tuple[int, int, int]:
     """Group, categories and mask of a shape."""
     found = lib.cpShapeGetFilter(shape._shape)
     return found.group, found.categories, found.mask
+
+
+def collision_types(shapes: Iterable[pymunk.Shape]) -> list[int]:
+    """The collision types of shapes."""
+    get = lib.cpShapeGetCollisionType
+    return [get(shape._shape) for shape in shapes]
 
 
 def outline(shape: pymunk.Shape) -> list[tuple[float, ...]] | None:
