@@ -144,12 +144,17 @@ class Bodies:
         """(N, 2) length, in body coordinates."""
         return columns(self.VALUES, "centre_x", "centre_y")
 
-    @property
-    def inertia(self) -> list[bytes]:
-        """See `body_values.inertia`."""
-        if "asleep" not in self.__dict__:
-            return [body_values.inertia(values, False) for values in self._values]
-        return [body_values.inertia(*one) for one in zip(self._values, self.asleep.tolist(), strict=True)]
+    def same_inertia(self, before: Bodies) -> list[tuple[int, int]]:
+        """Rows, here and in an earlier reading, of the bodies that are not static and have the same `inertia`."""
+        old, kinds = before.row, self.VALUES["kind"].tolist()
+        at = [(i, old[body]) for body, i in self.row.items() if body in old and kinds[i] != STATIC]
+        new, known, slept = self._values, before._values, before.asleep.tolist()
+        return [
+            (i, j)
+            for i, j in at
+            if (new[i] is known[j] and not slept[j])
+            or body_values.inertia(new[i], False) == body_values.inertia(known[j], slept[j])
+        ]
 
     @cached_property
     def start(self) -> FloatArray:

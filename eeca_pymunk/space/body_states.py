@@ -16,7 +16,6 @@ from ..arrays import FloatArray, IntArray, Memory
 from ..compiled import Table
 from ..compiled.records import Rows
 from ..model.bodies import Body
-from ..model.values import STATIC
 from ..rehearsing import accept_rounding, alter_end, copy_start
 from ..transfer import FORCES, TURNS, forget_last_end, read_states, write_ends, write_stopped_ends
 from .bodies import STATE_FIELDS, Bodies
@@ -198,10 +197,7 @@ class BodyStates:
     def recall(self, before: BodyStates) -> None:
         """Copy STATES[WRITTEN] from the world before, of bodies whose mass, moment and centre of gravity are the same:
         the next step counts them as unedited unless their state differs from it."""
-        old, known = before.bodies.row, before.bodies.inertia
-        at = [(i, old.get(body, -1)) for i, body in enumerate(self.bodies.items)]
-        kinds, inertia = self.bodies.VALUES["kind"].tolist(), self.bodies.inertia
-        same = [(i, j) for i, j in at if j >= 0 and kinds[i] != STATIC and inertia[i] == known[j]]
+        same = self.bodies.same_inertia(before.bodies)
         if same:
             to, of = zip(*same, strict=True)
             self.STATES[layout.WRITTEN, to] = before.STATES[layout.WRITTEN, of]

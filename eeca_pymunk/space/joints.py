@@ -60,11 +60,23 @@ class JointRows(Listing):
         for j in self.fresh:
             self.values[j].put(self._memory, j, *self.joint["body"][j].tolist())
         self.partners: Partners = Partners(others, space, self.joint, n, None if past is None else past.partners)
-        self._edits = Edits(self.row)
-        self._timestamp = private.timestamp(space)
+        self._edits, self._timestamp = Edits(self.row), private.timestamp(space)
         self.rates: dict[pymunk.Constraint, Rate] = {} if past is None else past.rates
         self.replan, self.ends_moved, self._held = True, False, frozenset[int]()
         self._find_pushing()
+
+    def renumber(self, row: Mapping[pymunk.Body, int], n: int) -> bool:
+        """Use other rows of bodies, see `__init__`. False, with nothing done, if constraints or partners are others."""
+        others = tuple([body for body in self.bodies if body not in row])
+        if self.items != list(self.space.constraints) or others != self.partners.items:
+            return False
+        self.refresh()
+        self._n, self._row_of, self.fresh = n, {**row, **{body: n + i for i, body in enumerate(others)}}, []
+        self.joint["body"] = np.array([self._row_of[body] for body in self.bodies], np.int64)[self.ends]
+        self.partners.renumber(self.space, n)
+        self.replan, self.ends_moved, self._held = True, False, frozenset()
+        self._find_pushing()
+        return True
 
     def _find_pushing(self) -> None:
         """Find the constraints that always exert forces in a rest step, and those with a sleeping body; forget

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pymunk
 from pymunk import batch
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import IntArray
 from ..compiled.records import Rows, over, selected
 from ..errors import NotFiniteError
 from ..joints.partners import PARTNER_NOT_FINITE, read_partners
@@ -27,6 +27,15 @@ from .private import joints as private_joints
 
 _FIELDS = batch.BodyFields.POSITION | batch.BodyFields.ANGLE | batch.BodyFields.VELOCITY
 _FIELDS |= batch.BodyFields.ANGULAR_VELOCITY
+
+
+class _Reader(NamedTuple):
+    """Some bodies, their rows, and functions that read their motions, and write what has changed into the rows."""
+
+    items: Sequence[pymunk.Body]
+    rows: Sequence[int]
+    gather: Callable[[], None]
+    write: Callable[[int], int]
 
 
 class Partners:
@@ -44,27 +53,28 @@ class Partners:
     ) -> None:  # fmt: skip
         """`joint`: the joints of these bodies, n + row; those of bodies that are new or differ from `past` are marked
         as EDITED."""
-        self.items, self._joint, self._n = tuple(items), joint, n
-        self.PARTNER: Rows[Body]
-        self._memory: bytearray
-        self._fixed: FloatArray  # this and the next one: see `read_partners`
-        self._known: FloatArray
-        if past is not None and past.items == self.items:
-            self._memory, self.PARTNER, self._fixed, self._known = past._memory, past.PARTNER, past._fixed, past._known
-        else:
-            before = {} if past is None else {body: i for i, body in enumerate(past.items)}
-            past_rows = [before.get(body, -1) for body in self.items]
-            # Rows of new bodies are written by `read_partners` below.
-            self._memory = selected(Body, bytearray() if past is None else past._memory, past_rows)
-            self.PARTNER = over(Body, self._memory)
-            self._fixed, self._known = np.full((len(items), 3), np.nan), np.full((len(items), 6), np.nan)
-            for i, row in enumerate(past_rows):
-                if past is not None and row >= 0:
-                    self._fixed[i], self._known[i] = past._fixed[row], past._known[row]
+        self.items, self._joint = tuple(items), joint
+        before = {} if past is None else {body: i for i, body in enumerate(past.items)}
+        past_rows = [before.get(body, -1) for body in self.items]
+        # Rows of new bodies are written by `read_partners` below.
+        self._memory: bytearray = selected(Body, bytearray() if past is None else past._memory, past_rows)
+        self.PARTNER = over(Body, self._memory)
+        # See `read_partners`.
+        self._fixed, self._known = np.full((len(items), 3), np.nan), np.full((len(items), 6), np.nan)
+        for i, row in enumerate(past_rows):
+            if past is not None and row >= 0:
+                self._fixed[i], self._known[i] = past._fixed[row], past._known[row]
+        self._all = self._reader(range(len(self.items)))
+        self.renumber(space, n)
+
+    def renumber(self, space: pymunk.Space, n: int) -> None:
+        """Read all bodies, whose numbers begin with n from now on."""
         # Moved static bodies of the space are found where the states of all its bodies are read.
-        self.outside = [i for i, body in enumerate(self.items) if body.space is not space]
+        self._n, self.outside = n, [i for i, body in enumerate(self.items) if body.space is not space]
+        self.__dict__.pop("_outside", None)
         self._clock = clock()
-        self._read(range(len(self.items)))()
+        self._find_fixed(range(len(self.items)))
+        self._read(self._all)
         self.still: IntArray = (self._fixed[:, 2] < 0.0).astype(np.int64)
 
     def read(self) -> int:
@@ -73,11 +83,11 @@ class Partners:
         if self._clock != (now := clock()):
             self._find_fixed(self.outside)
             self._clock = now
-        return self._read_outside()
+        return self._read(self._outside)
 
     @cached_property
-    def _read_outside(self) -> Callable[[], int]:
-        return self._read(self.outside)
+    def _outside(self) -> _Reader:
+        return self._reader(self.outside)
 
     def _find_fixed(self, rows: Sequence[int]) -> None:
         """Read the centres of gravity and the kinds of the bodies of these rows, which only setters change."""
@@ -86,28 +96,27 @@ class Partners:
             if now != tuple(self._fixed[i].tolist()):
                 self._fixed[i], self._known[i] = now, np.nan
 
-    def _read(self, rows: Sequence[int]) -> Callable[[], int]:
-        """A function that reads the bodies of these rows, whose centres of gravity are read now."""
-        self._find_fixed(rows)
+    def _reader(self, rows: Sequence[int]) -> _Reader:
+        """What `_read` takes, for the bodies of these rows."""
         items = [self.items[i] for i in rows]
         motion = np.zeros(6 * (len(rows) + 1))  # room for one body more, see `private_batch.reader`
         gather = private_batch.reader_of(items, _FIELDS, motion)
         write = read_partners.bind(
             motion, np.array(rows, np.int64), self._fixed, self._known, self.PARTNER, self._joint
         )  # fmt: skip
+        return _Reader(items, rows, gather, write)
 
-        def read() -> int:
-            gather()
-            status = write(self._n)
-            if status == PARTNER_NOT_FINITE:
-                body = items[np.isnan(self._known[rows, 0]).argmax()]
-                raise NotFiniteError(
-                    f"{body}, which a constraint holds, has position {body.position}, angle {body.angle}, velocity "
-                    f"{body.velocity} and angular velocity {body.angular_velocity}: set finite values before stepping"
-                )
-            return status
-
-        return read
+    def _read(self, reader: _Reader) -> int:
+        """Read bodies; returns how many static ones have moved."""
+        reader.gather()
+        status = reader.write(self._n)
+        if status == PARTNER_NOT_FINITE:
+            body = reader.items[np.isnan(self._known[reader.rows, 0]).argmax()]
+            raise NotFiniteError(
+                f"{body}, which a constraint holds, has position {body.position}, angle {body.angle}, velocity "
+                f"{body.velocity} and angular velocity {body.angular_velocity}: set finite values before stepping"
+            )
+        return status
 
     def motion(self, i: int) -> tuple[float, float, float, float, float, float]:
         """Position of the origin (2), angle, velocity (2) and spin of the body in row i, as last read."""

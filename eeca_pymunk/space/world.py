@@ -131,8 +131,9 @@ class World(BodyStates):
             self.joints = None
         elif anew or past is None or past.items != list(self.space.constraints):
             rows = {b: r for b, r in zip(self.bodies.items, self.IDS[BODY_ROW].tolist(), strict=True) if r >= 0}
-            self.joints = JointRows(self.space, rows, len(self.BODY), past)
-            self.objects_read += len(self.joints.fresh)
+            if past is None or not past.renumber(rows, len(self.BODY)):
+                self.joints = past = JointRows(self.space, rows, len(self.BODY), past)
+            self.objects_read += len(past.fresh)
 
     @cached_property
     def rehearsal(self) -> Rehearsal:

@@ -407,6 +407,43 @@ def test_partners_have_the_pose_of_their_centre_of_gravity_and_velocities_if_kin
         assert (found.vx, found.vy, found.spin) == speeds
 
 
+def test_rows_of_joints_are_used_again_when_only_bodies_come_and_go(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Then rows of bodies have other numbers. The path is that of rows that are made anew, bit by bit."""
+    ends = []
+    for again in (True, False):
+        with monkeypatch.context() as patched:
+            if not again:
+                patched.setattr(JointRows, "renumber", lambda *_: False)
+            space = empty()
+            hand = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+            links = [body(space, 1.0, 0.1, (x, -1.0)) for x in (0.5, 1.5)]
+            pins = pymunk.PinJoint(hand, links[0]), pymunk.PivotJoint(links[0], links[1], (1.0, -1.0))
+            space.add(*pins)
+            stepper, guests, seen = ep.EECA(space), [], []
+            for k in range(40):
+                if k % 4 == 1:
+                    ball = pymunk.Body(1.0, 1.0)
+                    ball.position = 3.0 * k, 5.0
+                    guests.append((ball, pymunk.Circle(ball, 0.5)))
+                    space.add(*guests[-1])
+                if k % 8 == 5:
+                    space.remove(*guests.pop(0))
+                if k % 4 == 2:
+                    hand.position += 0.01, 0.0
+                if k == 21:
+                    pins[1].max_force = 3.0
+                if k == 29:
+                    space.remove(links[1], pins[1])
+                if k == 33:
+                    space.add(links[1], pins[1], hand)
+                stepper.step(DT)
+                assert stepper._world is not None
+                seen.append(stepper._world.joints)
+            assert (seen[1] is seen[0], seen[29] is seen[28], seen[33] is seen[32]) == (again, False, False)
+            ends.append([(*b.position, b.angle, *b.velocity, b.angular_velocity) for b in space.bodies])
+    assert ends[0] == ends[1]
+
+
 def test_only_joints_of_partners_that_move_are_touched() -> None:
     space = empty(0.0)
     hand, post = (pymunk.Body(body_type=kind) for kind in (pymunk.Body.KINEMATIC, pymunk.Body.STATIC))
