@@ -21,6 +21,7 @@ import pymunk
 
 from ..errors import UnsupportedFeature
 from ..model import joints
+from .private import joints as private_joints
 
 _SMALL = 1e-9  # a pin is a pivot if its length, over the largest coordinate of its anchors, is at most this
 _KINDS = (
@@ -116,8 +117,8 @@ class ConstraintValues(NamedTuple):
     def is_fine(self) -> bool:
         """Whether all values are valid. A fast test; if it fails, `check_constraint` tests each value."""
         (force, error, bias), (lower, upper), (stiffness, damping, rest) = self.force, self.limits, self.spring
-        total = sum(self.anchor_a) + sum(self.anchor_b) + self.length + sum(self.groove) + stiffness + damping + rest
-        total += sum(self.gear) + self.rate + sum(self.ratchet)
+        numbers = *self.anchor_a, *self.anchor_b, *self.groove, *self.gear, *self.ratchet, stiffness, damping, rest
+        total = sum(numbers) + self.length + self.rate
         signs = force >= 0.0 and 0.0 <= error <= 1.0 and bias >= 0.0 and damping >= 0.0 and self.length >= 0.0
         zero = self.kind == joints.GEAR and self.gear[0] == 0.0
         return (
@@ -148,7 +149,7 @@ def read(c: Any) -> ConstraintValues:
     """
     if isinstance(c, pymunk.RatchetJoint) or not isinstance(c, _KINDS):
         check_constraint(c)  # first, because `_notch` divides by `ratchet`
-    found = _read(c, (c.max_force, c.error_bias, c.max_bias))
+    found = _read(c, private_joints.bounds(c))
     if not found.is_fine():
         check_constraint(c)
     return found

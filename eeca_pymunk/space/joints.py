@@ -108,7 +108,8 @@ class JointRows(Listing):
         regroup = False  # whether `find_functions` and `_find_pushing` may find other constraints
         for j, values in found.items():
             item, before = self.items[j], self.values[j]
-            values.put(self._memory, j, *(self._row_of[body] for body in self.pairs[item]))
+            a, b = self.pairs[item]
+            values.put(self._memory, j, self._row_of[a], self._row_of[b])
             self.values[j] = values
             if before.shape != values.shape:
                 self.ends_moved |= before.reach != values.reach
@@ -116,9 +117,8 @@ class JointRows(Listing):
                     self.replan = regroup = True
             elif before.gear != values.gear and any(self._is_fixed(body) for body in self.pairs[item]):
                 self.ends_moved = True
-            calls = calls_of(item)
-            regroup |= calls != self.calls[j]
-            self.calls[j] = calls
+            if edited[j] and (calls := calls_of(item)) != self.calls[j]:
+                self.calls[j], regroup = calls, True
         if regroup:
             self.find_functions()
             self._find_pushing()

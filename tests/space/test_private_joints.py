@@ -32,6 +32,12 @@ def noting(calls: list[str], name: str) -> Callable[..., None]:
     return lambda *_: calls.append(name)
 
 
+def test_bounds_of_a_constraint() -> None:
+    _, _, pin = hanging()
+    pin.max_force, pin.error_bias, pin.max_bias = 3.0, 0.25, 0.5
+    assert private_joints.bounds(pin) == (3.0, 0.25, 0.5)
+
+
 def test_replaced_functions_of_a_constraint_are_called_in_the_place_of_its_own() -> None:
     space, _, pin = hanging()
     calls: list[str] = []
