@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from ..compiled import nonallocating
 from ..compiled.records import Rows
-from ..model.joint_steps import POSES, SPEEDS, BodyStep, JointLedger
+from ..model.joint_steps import POSES, SPEEDS, STEP, BodyStep, JointLedger
 from ..model.joints import DUAL, Workspace
 from ..model.parameters import joints
 from ..newton.entries import acts
@@ -128,8 +128,8 @@ def restore_speeds(W: Workspace) -> None:
 
 @nonallocating
 def release(W: Workspace, what: int) -> bool:
-    """Release the limit that pulls most, lam side > 0; False if none pulls. STEP: by its impulse. SPEEDS: by
-    that of a projection, by more than round-off, and unless it was released in this part of the step already."""
+    """Release the limit that pulls most, lam side > 0; False if none pulls. STEP: by its impulse. SPEEDS: by that of
+    a projection, by more than round-off, and unless it was released in this part of the step already."""
     hinge, link = W.J.HINGE, W.link
     which, most = -1, 0.0
     for k in range(W.joints):
@@ -139,7 +139,7 @@ def release(W: Workspace, what: int) -> bool:
         pull = side * (hinge[k].pushed[last] if what == SPEEDS else hinge[k].lam[last])
         if pull > max(most, noise(W, k, last) if what == SPEEDS else 0.0):
             which, most = k, pull
-    if which >= 0 and what == POSES:
+    if which >= 0 and what == STEP:
         link[which].let_go = link[which].side
         hinge[which].lam[link[which].rows - 1] = 0.0
     if which >= 0:
