@@ -129,6 +129,14 @@ def test_rooms_have_few_files(path: Path) -> None:
     assert len(list(path.glob("*.py"))) <= MOST_FILES
 
 
+MOST_LINES = 250
+
+
+@pytest.mark.parametrize("path", FILES, ids=name)
+def test_files_are_short(path: Path) -> None:
+    assert len(path.read_text().splitlines()) <= MOST_LINES
+
+
 MOST_ARGUMENTS = 12
 
 

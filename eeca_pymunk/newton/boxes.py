@@ -27,17 +27,7 @@ from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.joints import BOXED, Coupling, Workspace
-from ..model.parameters.joints import (
-    BOX_COLUMN_WORK,
-    BOX_REDUNDANT,
-    BOX_RESIDUAL,
-    BOX_ROUNDS,
-    BOX_ROW_WORK,
-    BOX_SWEEPS,
-    BOX_WORK,
-    DISC_WORK,
-    MOTOR_OFF,
-)
+from ..model.parameters import joints as parameters
 from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, on_half_disc, on_interval
 from .condensed import factor, substitute
 from .dual import STRIDE
@@ -106,7 +96,7 @@ def measure_boxes(W: Workspace, w: int, u: int, n: int, h: float, fresh: bool) -
                 speeds = abs(hinge[k].target[r])  # whose sum u is
                 for c in range(6):
                     speeds += abs(hinge[k].rows[r, c] * W.J.LOCAL[link[k].body[c // 3]].v1[c % 3])
-                if abs(more[u + row]) <= MOTOR_OFF * speeds:
+                if abs(more[u + row]) <= parameters.MOTOR_OFF * speeds:
                     more[u + row] = 0.0  # no impulse changes round-off
             more[u + n + row] = hinge[k].lam[r]
             more[u + 2 * n + row], more[u + 3 * n + row] = interval_of(link, k, r, hinge[k].bound * abs(h))
@@ -172,7 +162,7 @@ def direct_boxes(more: FloatArray, w: int, u: int, n: int) -> None:
             both = more[step + n + i] > 0.0 and more[step + n + j] > 0.0
             more[lu + i * width + n - 1 + j - i] = more[w + i * n + j] if both else 0.0
         pivot = more[lu + i * width + n - 1]
-        more[lu + i * width + n - 1] = pivot * (1.0 + BOX_REDUNDANT) if pivot > 0.0 else 1.0
+        more[lu + i * width + n - 1] = pivot * (1.0 + parameters.BOX_REDUNDANT) if pivot > 0.0 else 1.0
     matrix = more[lu : lu + n * width]
     if not factor(matrix, n, n - 1):
         return
@@ -196,14 +186,14 @@ def count_discs(more: FloatArray, u: int, n: int) -> int:
 def solve_boxes(more: FloatArray, w: int, u: int, n: int) -> int:
     """Solve for the impulses within their bounds, by sweeps and direct solutions in turn; how many sweeps it took."""
     sweeps = 0
-    for turn in range(BOX_ROUNDS):
+    for turn in range(parameters.BOX_ROUNDS):
         worst = 1.0
-        for _ in range(BOX_SWEEPS):
+        for _ in range(parameters.BOX_SWEEPS):
             worst = sweep_boxes(more, w, u, n)
             sweeps += 1
-            if worst <= BOX_RESIDUAL:
+            if worst <= parameters.BOX_RESIDUAL:
                 return sweeps
-        if turn + 1 < BOX_ROUNDS:
+        if turn + 1 < parameters.BOX_ROUNDS:
             direct_boxes(more, w, u, n)
     return sweeps
 
@@ -237,9 +227,9 @@ def bound_impulses(W: Workspace, n: int, h: float, fresh: bool) -> None:
     w = STRIDE * component.dual_size + (n + 1) * (component.unknowns + component.impulses)
     u = w + 3 * n * n
     measure_boxes(W, w, u, n, h, fresh)
-    sweep = n * (BOX_ROW_WORK + BOX_WORK * n) + DISC_WORK * count_discs(W.J.MORE, u, n)
+    sweep = n * (parameters.BOX_ROW_WORK + parameters.BOX_WORK * n) + parameters.DISC_WORK * count_discs(W.J.MORE, u, n)
     W.J.PROGRESS.effort += sweep * solve_boxes(W.J.MORE, w, u, n)
-    W.J.PROGRESS.effort += BOX_COLUMN_WORK * n * (component.unknowns + component.impulses)
+    W.J.PROGRESS.effort += parameters.BOX_COLUMN_WORK * n * (component.unknowns + component.impulses)
     apply_boxes(W, u, n)
 
 
