@@ -168,6 +168,11 @@ def equilibrium(
     LEFT, Y, DY, V, f = np.empty((k, 3)), np.zeros((k, 3)), np.zeros((k, 3)), np.empty((k, 3)), np.empty((n, 3))
     if K == 0:
         return fastest_point(START, EXTENT, n) <= tolerance, 0  # without contacts START is that motion
+    copy(LEFT, START)
+    add_impulses(G, EDGE, False, K, IM, II, LEFT)
+    if fastest_point(LEFT, EXTENT, n) <= tolerance:  # the guess balances
+        impulses_of(problem.ROWS, EDGE, OF, K, L, m)
+        return True, 0
     held, stuck = np.ones(K, np.int64), np.zeros(K, np.int64)
     SCALE, factor = roots_of(IM, II), make_factor(G, K, n, held, problem.POSE)
     problem_of_edges = Problem(G, IM, II, problem.POSE, n, K)
