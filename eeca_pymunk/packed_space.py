@@ -138,19 +138,17 @@ class PackedSpace(Stepper):
     def _update_world(self, anew: bool = False) -> World:
         """The present space as a checked World: the last one if only settings changed, that one patched, or a new
         reading (always if `anew`)."""
-        world = self._world
-        self._world = None
+        past, self._world = self._world, None
         self._put_copy_to_sleep()
         if self._sleep is not None and self.space.sleep_time_threshold == math.inf:
             self._sleep.wake()
             self._sleep, anew = None, True
-        if world is not None and world.same_things():
-            if not (anew or world.edited()):
-                return self._update_settings(world)
-            if self._patchable(world) and self.patch(world):
+        if past is not None and past.same_things():
+            if not (anew or past.edited()):
+                return self._update_settings(past)
+            if self._patchable(past) and self.patch(past):
                 self.patches += 1
-                return self._adopt(world)
-        past = world
+                return self._adopt(past)
         if self._sleep is not None:
             self._sleep.wake_changed()
             wake_neighbours(self.space)

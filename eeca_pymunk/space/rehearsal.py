@@ -14,6 +14,7 @@ which overwrites the motion of the rehearsal.
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import nullcontext
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -88,16 +89,14 @@ class Rehearsal:
         """Whether this step is silent as the last one was; if so, its rehearsal is done or left out here. For worlds in
         which only handlers can be called (`only_handlers`). Reads the states at the start of the step."""
         world, pairs = self.world, self._pairs
-        if self._untested != _SILENT or sync is not self._sync or pairs is None:
+        if self._untested != _SILENT or sync is not self._sync or pairs is None or world.rules is not NO_RULES:
             return False
-        if world.rules is not NO_RULES or (world.joints is not None and world.joints.calls_back()):
-            return False
-        if pairs.type_changes != type_changes() or not sync.is_ours():
+        calls = world.joints is not None and world.joints.calls_back()
+        if calls or pairs.type_changes != type_changes() or not sync.is_ours():
             return False
         world.gather()
-        gx, gy = world.gravity
-        self._settings = dt, gx, gy, half_damping
-        if self._place(dt, gx, gy, half_damping) != 0:
+        self._settings = dt, *world.gravity, half_damping
+        if self._place(*self._settings) != 0:
             return False
         self._step_without_calls(dt, sync)
         return True
@@ -180,17 +179,13 @@ class Rehearsal:
 
     def _step(self, dt: float) -> None:
         hooks = self.world.hooks
-        if hooks.joints is None or hooks.none_within_steps():
-            with hooks.silent:
-                private.step_without_end(self.space, dt)
-        else:
-            with hooks.silent, silent_joints(self, hooks.joints):
-                private.step_without_end(self.space, dt)
+        called = None if hooks.joints is None or hooks.none_within_steps() else hooks.joints
+        with hooks.silent, nullcontext() if called is None else silent_joints(self, called):
+            private.step_without_end(self.space, dt)
 
     def _bound(self, pairs: HandledPairs | None) -> Callable[[float, float, float, float], int]:
         """`rehearsing.place_for_rehearsal`, for these pairs."""
-        arrays = None if pairs is None else pairs.arrays
-        return place_for_rehearsal.bind(self.world.reading, *(arrays or _NO_PAIRS))
+        return place_for_rehearsal.bind(self.world.reading, *((pairs and pairs.arrays) or _NO_PAIRS))
 
     def _calls_none(self, near: bool) -> bool:
         """Whether pymunk's step would call nothing. `near`: whether a pair may meet in it, or soon after."""
@@ -201,9 +196,8 @@ class Rehearsal:
             self._pairs, self._untested = HandledPairs(self.world), 0
             self._place = self._bound(self._pairs)
             near = self._place(*self._settings) > 0
-        if near or self._pairs.arrays is None:
-            return False
-        return self._untested == _SILENT or not self._pairs.remembered()
+        tested = not near and self._pairs.arrays is not None
+        return tested and (self._untested == _SILENT or not self._pairs.remembered())
 
     def take_left_out_step(self) -> None:
         """Take the step of pymunk that was left out, for its arbiters, unless the space has other bodies now."""
