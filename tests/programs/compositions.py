@@ -36,6 +36,7 @@ from .outside import Outside
 LENGTHS = (1e-3, 3e-2, 1.0, 10.0, 50.0)
 STEPS = (1 / 240, 1 / 60, 1 / 30, 1 / 10)
 LONGEST, NATIVE, SHORT = 0.02, 100, 1 / 30  # s of a step, or native steps, of steps of up to SHORT
+REPEATS = 12  # of a step that is too long: processor times vary by half on machines that others share
 CLOSES = 1e-11
 CHANGES = 1e-12  # by which the change of a ledger may differ from that of the space's own energy, over the scale
 OVERSPENT = 1.5  # work of a step whose budget is spent, over the budget: the last event may go beyond
@@ -273,9 +274,9 @@ class Composition:
         return again.saved()
 
     def _again(self, start: bytes) -> tuple[float, int]:
-        """The processor time (s) of the next step of a saved run, the least of four, and 1 if it is too long."""
+        """The processor time (s) of the next step of a saved run, the least of REPEATS, and 1 if it is too long."""
         least = limit = math.inf
-        for _ in range(4):
+        for _ in range(REPEATS):
             _, stepper = pickle.loads(start)
             native, _ = pickle.loads(start)
             stepper.current()  # reads the space, as a run has done before
