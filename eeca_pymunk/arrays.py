@@ -26,10 +26,10 @@ _HUGE = 1 << 22  # bytes of an allocation from which numpy asks for huge pages
 _SPARE = 4  # memory is replaced if larger than this times the need plus a huge page
 
 
-def addresses_of(arrays: Iterable[Any], cast: Any = _ffi.cast, memory_of: Any = _ffi.from_buffer) -> list[int]:
+def addresses_of(arrays: Iterable[Any]) -> list[int]:
     """Memory addresses of arrays, or of records in some."""
     # numpy's `ctypes` takes four times as long; `__array_interface__`, which describes all fields of records, forty.
-    return [int(cast(_ADDRESS, memory_of(array))) for array in arrays]
+    return [int(_ffi.cast(_ADDRESS, _ffi.from_buffer(array))) for array in arrays]
 
 
 def address_of(array: Any) -> int:

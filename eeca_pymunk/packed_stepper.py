@@ -154,7 +154,7 @@ class PackedStepper(HookedStepper):
     def _step(self, world: World, dt: float) -> StepReport:
         """A step of the awake bodies, of the kind that the functions of the space require."""
         half_damping: float = world.damped ** (0.5 * dt)
-        if not world.plain and (world.hooked or self._calls(world)):
+        if not world.plain and self._calls(world):
             known = self._sleep is None and not self.decisions.laws
             if known and world.only_handlers and world.rehearsal.is_silent_again(dt, half_damping, self._sync):
                 return self._silent_step(world, dt, half_damping)
@@ -181,6 +181,6 @@ class PackedStepper(HookedStepper):
             self._undo(world, world.state)
             raise
         report = self._finish(world, dt, status, outcome)
-        if self._sync.waits() and (self.sync or (world.joints is not None and world.joints.calls_any())):
+        if self.sync or (world.joints is not None and world.joints.calls_any()):
             self._sync.call_back()
         return report

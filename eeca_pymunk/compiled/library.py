@@ -20,12 +20,13 @@ from typing import Any
 
 import _cffi_backend
 
+from ..arrays import address_of
 from .entries import ENTRIES, dtype_of, is_array
 from .sources import sources_hash
 
 NO_MEMORY, NO_SHAPE = -(1 << 63), -(1 << 63) + 1  # returned if an array cannot be created; if shapes do not fit
 _ffi = _cffi_backend.FFI()
-_WORDS, _ADDRESS = _ffi.typeof("int64_t[]"), _ffi.typeof("uintptr_t")
+_WORDS = _ffi.typeof("int64_t[]")
 
 
 class Status(enum.Enum):
@@ -89,7 +90,6 @@ class Entry:
         if 0 < len(arrays) == len(known) and not any(map(operator.is_not, arrays, known)):
             return call
         words: list[int] = []
-        cast, memory_of = _ffi.cast, _ffi.from_buffer  # as `address_of` does
         for place, (wanted, array) in enumerate(zip(self._wanted, arrays, strict=True)):
             if wanted is None:
                 words.append(array.address)
@@ -100,7 +100,7 @@ class Entry:
                     f"{self.name} takes a C-contiguous {self.kinds[self._arrays[place]]}, not "
                     f"{array.dtype.type.__name__} of shape {array.shape} with strides {array.strides}"
                 )
-            words.append(int(cast(_ADDRESS, memory_of(array))))
+            words.append(address_of(array))
             words += array.shape
         # A pointer is passed in half the time of a number.
         call = functools.partial(self.function, _ffi.new(_WORDS, words))

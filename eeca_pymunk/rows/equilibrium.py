@@ -22,7 +22,7 @@ from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, zeros
 from ..model.contacts import EDGE as EDGE_KIND
-from ..model.contacts import ROW, Edge, Problem
+from ..model.contacts import ROW, Edge, Problem, Row
 from ..model.parameters.impulses import PROXIMAL_STATICS
 from ..model.parameters.rest import STATICS_GAP, STATICS_START, STATICS_STEP
 from .build import normal_rate
@@ -143,6 +143,18 @@ def update_iterate(EDGE: Rows[Edge], K: int, Y: FloatArray, DY: FloatArray, prim
             Y[i, c] += dual * DY[i, c]
 
 
+@nonallocating
+def leave(
+    G: Rows[Row], EDGE: Rows[Edge], K: int, IM: FloatArray, II: FloatArray, START: FloatArray, EXTENT: FloatArray,
+    n: int, LEFT: FloatArray,
+) -> float:  # fmt: skip
+    """Set LEFT (k, 3), the velocities that the impulses x of the K edges leave of START; the speed of the fastest point
+    of the first n bodies."""
+    copy(LEFT, START)
+    add_impulses(G, EDGE, False, K, IM, II, LEFT)
+    return fastest_point(LEFT, EXTENT, n)
+
+
 @kernel
 def equilibrium(
     problem: Problem, L: FloatArray, START: FloatArray, EXTENT: FloatArray, tolerance: float, most: int, nearest: bool
@@ -168,9 +180,8 @@ def equilibrium(
     LEFT, Y, DY, V, f = np.empty((k, 3)), np.zeros((k, 3)), np.zeros((k, 3)), np.empty((k, 3)), np.empty((n, 3))
     if K == 0:
         return fastest_point(START, EXTENT, n) <= tolerance, 0  # without contacts START is that motion
-    copy(LEFT, START)
-    add_impulses(G, EDGE, False, K, IM, II, LEFT)
-    if fastest_point(LEFT, EXTENT, n) <= tolerance:  # the guess balances
+    speed = leave(G, EDGE, K, IM, II, START, EXTENT, n, LEFT)
+    if speed <= tolerance:  # the guess balances
         impulses_of(problem.ROWS, EDGE, OF, K, L, m)
         return True, 0
     held, stuck = np.ones(K, np.int64), np.zeros(K, np.int64)
@@ -178,9 +189,6 @@ def equilibrium(
     problem_of_edges = Problem(G, IM, II, problem.POSE, n, K)
     found, free, first = False, True, 0.0
     for done in range(most + 1):
-        copy(LEFT, START)
-        add_impulses(G, EDGE, False, K, IM, II, LEFT)
-        speed = fastest_point(LEFT, EXTENT, n)
         centre = mean_product(EDGE, K, 0.0, 0.0)
         if speed <= tolerance:
             found = True
@@ -201,8 +209,9 @@ def equilibrium(
             # Without regard to the cones, the nearest balancing impulses need one linear solve: often they are inside.
             free = moves_into_cones(EDGE, K)
             first = mean_product(EDGE, K, 0.0, 0.0)
-            continue
-        aim = centre * (mean_product(EDGE, K, step_length(EDGE, K, False), step_length(EDGE, K, True)) / centre) ** 3
-        newton_step(problem_of_edges, EDGE, SCALE, factor, LEFT, Y, f, V, DY, aim, True)
-        update_iterate(EDGE, K, Y, DY, step_length(EDGE, K, False), step_length(EDGE, K, True))
+        else:
+            reduced = mean_product(EDGE, K, step_length(EDGE, K, False), step_length(EDGE, K, True)) / centre
+            newton_step(problem_of_edges, EDGE, SCALE, factor, LEFT, Y, f, V, DY, centre * reduced**3, True)
+            update_iterate(EDGE, K, Y, DY, step_length(EDGE, K, False), step_length(EDGE, K, True))
+        speed = leave(G, EDGE, K, IM, II, START, EXTENT, n, LEFT)
     return found, most

@@ -38,15 +38,12 @@ class JointRows(Listing):
             that other bodies may be held by joints (`..joints.pinned`).
     """
 
-    def __init__(
-        self, space: pymunk.Space, row: Mapping[pymunk.Body, int], n: int, past: JointRows | None = None
-    ) -> None:
+    def __init__(self, space: pymunk.Space, row: Mapping[pymunk.Body, int], n: int, past: JointRows | None) -> None:
         """Read the constraints of `space`. `row`: row in BODY (of n rows) of its bodies. Rows of `past` are used again.
 
         Raises:
             ValueError, UnsupportedFeature: see `check_constraint`.  NotFiniteError: see `Partners`.
         """
-        self.space, self._n = space, n
         if past is not None:
             past.refresh()
         super().__init__(space, past)
@@ -55,15 +52,19 @@ class JointRows(Listing):
         self.joint = over(Joint, self._memory)
         self._impulses = ConstraintImpulses(space, self.joint)
         others = [body for body in self.bodies if body not in row]
-        self._row_of = {**row, **{body: n + i for i, body in enumerate(others)}}
-        self.joint["body"] = np.array([self._row_of[body] for body in self.bodies], np.int64)[self.ends]
+        self._number(row, n, others)
         for j in self.fresh:
             self.values[j].put(self._memory, j, *self.joint["body"][j].tolist())
         self.partners: Partners = Partners(others, space, self.joint, n, None if past is None else past.partners)
         self._edits, self._timestamp = Edits(self.row), private.timestamp(space)
         self.rates: dict[pymunk.Constraint, Rate] = {} if past is None else past.rates
-        self.replan, self.ends_moved, self._held = True, False, frozenset[int]()
         self._find_pushing()
+
+    def _number(self, row: Mapping[pymunk.Body, int], n: int, others: Sequence[pymunk.Body]) -> None:
+        """Write the numbers of bodies: those of `row`, and from n on of `others`. Components need a new plan."""
+        self._n, self._row_of = n, {**row, **{body: n + i for i, body in enumerate(others)}}
+        self.joint["body"] = np.array([self._row_of[body] for body in self.bodies], np.int64)[self.ends]
+        self.replan, self.ends_moved, self._held = True, False, frozenset[int]()
 
     def renumber(self, row: Mapping[pymunk.Body, int], n: int) -> bool:
         """Use other rows of bodies, see `__init__`. False, with nothing done, if constraints or partners are others."""
@@ -71,10 +72,9 @@ class JointRows(Listing):
         if self.items != list(self.space.constraints) or others != self.partners.items:
             return False
         self.refresh()
-        self._n, self._row_of, self.fresh = n, {**row, **{body: n + i for i, body in enumerate(others)}}, []
-        self.joint["body"] = np.array([self._row_of[body] for body in self.bodies], np.int64)[self.ends]
+        self._number(row, n, others)
+        self.fresh = []
         self.partners.renumber(self.space, n)
-        self.replan, self.ends_moved, self._held = True, False, frozenset()
         self._find_pushing()
         return True
 

@@ -48,7 +48,7 @@ class Listing:
     """
 
     def __init__(self, space: pymunk.Space, past: Listing | None) -> None:
-        self.items: list[pymunk.Constraint] = list(space.constraints)
+        self.space, self.items = space, list[pymunk.Constraint](space.constraints)
         if past is not None and past.items == self.items:
             own, before = vars(self), vars(past)
             for name in _LISTED:

@@ -124,8 +124,7 @@ class Sync:
             self._shapes.reindexings = private_shapes.REINDEXINGS
             private_shapes.forget_corrections(self._world.movers)
         self._be_late()
-        if self.waits():
-            self.call_back()
+        self.call_back()
 
     def is_ours(self) -> bool:
         """Whether pymunk has taken no step of its own since the last EECA step."""

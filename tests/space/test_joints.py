@@ -785,7 +785,7 @@ def test_rows_have_what_constraints_say_field_by_field(kind: str) -> None:
     joint = KINDS[kind](a, b)
     joint.max_force, joint.error_bias, joint.max_bias = 7.0, 0.25, 3.0
     space.add(joint)
-    rows = JointRows(space, {a: 0, b: 1}, 3)
+    rows = JointRows(space, {a: 0, b: 1}, 3, None)
     row = rows.joint[rows.row[joint]]
     assert row.body.tolist() == [0, 1]
     assert (row.bounded, row.side, row.touched) == (1, 0, 1)
