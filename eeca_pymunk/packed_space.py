@@ -121,9 +121,9 @@ class PackedSpace(Stepper):
         """The event loop of the present world; None if its method is none."""
         return self._method if isinstance(self._method, EventLoop) else None
 
-    def patch(self, world: World) -> bool:
+    def patch(self, world: World, moved: bool) -> bool:
         """Write edits of shapes and bodies into the rows of a world, and into the arrays of the method. No shape or
-        body was added or removed. False if a new reading is needed."""
+        body was added or removed. False if a new reading is needed. `moved`: whether static bodies may have moved."""
         return False
 
     @property
@@ -146,7 +146,7 @@ class PackedSpace(Stepper):
         if past is not None and past.same_things():
             if not (anew or past.edited()):
                 return self._update_settings(past)
-            if self._patchable(past) and self.patch(past):
+            if self._patchable(past) and self.patch(past, anew):
                 self.patches += 1
                 return self._adopt(past)
         if self._sleep is not None:

@@ -123,17 +123,20 @@ class RunningStepper(PackedStepper):
             loop.reset_to(rows[rows >= 0], state[rows >= 0, :6])
             world.STATES[WRITTEN, rows >= 0] = np.nan
 
-    def patch(self, world: World) -> bool:
+    def patch(self, world: World, moved: bool) -> bool:
         loop, surfaces = self.event_loop, self._sleep is not None
+        if loop is not None and not moved and (edits := world.patch_values()) is not None:
+            loop.edit(edits)
+            return True
         if world.joints is not None:
-            if found := world.patch(surfaces):
+            if found := world.patch_rows(surfaces):
                 self.choose_method(world, world)
             return found is not None
         if loop is None or not hasattr(loop, "fresh"):
             # From now on each new loop keeps a copy of its scene, from which patches start. This edit is not patched.
             self._patches = True
             return False
-        sides, found = sides_of(world, loop), world.patch(surfaces)
+        sides, found = sides_of(world, loop), world.patch_rows(surfaces)
         if found is None:
             return False
         if found.elasticity and bool(loop.scene.COUNT.lossy) != bool((world.SHAPE["elasticity"] < 1.0).any()):

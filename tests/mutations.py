@@ -37,6 +37,9 @@ MUTATIONS = (
     # Sleeping.
     Mutation("sleeping: what a kinematic body carries", "sleepers.py", "            awake[PAIRS[p, 1]] = 1",
              "            awake[PAIRS[p, 0]] = 1", "space/test_sleeping.py", "groups_sleep"),
+    # Edits.
+    Mutation("edits: surfaces wake what touches them", "impacts/edits.py", "A.MEMBER[touching.root].rest = CHANGED",
+             "A.MEMBER[touching.root].rest = AT_REST", "space/test_edited_values.py", "slides_when_friction_falls"),
     # Flight and times of impact.
     Mutation("flight: a half is missing", "geometry/flight.py", "half = 0.5 * s", "half = s",
              "geometry/test_gap.py", "parabola"),

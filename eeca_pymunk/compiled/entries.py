@@ -84,6 +84,8 @@ ENTRIES = {
     "rehearsing:record_changes": "{Reading} i8",
     "impacts.new_scene:measure_scene": "{Reading}",
     "impacts.new_scene:begin_scene": "{Scene} i8 i8 i8 i8 i8",
+    "impacts.edits:edit_surface": "{Scene} i8 f8 f8 f8 f8",
+    "impacts.edits:edit_mass": "{Scene} i8 f8 f8",
     "impacts.new_scene:tie_components": "{Scene} {Joints}",
     "islands.accounting:flag_pairs": "{Scene}",
     "impacts.step:step": "{Scene} {Joints} {Reading} f8 f8 f8 f8 i8",

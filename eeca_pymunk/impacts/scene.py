@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -26,6 +26,7 @@ from ..model.values import reading_of
 from ..pairs.setup import with_more_room
 from ..report import Details, of_events
 from ..transfer import FORCES
+from .edits import edit_mass, edit_surface
 from .new_scene import tie_components
 from .remembering import UNBOUND, Remembering
 from .run import ROOM_FOR_IMPACTS, run
@@ -35,6 +36,18 @@ from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, step
 
 if TYPE_CHECKING:
     import pymunk
+
+
+class Edits(NamedTuple):
+    """Values that were edited in place.
+
+    Attributes:
+        surfaces: by row of SHAPE: elasticity, friction, surface velocity (2; length/time).
+        masses: by row of BODY: 1/mass, 1/moment.
+    """
+
+    surfaces: Mapping[int, tuple[float, ...]]
+    masses: Mapping[int, tuple[float, ...]]
 
 
 def _longer(table: Rows[R], used: int) -> Rows[R]:
@@ -200,6 +213,14 @@ class EventLoop(Remembering):
         KEYS, TABLE = np.full(size, -1, np.int64), rows(Force, size)
         copy_recent(scene.KEYS, scene.FORCES, scene.COUNT, KEYS, TABLE, float(scene.PAR.stamp) - 1.0)
         self.scene = scene._replace(KEYS=KEYS, FORCES=TABLE)
+
+    def edit(self, edits: Edits) -> None:
+        """Write edited values into the rows, and go on with the results of earlier steps."""
+        for kernel, found in ((edit_surface, edits.surfaces), (edit_mass, edits.masses)):
+            if found:
+                write = kernel.bind(self.table)
+                for row, numbers in found.items():
+                    write(row, *numbers)
 
     def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
         """Set the law of pairs of shapes a < b: elasticity (below 0: they pass through each other), friction and

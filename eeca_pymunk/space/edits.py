@@ -14,7 +14,7 @@ from collections import deque
 from collections.abc import Callable
 from functools import wraps
 from itertools import islice
-from typing import Any
+from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 import pymunk
@@ -32,13 +32,14 @@ _METHODS: tuple[tuple[type, tuple[str, ...]], ...] = (
     (pymunk.Segment, ("unsafe_set_radius", "unsafe_set_endpoints")),
     (pymunk.Poly, ("unsafe_set_radius", "unsafe_set_vertices")),
 )
-_OF_SURFACE = ("filter", "elasticity", "friction", "surface_velocity")  # these change neither masses nor outlines
+_SURFACE = ("filter", "elasticity", "friction", "surface_velocity")  # these change neither masses nor outlines
+_VALUES = ("elasticity", "friction", "surface_velocity", "mass", "moment")  # nor which shapes may touch, or sizes
 SLEEP = ("sleep", "sleep_with_group")
 _KEPT = 4096  # number of edits that are kept, the last ones
 _wrapped = False
 _clock = _type_changes = 0
-# The last edits, in any space or outside: the shape or body, and whether more than `_OF_SURFACE` may have changed.
-_edited: deque[tuple[weakref.ref[Any], bool]] = deque(maxlen=_KEPT)
+# The last edits, in any space or outside: the shape or body, and the property or method.
+_edited: deque[tuple[weakref.ref[Any], str]] = deque(maxlen=_KEPT)
 
 
 class Counts(list[int]):
@@ -82,22 +83,29 @@ def type_changes() -> int:
     return _type_changes
 
 
-def edited_since(time: int) -> tuple[set[Any], set[Any]] | None:
-    """What was edited since `clock` was `time`, as two sets of shapes and bodies.
+class Edited(NamedTuple):
+    """What was edited: shapes and bodies; objects that no longer exist are None.
 
-    Returns:
-        (all, reshaped). `reshaped`: those of which more than `_OF_SURFACE` may have changed, and the bodies of such
-        shapes, whose mass and moment may follow. `all`: `reshaped`, and the shapes with other edits. Objects that no
-        longer exist are None. None if there were more edits than `_KEPT`.
+    Attributes:
+        things: all.  reshaped: those of which more than `_SURFACE` may have changed, and the bodies of such shapes,
+            whose mass and moment may follow.  values: whether only `_VALUES` have changed.
     """
-    if _clock == time:
-        return set(), set()
+
+    things: set[Any]
+    reshaped: set[Any]
+    values: bool
+
+
+def edited_since(time: int) -> Edited | None:
+    """What was edited since `clock` was `time`; None if there were more edits than `_KEPT`."""
     if _clock - time > len(_edited):
         return None
-    edited = [(thing(), reshapes) for thing, reshapes in islice(reversed(_edited), _clock - time)]
-    reshaped = {thing for thing, reshapes in edited if reshapes}
+    reshaped, others, values = set[Any](), set[Any](), True
+    for thing, name in islice(reversed(_edited), _clock - time):
+        (others if name in _SURFACE else reshaped).add(thing())
+        values = values and name in _VALUES
     reshaped.update([thing.body for thing in reshaped if isinstance(thing, pymunk.Shape)])
-    return reshaped.union([thing for thing, _ in edited]), reshaped
+    return Edited(reshaped | others, reshaped, values)
 
 
 def record(thing: Any, name: str) -> None:
@@ -111,7 +119,7 @@ def record(thing: Any, name: str) -> None:
             _counts[thing][2] += 1
         return
     _clock += 1
-    _edited.append((weakref.ref(thing), name not in _OF_SURFACE))
+    _edited.append((weakref.ref(thing), name))
     space = thing.space
     count = None if space is None else _counts.get(space)
     if count is None:

@@ -188,6 +188,13 @@ class Packed:
         found: list[int] = self._layout.integers("MEASURED").tolist()
         return found
 
+    def note_edited(self, records: Mapping[pymunk.Shape, ShapeRecord]) -> None:
+        """Let later calls of `write_again` write these records."""
+        if self._unwritten is not None:
+            place, packed, _ = self._unwritten
+            for shape, record in records.items():
+                packed[place[shape] : place[shape] + _VALUES.size] = record.packed
+
     def write_again(self, records: ShapeRecords, edited: Mapping[pymunk.Shape, ShapeRecord], moved: bool) -> bool:
         """Write the rows again, in place, after changes of numbers, filters and masses, and, if `moved`, of poses of
         static bodies.
@@ -204,9 +211,8 @@ class Packed:
             place = {shape: _VALUES.size * k for k, shape in enumerate(known)}
             packed = bytearray().join([record.packed for record in known.values()])
             self._unwritten = place, packed, b"".join([record.points for record in known.values()])
-        place, packed, points = self._unwritten
-        for shape, record in edited.items():
-            packed[place[shape] : place[shape] + _VALUES.size] = record.packed
+        self.note_edited(edited)
+        _, packed, points = self._unwritten
         layout = self._layout
         layout.write("SHAPES", packed)
         layout.write("POINT", points)

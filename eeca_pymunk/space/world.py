@@ -10,6 +10,7 @@ from typing import Any
 import pymunk
 
 from ..arrays import BoolArray
+from ..impacts.scene import Edits
 from ..impacts.scene_memory import SceneMemory
 from ..layout import BODY_ROW, KNOWN_ID
 from ..report import nothing
@@ -21,7 +22,7 @@ from .edits import Counts, clock, counts, edited_since
 from .hooks import Hooks
 from .joints import JointRows
 from .packing import Packed, ShapeRecords, records_of, shape_counts
-from .patching import Patched, patch
+from .patching import Patched, patch_rows, patch_values
 from .private import spaces as private
 from .rehearsal import Rehearsal
 
@@ -174,29 +175,41 @@ class World(BodyStates):
     def stale(self, contents: tuple[int, ...]) -> set[Any] | None:
         """Shapes and bodies to be read again: those edited, in the space or outside, and the bodies of shapes that were
         added or removed, whose mass may have changed; None if unknown. `contents`: the result of `_count` now."""
-        found, _ = edited_since(self.read_at) or (None, None)
-        if found is None or contents == self._contents:
-            return found
+        edited = edited_since(self.read_at)
+        if edited is None or contents == self._contents:
+            return edited and edited.things
+        found = edited.things
         for shape in self.records.keys() ^ set(self.space.shapes):
             record = self.records.get(shape)
             found.update((shape.body, record and record.body))
         return found
 
-    def patch(self, surfaces: bool) -> Patched | None:
-        """`patching.patch`, then the settings of the space if these have changed, and the present states into BODY."""
-        found = patch(self, surfaces or self.joints is not None)
+    def patch_values(self) -> Edits | None:
+        """`patching.patch_values`, then the settings of the space if these have changed."""
+        edits = patch_values(self)
+        if edits is not None:
+            self._count_patch(False)
+        return edits
+
+    def patch_rows(self, surfaces: bool) -> Patched | None:
+        """`patching.patch_rows`, then the settings of the space if these have changed, and the present states into
+        BODY."""
+        found = patch_rows(self, surfaces or self.joints is not None)
         if found is not None:
-            self.patches += 1
-            if "rehearsal" in self.__dict__:
-                self.rehearsal.forget(found.reach or found.moved)
-            self._seen[0] = self._edits[0]
-            if self.current():
-                self._known = self._edits.in_place
-                self.rules = NO_RULES
-            else:
-                self.read_settings()
+            self._count_patch(found.reach or found.moved)
             self.read_states(0.0, 0.0, 1.0)
         return found
+
+    def _count_patch(self, reshaped: bool) -> None:
+        self.patches += 1
+        if "rehearsal" in self.__dict__:
+            self.rehearsal.forget(reshaped)  # whether sizes, filters or places have changed
+        self._seen[0] = self._edits[0]
+        if self.current():
+            self._known = self._edits.in_place
+            self.rules = NO_RULES
+        else:
+            self.read_settings()
 
     def show_joints(self, joints: JointRows) -> None:
         """Let the program read impulses and notches of the step. Also, where pymunk has rounded positions as it wrote

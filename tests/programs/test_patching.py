@@ -19,7 +19,7 @@ DT = 1 / 60
 class Rereading(ep.EECA):
     """Reads the whole space anew after every edit."""
 
-    def patch(self, world: object) -> bool:
+    def patch(self, world: object, moved: bool) -> bool:
         return False
 
 
@@ -91,7 +91,9 @@ EDITS: dict[str, Edit] = {
     ),
     "ball": ball,
 }
-PATCHED = ("friction", "elasticity", "surface", "filter", "mass", "moment", "static", "radius")
+# Edits after which results of earlier steps are forgotten, as by a new reading; and those after which they are kept.
+PATCHED = ("filter", "static", "radius", "gravity", "velocity")
+KEPT = ("friction", "elasticity", "surface", "mass", "moment")
 
 
 def played(
@@ -121,7 +123,8 @@ def test_patches_lead_where_new_readings_do(seed: int, count: int) -> None:
 
 @pytest.mark.parametrize("seed", range(12))
 def test_patches_among_other_edits(seed: int) -> None:
-    assert played(ep.EECA, seed, 8, tuple(EDITS), False)[0] == played(Rereading, seed, 8, tuple(EDITS), False)[0]
+    names = (*PATCHED, "ball")
+    assert played(ep.EECA, seed, 8, names, False)[0] == played(Rereading, seed, 8, names, False)[0]
 
 
 @pytest.mark.parametrize("seed", range(6))

@@ -14,7 +14,7 @@ from eeca_pymunk.space.listing import Listing
 from eeca_pymunk.space.world import World
 
 from ..steppers import state
-from .test_patching import DT, EDITS, Edit, ball, mover, one, scene
+from .test_patching import DT, EDITS, PATCHED, Edit, ball, mover, one, scene
 
 LONG_AGO = -(1 << 60)  # a clock from which on all edits are more than are kept
 
@@ -22,7 +22,7 @@ LONG_AGO = -(1 << 60)  # a clock from which on all edits are more than are kept
 class Forgetful(ep.EECA):
     """Knows no object from earlier readings, only results of earlier steps."""
 
-    def patch(self, world: World) -> bool:
+    def patch(self, world: World, moved: bool) -> bool:
         return False
 
     def _update_world(self, anew: bool = False) -> World:
@@ -87,8 +87,8 @@ def untie(space: pymunk.Space, random: Random) -> None:
 
 
 FREE: dict[str, Edit] = {
-    **EDITS, "ball": ball, "wall": wall, "lift": lift, "part": part, "remove body": remove_body,
-    "remove shape": remove_shape,
+    **{name: EDITS[name] for name in PATCHED}, "ball": ball, "wall": wall, "lift": lift, "part": part,
+    "remove body": remove_body, "remove shape": remove_shape,
 }  # fmt: skip
 TIED: dict[str, Edit] = {**FREE, "tie": tie, "tie more": tie, "untie": untie}
 
@@ -140,10 +140,13 @@ def test_readings_patches_and_objects_are_counted() -> None:
     ball(space, Random(1))
     stepper.step(DT)
     assert (stepper.reads, stepper.patches, stepper.objects_read) == (2, 0, before + 2)
-    for _ in range(2):  # the first edit in place makes the memory for patches
-        next(iter(space.shapes)).friction += 0.1
+    next(iter(space.shapes)).friction += 0.1
+    stepper.step(DT)
+    assert (stepper.reads, stepper.patches, stepper.objects_read) == (2, 1, before + 3)
+    for group in (1, 2):  # the first edit of a filter or size makes the memory for patches
+        next(iter(space.shapes)).filter = pymunk.ShapeFilter(group)
         stepper.step(DT)
-    assert (stepper.reads, stepper.patches, stepper.objects_read) == (3, 1, before + 4)
+    assert (stepper.reads, stepper.patches, stepper.objects_read) == (3, 2, before + 5)
     space.add(pymunk.PinJoint(mover(space, Random(1)), space.static_body))
     stepper.step(DT)
-    assert (stepper.reads, stepper.patches, stepper.objects_read) == (3, 2, before + 5)
+    assert (stepper.reads, stepper.patches, stepper.objects_read) == (3, 3, before + 6)
