@@ -43,6 +43,22 @@ def test_a_run_is_its_steps(name: str, closure: str) -> None:
     assert repr(stepped(name, closure, True, steps)) == repr(stepped(name, closure, False, steps))
 
 
+def test_a_run_counts_iterations_of_steps_without_contacts_that_were_not_solved() -> None:
+    """A fast motor turns two bodies in a chain of pins: joints are unmet, and there is no contact."""
+    told = []
+    for run in (True, False):
+        space, one, two = pymunk.Space(), pymunk.Body(1.0, 1.0), pymunk.Body(1.0, 1.0)
+        two.position, two.velocity, ground = (1.0, 0.0), (0.0, 3.0), space.static_body
+        space.add(one, two, pymunk.SimpleMotor(one, two, 1e4), pymunk.PinJoint(ground, one, (-1, 0)))
+        space.add(pymunk.PinJoint(one, two), pymunk.PinJoint(two, ground, (0, 0), (3, 0)))
+        stepper = ep.EECA(space)
+        report = stepper.run(5, 1.0) if run else ep.Stepper.run(stepper, 5, 1.0)
+        told.append((report.unmet, report.iterations, report.lock, report.impacts))
+    assert told[0] == told[1]
+    assert told[0][0] > 0
+    assert told[0][1] > 0
+
+
 class Stepwise(ep.EECA):
     """EECA whose runs and recordings are Python loops."""
 

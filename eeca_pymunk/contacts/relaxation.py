@@ -4,8 +4,8 @@ Sweeps pass a stack's weight to its floor slowly; a direct solve does it at once
 active contacts. In disordered moving piles these change with every step, and sweeps alone cost less. Where neither
 converges, as with light bodies wedged between heavy ones, few contacts are solved by homotopies (`..rows.laws`).
 
-The state of an island lasts across steps (`Rest.augmentation`, `wait`, `backoff`): log10 of the augmentation R, steps
-to wait before the next direct solve, and the wait after its next failure.
+The state of an island lasts across steps (`Rest.augmentation`, `wait`, `backoff`): log10 of the augmentation R, solves
+without direct ones before the next that has some, and their number after its next failure.
 """
 
 from __future__ import annotations

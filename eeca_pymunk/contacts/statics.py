@@ -9,8 +9,8 @@ others hold it from then on,
 
 Bodies below REST_CANDIDATE |a| h are tested, and N of a body is at most REST_CANDIDATE |a| h / |v|, so that it stops no
 farther than REST_CANDIDATE |a| h^2 / 2 from where it would be. Faster bodies, up to IMPACT_SPEED |a| h below which
-contacts persist, may only be frozen: the first equilibrium ends their motion, and the next solve shows whether they
-stay.
+contacts persist, may only be frozen (without `hold`): the first equilibrium ends their motion, and the next solve shows
+whether they stay.
 """
 
 from __future__ import annotations
@@ -54,19 +54,20 @@ def set_motionless(ROWS: Rows[Row], V: FloatArray, n: int, m: int, close: float)
 @kernel
 def find_static_forces(
     problem: Problem, L: FloatArray, V: FloatArray, FREE: FloatArray, FELT: FloatArray, VN: FloatArray, change: float,
-    rest_speed: float,
+    rest_speed: float, hold: bool,
 ) -> tuple[bool, int]:  # fmt: skip
-    """Search static forces that end the motion V (k, 3) of the n bodies of a problem, and hold them.
+    """Search static forces that end the motion V (k, 3) of the n bodies of a problem, and, if `hold`, hold them then.
 
     Args:
         problem, L: the m contacts and initial impulses (m, 2); if forces are found, targets and velocities of its rows
-            become 0, and L the impulses over h that hold the bodies from then on, without those that stop them.
+            become 0, and L the impulses over h that hold the bodies from then on, without those that stop them; without
+            `hold` both.
         V: becomes 0, except for free spins, if forces are found.  FREE: (k, 3) velocities at the end without impulses.
         FELT: (k,) the lengths by which spins count, see `..model.islands`.
         VN: (k, 3) out, velocities at the end; if nothing is found, a motion against which no contact acts, of any size.
         change: |a| h, to which speeds are relative.
-        rest_speed: largest speed relative to it, also that at which gaps of loaded contacts may close; above
-            REST_CANDIDATE_LARGE the bodies are only frozen.
+        rest_speed: largest speed relative to it, up to REST_CANDIDATE_LARGE also that at which gaps of loaded contacts
+            may close.
 
     Returns:
         Whether static forces are found, and the number of factorisations.
@@ -83,7 +84,7 @@ def find_static_forces(
             START[i, c] += V[i, c] / max(steps, 1.0)
     factors, accuracy = 0, REST_SPEED * change
     for nearest in (False, True):
-        if nearest and rest_speed > REST_CANDIDATE_LARGE:
+        if nearest and not hold:
             break
         LEFT = PULL if nearest else START
         found, more = equilibrium(

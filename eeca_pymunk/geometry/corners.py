@@ -74,7 +74,8 @@ def boxes_overlap(VERTEX: FloatArray, mine: int, its: int) -> bool:
 
 @nonallocating
 def thin(link: Link, VERTEX: FloatArray) -> bool:
-    """Whether a shape is thin: a segment, or a plank, whose area is small against its length."""
+    """Whether a shape is thin: a segment, or a plank, whose area is small against its length (the largest distance of
+    two of its vertices)."""
     if link.vertices <= 2:
         return bool(link.vertices == 2)
     area, length = 0.0, 0.0
@@ -83,7 +84,9 @@ def thin(link: Link, VERTEX: FloatArray) -> bool:
         one, two = VERTEX[link.first + i], VERTEX[link.first + (i + 1 if i + 1 < link.vertices else 0)]
         x, y = one[0] - first[0], one[1] - first[1]
         area += 0.5 * (x * (two[1] - first[1]) - y * (two[0] - first[0]))
-        length = max(length, math.hypot(x, y))
+        for j in range(i):
+            from_one = VERTEX[link.first + j]
+            length = max(length, math.hypot(one[0] - from_one[0], one[1] - from_one[1]))
     return bool(area < SLENDER * (0.5 * length) ** 2)
 
 

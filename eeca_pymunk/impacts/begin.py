@@ -46,7 +46,7 @@ def begin(A: Scene, IDS: IntArray) -> None:
     flags of the step (`even`, `closing`, `may_support`). Edited bodies begin a new path version, and the islands at
     rest for which something has changed are set CHANGED."""
     BODY, STATE, PAR, COUNT = A.BODY, A.STATE, A.PAR, A.COUNT
-    COUNT.heap, COUNT.logged, COUNT.blocks = 0, 0, 0
+    COUNT.heap, COUNT.logged, COUNT.blocks, COUNT.room = 0, 0, 0, 0
     COUNT.solves, COUNT.solved, COUNT.direct, COUNT.work = 0, 0, 0, 0
     if COUNT.unmet > 0:
         A.FLAG[:] = 0

@@ -12,13 +12,12 @@ from ..compiled.records import Rows, zeros
 from ..contacts.counts import spend
 from ..contacts.works import carried, gained_energy, kinetic_energy
 from ..islands.building import persists_from
-from ..islands.local import clear_places, set_places
+from ..islands.local import clear_places
 from ..islands.membership import jointed, members
 from ..jointed.columns import count_operations, fill_free, make_columns, set_effective_masses
 from ..jointed.ends import shorten, under_way
 from ..jointed.groups import find_groups
 from ..jointed.meet import end_before, locate_impact
-from ..model.bodies import AT_REST
 from ..model.contacts import SOLVED, JointedProblem, Row, Solved
 from ..model.joints import Joints
 from ..model.parameters.events import EVENT_LOOKS, RESOLUTION
@@ -34,7 +33,7 @@ from ..rows.gentle import excessive, sweep_gently
 from ..rows.inplace import copy
 from ..rows.sweeps import velocities
 from .joint_answers import activate_limits, add_joint_impulses, answer_impact, begin_impact
-from .resolution import finish_block, rejoin
+from .resolution import finish_block, lacks_room, list_ended, rejoin
 from .simultaneous import Block, energy_owed, gather_block, make_block
 
 
@@ -63,24 +62,6 @@ def list_apart(A: Scene, i: int, j: int) -> int:
             n += 1
         elif body == i or root != A.STATE[i].island:
             n += int(members(A, root, A.BLOCK[n:]))
-    return n
-
-
-@nonallocating
-def list_ended(A: Scene, n: int) -> int:
-    """Add to the n bodies in A.BLOCK those of all other islands whose intervals have ended, as these were brought to
-    the instant of an impact: they begin new ones, though they may not touch. How many bodies there are then."""
-    set_places(A, A.BLOCK[:n])
-    for root in range(A.BODY.shape[0] - 1):
-        if A.STATE[root].island != root or A.MEMBER[root].open > 0 or A.MEMBER[root].rest == AT_REST:
-            continue
-        i = root
-        while i >= 0:
-            if A.PLACE[i] < 0:
-                A.BLOCK[n], A.PLACE[i] = i, n
-                n += 1
-            i = A.MEMBER[i].following
-    clear_places(A, A.BLOCK[:n])
     return n
 
 
@@ -125,8 +106,8 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     i, j = A.LINK[a].owner, A.LINK[b].owner
     t, apart = locate_impact(A, J, a, b, t)
     A.PAR.now = t
-    A.COUNT.work += EVENT_LOOKS
     if apart:
+        A.COUNT.work += EVENT_LOOKS
         return list_ended(A, list_apart(A, i, j))
     n, m, PAIRS = gather_block(A, a, b, t)
     again = True
@@ -141,6 +122,8 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
         if again:
             clear_places(A, A.BLOCK[:n])
             n, m, PAIRS = gather_block(A, a, b, t)
+    if lacks_room(A, n, m):
+        return list_ended(A, n)
     lasts = persists_from(A, a, b, t)
     owed, _ = energy_owed(A, n)
     block = make_block(A, n, m, PAIRS, min(a, b) * k + max(a, b), lasts, t)
@@ -195,9 +178,6 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     finish_block(A, block, n, m, L, OUT, status, t)
     spend(A, n, m, 0.0)  # besides what its solutions take
     count_operations(J, C)
-    A.STATE[i].version += 1
-    if A.BODY[j].inv_mass > 0.0:
-        A.STATE[j].version += 1
     n = rejoin(A, a, b, t, n, lasts, lost)
     n = list_ended(A, n)
     for q in range(n):

@@ -27,7 +27,7 @@ from ..prediction.disks import body_of, continue_path
 from ..prediction.heap import pop, push_event, sweep_out
 from ..prediction.next_event import has_left
 from ..prediction.scheduling import look_ahead, predict_next
-from ..prediction.turning import search
+from ..prediction.turning import note_sides
 from .intervals import cut_short, start_waiting
 from .joint_impact import collide
 from .resolution import strike
@@ -154,13 +154,13 @@ def follow(A: Scene, J: Joints, may_persist: bool) -> int:
         s, o = STATE[i].own, STATE[i].other
         if COUNT.work > most_looks(A, J):
             return cut_short(A, J, i, t)
-        if COUNT.logged + COUNT.pushes + 8 * STATE.shape[0] > A.LOG.shape[0]:
+        if COUNT.logged + COUNT.pushes + max(8 * STATE.shape[0], COUNT.room) > A.LOG.shape[0]:
             COUNT.heap = push_event(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
             return LOG_FULL
         j = i if o == RENEW else A.LINK[o].owner
         met = o != RENEW
         if met and remembers(A, s, o):
-            search(A, min(s, o), max(s, o), end, t)  # notes on which side of each other they are at t
+            note_sides(A, min(s, o), max(s, o), end, t)
         if met and (STATE[i].island >= 0 or STATE[j].island >= 0) and passed_over(A, s, o, t):
             note_unmet(A, HITS, s, o, float(hits_of(A, s, o)), float(most_hits(A, s, o)))
             mark_pair(A, s, o, 1)

@@ -15,8 +15,9 @@ from ..contacts.memory import shapes_of
 from ..contacts.single import note
 from ..contacts.works import carried
 from ..islands.building import join_reachable
-from ..islands.local import clear_places
+from ..islands.local import clear_places, set_places
 from ..islands.membership import jointed, members, unite
+from ..model.bodies import AT_REST
 from ..model.contacts import SOLVED, Problem, Solved
 from ..model.scene import Scene
 from ..model.step import IMPACT
@@ -46,7 +47,7 @@ def finish_block(
         A.STATE[i].events += 1
     clear_places(A, A.BLOCK[:n])
     for z in range(len(ROWS)):
-        if L[z, 0] > 0.0 and COUNT.logged < A.LOG.shape[0]:
+        if L[z, 0] > 0.0:
             a, b = shapes_of(A, ROWS[z])
             note(
                 A.LOG[COUNT.logged], a, b, t, L[z, 0], L[z, 1], ROWS[z].nx, ROWS[z].ny,
@@ -65,6 +66,36 @@ def holds_joints(A: Scene, n: int) -> bool:
     return False
 
 
+@nonallocating
+def lacks_room(A: Scene, n: int, m: int) -> bool:
+    """Whether LOG is too short for the impulses of a block of n bodies and m pairs, two for each pair. If so, the block
+    is dissolved, and its impact has to be repeated with more memory (COUNT.room)."""
+    COUNT = A.COUNT
+    if COUNT.logged + COUNT.pushes + 2 * m <= A.LOG.shape[0]:
+        return False
+    COUNT.room = 2 * m
+    clear_places(A, A.BLOCK[:n])
+    return True
+
+
+@nonallocating
+def list_ended(A: Scene, n: int) -> int:
+    """Add to the n bodies in A.BLOCK those of all other islands whose intervals have ended, as these were brought to
+    the instant of an impact: they begin new ones, though they may not touch. How many bodies there are then."""
+    set_places(A, A.BLOCK[:n])
+    for root in range(A.BODY.shape[0] - 1):
+        if A.STATE[root].island != root or A.MEMBER[root].open > 0 or A.MEMBER[root].rest == AT_REST:
+            continue
+        i = root
+        while i >= 0:
+            if A.PLACE[i] < 0:
+                A.BLOCK[n], A.PLACE[i] = i, n
+                n += 1
+            i = A.MEMBER[i].following
+    clear_places(A, A.BLOCK[:n])
+    return n
+
+
 @kernel
 def strike(A: Scene, a: int, b: int, t: float, lasts: bool) -> int:
     """The simultaneous impact of shapes a and b at instant t. Writes the bodies to predict to A.BLOCK, after their
@@ -78,6 +109,8 @@ def strike(A: Scene, a: int, b: int, t: float, lasts: bool) -> int:
     if holds_joints(A, n):
         clear_places(A, A.BLOCK[:n])
         return -1
+    if lacks_room(A, n, m):
+        return list_ended(A, n)
     owed, piled = energy_owed(A, n)
     block = make_block(A, n, m, PAIRS, min(a, b) * k + max(a, b), lasts, t)
     rows = len(block.ROWS)

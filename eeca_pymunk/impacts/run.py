@@ -94,7 +94,7 @@ def after_step(A: Scene, F: RunArrays, R: Reading) -> int:
         RUN.unmet += 1
         if RUN.rollouts > 0:
             F.COUNTS[RUN.rollout, 0] += 1
-    if COUNT.logged > 0:
+    if COUNT.logged > 0 or COUNT.unmet > 0:
         RUN.iterations += COUNT.solves + COUNT.blocks
         if abs(PAR.lock - 1.0) > abs(RUN.lock - 1.0):
             RUN.lock = PAR.lock

@@ -73,9 +73,9 @@ def test_rest(A: Scene, MINE: IntArray, V0: FloatArray, with_supports: int, free
     if p == 0 or COUNT.pushes + 2 * p > A.PUSHED.shape[0] or not most > 0.0:
         postpone_test(A, MINE)
         return False
-    quick = (IMPACT_SPEED if freezing else candidate_speed(with_supports)) * A.PAR.pulled / most
+    rest_speed = (IMPACT_SPEED if freezing else candidate_speed(with_supports)) * A.PAR.pulled / most
     contacts = make_contacts(p, len(isle.WHO))
-    m = test_statics(A, isle, contacts, n, dt, quick)
+    m = test_statics(A, isle, contacts, n, dt, rest_speed, not freezing)
     COUNT.direct += contacts.OUT[0].direct
     if contacts.OUT[0].at_rest == 0:
         postpone_test(A, MINE)

@@ -100,8 +100,8 @@ class Rest(Record):
     end_vy: float
     end_spin: float
     augmentation: float  # of the root: log10 of R in direct solves, see `contacts/relaxation.py`
-    wait: float  # of the root: steps until the next direct solve
-    backoff: float  # of the root: steps to wait after its next failure
+    wait: float  # of the root: solves until the next direct one
+    backoff: float  # of the root: solves to wait after its next failure
     payable: float  # of the root: cost of the correction up to which losses pay; the rest is external work
     lost: float  # of the root: energy lost in this step; if negative, energy that later intervals have to take out
     until: float  # of the root: instant at which the interval ends

@@ -42,8 +42,9 @@ class Count(Record):
     budget: int  # largest work of the events of a step no longer than `BUDGET_TIME`, in looks
     work: int  # work of the events so far, in looks: evaluations of a gap in the search for an impact
     struck: int  # body of the event at which the event loop has stopped
+    room: int  # rows of LOG that the impact needs which is to be repeated with more memory
     pushes: int  # rows of PUSHED in use: contacts of intervals
-    solves: int  # number of solves of islands in the step
+    solves: int  # number of intervals of islands in the step
     waiting: int  # number of bodies in BLOCK to be predicted after their islands have begun intervals
     phase: int  # stage of the step at which it is resumed, see `impacts.step.act`
     direct: int  # number of direct solves

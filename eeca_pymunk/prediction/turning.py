@@ -86,6 +86,7 @@ def begin_side(A: Scene, a: int, b: int, start: float, duration: float, toleranc
     d, nx, ny, px, py = near.distance, near.nx, near.ny, near.x, near.y
     key = sides.pair_number(A, a, b)
     side = A.SIDE[sides.side_row(A, key)]
+    held = d < -sides.near_side(A, a, b) or in_one_island(A, i, j)
     if d > sides.near_side(A, a, b):
         sides.note_side(A, a, b, nx, ny, False)
     elif side.key != key:
@@ -94,11 +95,10 @@ def begin_side(A: Scene, a: int, b: int, start: float, duration: float, toleranc
         resting = abs(parting) * duration <= tolerance
         other = (resting and pressing < 0.0) or (not resting and d <= tolerance and parting < 0.0)
         sign = -1.0 if p == 2 and q == 2 and other else 1.0
-        sides.note_side(A, a, b, sign * nx, sign * ny, True)
+        sides.note_side(A, a, b, sign * nx, sign * ny, held)
     else:
         side.nx, side.ny = nx, ny  # it turns with the shapes
-        if d >= -sides.near_side(A, a, b) and not in_one_island(A, i, j):
-            side.deep = 0.0
+        side.deep = side.deep if held else 0.0
 
 
 @nonallocating
@@ -146,6 +146,14 @@ def general(A: Scene, a: int, b: int, horizon: float) -> tuple[float, bool]:
 
 
 @nonallocating
+def note_sides(A: Scene, a: int, b: int, horizon: float, t: float) -> None:
+    """Note on which side of each other thin shapes a < b are at instant t, as they follow their paths."""
+    start = max(A.BODY[A.LINK[a].owner].since, A.BODY[A.LINK[b].owner].since)
+    begin_side(A, a, b, start, max(horizon - start, 0.0), gap_round_off(A, a, b))
+    search(A, a, b, horizon, t)
+
+
+@nonallocating
 def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[float, bool]:
     """(t, certain) of any two shapes, as defined in `impact_times.py`.
 
@@ -182,8 +190,6 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
     depth = TOUCH * sides.smaller(A, a, b)
     of_a, of_b = Closing(extent, bend_a, tolerance, depth, still), Closing(extent, bend_b, tolerance, depth, still)
     P, Q = A.CORE[0], A.CORE[1]
-    if sides.remembers(A, a, b):
-        begin_side(A, a, b, start, duration, tolerance)
     looks, mark, interval = 0, s, duration / RESOLUTION
     most = LONGEST_SEARCH * most_work(A)
     while True:

@@ -60,3 +60,30 @@ def test_pairs_that_were_given_up_are_met_again_in_the_next_step() -> None:
     impacts = [len(stepper.step(0.1).contacts) for _ in range(5)]
     assert impacts[2:] == [impacts[2]] * 3
     assert impacts[2] > 0
+
+
+@pytest.mark.parametrize("jointed", [False, True])
+def test_an_impact_of_many_shapes_reports_all_its_impulses(jointed: bool) -> None:
+    """A row of 100 disks of one body lands flat: the impulses are its change of momentum."""
+    space = pymunk.Space()
+    floor = pymunk.Segment(space.static_body, (-60, 0), (60, 0), 0.5)
+    floor.elasticity = 1.0
+    body = pymunk.Body(2.0, 1e3)
+    body.position, body.velocity = (0.0, 2.0), (0.0, -3.0)
+    space.add(floor, body)
+    for k in range(100):
+        disk = pymunk.Circle(body, 0.3, (k - 49.5, 0))
+        disk.elasticity = 1.0
+        space.add(disk)
+    if jointed:
+        bob = pymunk.Body(1.0, 1.0)
+        bob.position, bob.velocity = (0.0, 9.0), (0.0, -3.0)
+        space.add(bob, pymunk.Circle(bob, 0.1), pymunk.PinJoint(body, bob))
+    stepper, impulse, contacts = ep.EECA(space), 0.0, 0
+    for _ in range(25):
+        report = stepper.step(0.02)
+        impulse, contacts = impulse + report.impulse.sum(), contacts + len(report.impulse)
+    moved = 2.0 * (body.velocity.y + 3.0) + (bob.velocity.y + 3.0 if jointed else 0.0)
+    assert contacts == 100
+    assert impulse == pytest.approx(moved, rel=1e-9)
+    assert moved > 11.0

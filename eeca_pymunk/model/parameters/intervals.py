@@ -69,7 +69,7 @@ DIRECT_PROGRESS = work(0.2, "ratio of residuals",
 FAILED_DIRECT = work(8, "direct solutions", "Direct solutions without progress after which the solve ends.")
 FAILED_DIRECT_AGAIN = work(2, "direct solutions",
     "Direct solutions without progress after which the solve ends if that of the last step failed.")
-LONGEST_BACKOFF = work(32.0, "steps", "Longest time for which direct solutions are suspended.")
+LONGEST_BACKOFF = work(32.0, "solves", "Largest number of solves in a row in which direct solutions are suspended.")
 OVERLAP_LEFT = accuracy(1e-09, "of the smallest body", "Overlap that is not corrected.")
 CORRECTION_STEP = accuracy(0.25, "of the smaller body",
     "Way of any point of a body by the correction in one interval, at most: half of what would take its centre "
