@@ -75,7 +75,7 @@ def load_arrays(path: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
 
         with _h5py().File(path, "r") as file:
             file.visititems(collect)
-            text, digest = str(file.attrs["parameters"]), str(file.attrs[_HASH])
+            text, digest = str(file.attrs["parameters"]), str(file.attrs.get(_HASH, ""))
     else:
         with np.load(path) as data:
             found = {name: data[name] for name in data.files}

@@ -7,14 +7,13 @@ from functools import partial
 from math import isfinite
 
 from .energy.ledger import BOOK_AFTER, BOOK_DAMPING
-from .impacts.run import ENERGY
 from .layout import WRITTEN
+from .model.step import ENERGY, EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES
 from .packed_space import TOO_FAR, PackedSpace
 from .reentry import BUSY
 from .report import Details, Outcome, StepReport
 from .space.sleeping import Sleep
 from .space.world import World
-from .transfer import EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES
 from .unmet import Unmet, of_missed
 
 
@@ -47,7 +46,7 @@ class HookedStepper(PackedSpace):
             dt: time, > 0.  half_damping: factor of half a step's damping.
 
         Returns:
-            status bits or a negative code of `transfer.py`.
+            status bits or a negative code of `model/step.py`.
         """
         gx, gy = world.gravity
         joints = world.joints

@@ -14,8 +14,8 @@ import numpy as np
 from .arrays import FloatArray, IntArray
 from .energy.ledger import BOOK_AFTER
 from .errors import NotFiniteError
-from .impacts.run import ENERGY
 from .impacts.scene import EventLoop
+from .model.step import ENERGY, NOT_FINITE, OVERFLOW
 from .space.arbiters import Touches, touches_of
 from .space.checks import check_ignored
 from .space.decisions import NO_RULES, Decisions, Rules
@@ -25,7 +25,6 @@ from .space.sleeping import AT_FIRST, Sleep
 from .space.sync import Sync
 from .space.world import World
 from .stepper import Method, Stepper
-from .transfer import NOT_FINITE, OVERFLOW
 
 if TYPE_CHECKING:
     import pymunk

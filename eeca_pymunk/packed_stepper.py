@@ -25,12 +25,12 @@ from .arrays import AnyArray
 from .compiled.records import as_integers
 from .hooked_stepper import HookedStepper
 from .layout import WRITTEN
+from .model.step import EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES
 from .reentry import BUSY, refuse_within
 from .report import Details, StepReport
 from .space.sleeping import Sleep
 from .space.world import World
 from .stepper import check_dt
-from .transfer import EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES
 
 Own = TypeVar("Own", bound="PackedStepper")
 

@@ -10,6 +10,7 @@ from .arrays import FloatArray, IntArray
 from .compiled import Table, kernel, nonallocating
 from .compiled.records import Rows
 from .model.shapes import HandledShape
+from .model.step import FORCES, MOVED_STATIC, NOT_FINITE, OTHER_BODIES, OVERFLOW, TURNS
 from .model.values import Reading, reading_of
 
 NEAR_WAYS = 2.0  # pairs are near if they may meet within so many times their ways of this step
@@ -31,15 +32,15 @@ def copy_read(R: Reading, copy: FloatArray) -> int:
         BODY[i].due = min(BODY[i].due, layout.PLACED)
     for i in range(IDS.shape[1]):
         if IDS[layout.READ_ID, i] != IDS[layout.KNOWN_ID, i]:
-            return transfer.OTHER_BODIES
+            return OTHER_BODIES
         if not transfer.finite(now[i, 0], now[i, 1], now[i, 2], now[i, 3], now[i, 4], now[i, 5]):
-            status = transfer.NOT_FINITE
+            status = NOT_FINITE
         if not transfer.finite(now[i, 6], now[i, 7], now[i, 8], 0.0, 0.0, 0.0):
-            status = transfer.NOT_FINITE
+            status = NOT_FINITE
         if IDS[layout.BODY_ROW, i] < 0:
             if now[i, 0] != before[i, 0] or now[i, 1] != before[i, 1] or now[i, 2] != before[i, 2]:
-                return transfer.MOVED_STATIC
-        for c in range(9):
+                return MOVED_STATIC
+        for c in range(layout.STATE_COLUMNS):
             copy[i, c] = now[i, c]
     return status
 
@@ -65,13 +66,13 @@ def alter_end(table: Table, stops: int) -> int:
     R = reading_of(table)
     IDS, BODY, changes, unaltered = R.IDS, R.BODY, R.HOOKED[layout.CHANGES_AFTER], R.HOOKED[layout.UNALTERED]
     now, end = R.STATES[layout.READ], R.STATES[layout.WRITTEN]
-    status, straight, turning = transfer.FORCES | transfer.TURNS, 0.0, 0.0
+    status, straight, turning = FORCES | TURNS, 0.0, 0.0
     for i in range(IDS.shape[1]):
         row = IDS[layout.BODY_ROW, i]
-        for c in range(9):
+        for c in range(layout.STATE_COLUMNS):
             unaltered[i, c] = end[i, c]
         if row < 0:
-            for c in range(9):
+            for c in range(layout.STATE_COLUMNS):
                 end[i, c] = now[i, c]
             if stops:
                 unaltered[i, 3], unaltered[i, 4], unaltered[i, 5] = now[i, 3], now[i, 4], now[i, 5]
@@ -83,14 +84,14 @@ def alter_end(table: Table, stops: int) -> int:
                     turning += end[i, 5] * end[i, 5] / BODY[row].inv_inertia
                 for c in range(3, 6):
                     end[i, c], unaltered[i, c] = 0.0, 0.0
-        for c in range(9):
+        for c in range(layout.STATE_COLUMNS):
             end[i, c] += changes[i, c]
             changes[i, c] = 0.0
         if row >= 0 and not transfer.finite(end[i, 0], end[i, 1], end[i, 2], end[i, 3], end[i, 4], end[i, 5]):
-            status = transfer.OVERFLOW
+            status = OVERFLOW
     R.ENDS[layout.END_COLUMNS * IDS.shape[1]] = 0.5 * (straight + turning)
-    if status == transfer.OVERFLOW:
-        return transfer.OVERFLOW
+    if status == OVERFLOW:
+        return OVERFLOW
     return transfer.put_ends(R.STATES, IDS, R.ENDS, status)
 
 
@@ -200,7 +201,7 @@ def place_for_rehearsal(
             py += dt * (damped * vy + 0.5 * dt * ay)
             turned = angle + dt * (damped * spin + 0.5 * dt * twist)
             if not transfer.finite(px, py, turned, 0.0, 0.0, 0.0):
-                return transfer.OVERFLOW
+                return OVERFLOW
             way = SUPPORT_SHIFT * (deepest - (x * down_x + y * down_y)) if moves and pull > 0.0 else 0.0
             x, y, angle = px - dt * vx + way * down_x, py - dt * vy + way * down_y, turned - dt * spin
             if special & layout.ECCENTRIC:
@@ -223,7 +224,7 @@ def record_changes(table: Table, late: int) -> int:
     now, last, found = R.STATES[layout.READ], R.HOOKED[layout.BEFORE_CALL], 0
     changes = R.HOOKED[layout.CHANGES_AFTER if late > 0 else layout.CHANGES_BEFORE]
     for i in range(now.shape[0]):
-        for c in range(9):
+        for c in range(layout.STATE_COLUMNS):
             before = last[i, c]
             if now[i, c] != before:
                 if before == before:

@@ -14,6 +14,7 @@ from .arrays import FloatArray, IntArray
 from .impacts.run_buffers import RunBuffers
 from .layout import BODY_ROW, READ, WRITTEN
 from .model.run import BETWEEN
+from .model.step import FORCES
 from .packed_stepper import PackedStepper
 from .reentry import refuse_within
 from .report import RunReport
@@ -21,7 +22,6 @@ from .saved import sides_of
 from .space.world import World
 from .states import get_state, set_state
 from .stepper import check_dt, check_steps
-from .transfer import FORCES
 
 if TYPE_CHECKING:
     import pymunk

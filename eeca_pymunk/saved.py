@@ -18,6 +18,7 @@ from .compiled.sources import sources_hash
 from .geometry.sides import keep_sides
 from .impacts.scene import EventLoop
 from .layout import BODY_ROW, PLACED, SHIFTED, WRITTEN
+from .model.bodies import MOBILITY, OF_SHAPES
 from .model.joints import OF_STEPS, RATCHET, Joint
 from .model.parameters.intervals import INTERVAL_DEPTH_LEAST
 from .model.shapes import Link, Side
@@ -25,7 +26,6 @@ from .space.decisions import Decisions
 from .space.packing import ShapeRecord
 from .space.world import World
 
-_FIXED = ["extent", "elasticity", "friction"]  # fields of BODY that no step changes
 _NO_SIDES = rows(Side, 0)
 _TIE = "kind", "body", "bounded"  # fields of JOINT that decide the plan of the components
 
@@ -88,8 +88,8 @@ class Saved:
         at = np.array([row[body] for body in self.items], np.int64)  # pymunk may have another order of bodies
         same = (
             (world.IDS[BODY_ROW, at], self._rows),
-            (columns(world.BODY, *_FIXED), columns(scene.BODY, *_FIXED)),
-            (columns(world.BODY, "inv_mass", "inv_inertia"), self.method.mobility),
+            (columns(world.BODY, *OF_SHAPES), columns(scene.BODY, *OF_SHAPES)),
+            (columns(world.BODY, *MOBILITY), self.method.mobility),
             (world.SHAPE, scene.SHAPE),
             (world.LINK, scene.LINK),
             (_in_order(world.VERTEX, world.LINK), _in_order(scene.VERTEX, scene.LINK)),

@@ -99,7 +99,7 @@ class Method(Protocol):
 
     def step(self, reading: Table, dt: float, gx: float, gy: float, half_damping: float) -> int:
         """Move the bodies from STATES[READ] to STATES[WRITTEN] and ENDS (`layout.py`), by the gravity (gx, gy) and the
-        factor of half a step's damping. Returns status bits or a negative code of `transfer.py`."""
+        factor of half a step's damping. Returns status bits or a negative code of `model/step.py`."""
 
     def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
         """Set the laws of pairs of rows of SHAPE (a < b) that differ from those of their shapes, by collision handlers

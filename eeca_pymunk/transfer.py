@@ -16,12 +16,8 @@ from .arrays import FloatArray, IntArray
 from .compiled import Table, kernel, nonallocating
 from .compiled.records import Rows
 from .model.bodies import Body
+from .model.step import FORCES, MOVED_STATIC, NOT_FINITE, OTHER_BODIES, OVERFLOW, TURNS
 from .model.values import reading_of
-
-# Status of `read_states`, `write_states` and a step: bits (there are impulses; forces have to be reset; angles or spins
-# have to be written), or a negative code.
-EVENTS, FORCES, TURNS = 1, 2, 4
-OTHER_BODIES, MOVED_STATIC, NOT_FINITE, OVERFLOW = -1, -2, -3, -4
 
 
 @kernel
@@ -128,7 +124,7 @@ def forget_last_end(table: Table) -> None:
     R = reading_of(table)
     STATES, IDS, EXTRA = R.STATES, R.IDS, R.EXTRA
     for i in range(IDS.shape[1]):
-        for c in range(9):
+        for c in range(layout.STATE_COLUMNS):
             STATES[layout.WRITTEN, i, c] = STATES[layout.READ, i, c] if IDS[layout.BODY_ROW, i] < 0 else math.nan
         forget_acceleration(EXTRA, i)
 

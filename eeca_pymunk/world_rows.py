@@ -9,6 +9,7 @@ from .arrays import FloatArray, IntArray
 from .compiled import Table, nonallocating
 from .compiled.records import Rows
 from .model.shapes import Link, Shape
+from .model.step import NOT_FINITE
 from .model.values import (
     CARRIED,
     CORNERS,
@@ -24,7 +25,7 @@ from .model.values import (
     ShapeValues,
     reading_of,
 )
-from .transfer import NOT_FINITE, forget_acceleration, read_states
+from .transfer import forget_acceleration, read_states
 
 
 @nonallocating

@@ -19,11 +19,12 @@ from ..geometry.corners import core_room
 from ..geometry.gap import gaps
 from ..model.parameters.detection import GAP_ROUND_OFF
 from ..model.scene import Scene, scene_with
+from ..model.step import EVENTS, OVERFLOW
 from ..model.values import reading_of
 from ..pairs.candidates import candidates
 from ..pairs.setup import near_lists, with_more_room
 from ..report import Contacts, Details, Outcome
-from ..transfer import EVENTS, OVERFLOW, read_states, write_states
+from ..transfer import read_states, write_states
 from .refusals import check_disks
 
 if TYPE_CHECKING:

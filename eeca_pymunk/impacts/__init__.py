@@ -10,6 +10,6 @@ a step at once; `run.py` takes many steps in one call.
 
 Names of arguments: A is the scene, J its joints (`..model.joints`); STATES, IDS, EXTRA, ENDS the arrays exchanged with
 pymunk (`..layout`); F the arrays of a run (`..model.run`).
-Bits and negative codes are the status of a step, see `transfer.py`. A block is the set of bodies and contacts of a
+Bits and negative codes are the status of a step, see `model/step.py`. A block is the set of bodies and contacts of a
 simultaneous impact, in A.BLOCK.
 """

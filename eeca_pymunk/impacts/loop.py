@@ -166,7 +166,7 @@ def follow(A: Scene, J: Joints, may_persist: bool) -> int:
             mark_pair(A, s, o, 1)
             predict_next(A, i, t, end, False)
             continue
-        joints = jointed(A, i) or jointed(A, j)
+        joints, waiting = jointed(A, i) or jointed(A, j), 0
         if met and not joints:
             lasts = False
             if may_persist:
@@ -174,20 +174,19 @@ def follow(A: Scene, J: Joints, may_persist: bool) -> int:
                 if A.BODY[j].inv_mass > 0.0:
                     bring_to(A, j, t)
                 lasts = persists_from(A, s, o, t)
-            COUNT.waiting = strike(A, s, o, t, lasts)
-            joints = COUNT.waiting < 0  # others of the block are jointed: nothing was done
+            waiting = strike(A, s, o, t, lasts)
+            joints = waiting < 0  # others of the block are jointed: nothing was done
         if joints and work_left(A, J) < 0.0:
-            COUNT.waiting = 0
             return cut_short(A, J, i, t)
         if joints and not has_room(A):
-            COUNT.waiting = 0
             COUNT.heap = push_event(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
             return PUSHES_FULL
         if not met:
-            COUNT.waiting = end_of_interval(A, J, i, t)
+            waiting = end_of_interval(A, J, i, t)
         elif joints:
-            COUNT.waiting = collide(A, J, s, o, t)
+            waiting = collide(A, J, s, o, t)
         if A.BODY[i].inv_mass == 0.0:
             # A body without mobility is in no island; its event is predicted too.
-            A.BLOCK[COUNT.waiting] = i
-            COUNT.waiting += 1
+            A.BLOCK[waiting] = i
+            waiting += 1
+        COUNT.waiting = waiting

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import AnyArray, IntArray, address_of, side_by_side
+from ..model.bodies import MOBILITY, OF_SHAPES
 from ..model.scene import Scene
 
 # Fields of `Scene`. The tables of forces are emptied where a run begins (`run.set_back`).
@@ -46,9 +47,8 @@ def _piece(arrays: list[AnyArray]) -> IntArray:
     return piece
 
 
-# Of a state: fields of `Scene` that keep their lengths; those of BODY that no step changes.
+# Of a state: the fields of `Scene` that keep their lengths.
 _WHOLE = ("BODY", "PULL", "BEGAN", *(name for name in OF_SCENE if name not in ("POOL", "FLAG", "CORE")))
-_CONSTANT = ("inv_mass", "inv_inertia", "extent", "elasticity", "friction")
 
 
 def remembered(scene: Scene) -> list[AnyArray]:
@@ -71,7 +71,7 @@ def recalled(scene: Scene, take: Callable[[Any, tuple[int, ...]], AnyArray]) -> 
     room, end, slots, used, many, pushes = take(np.int64, (6,)).tolist()
     whole = {name: np.asarray(getattr(scene, name)) for name in _WHOLE}
     new: dict[str, Any] = {name: take(array.dtype, array.shape).copy() for name, array in whole.items()}
-    for name in _CONSTANT:
+    for name in (*MOBILITY, *OF_SHAPES):
         new["BODY"][name] = scene.BODY[name]
     for name in ("BODY", "GRID", "PAR", "COUNT"):
         whole[name][...] = new.pop(name)

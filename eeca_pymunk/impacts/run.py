@@ -12,11 +12,9 @@ from ..layout import BODY_ROW, READ, WRITTEN
 from ..model.joints import joints_of
 from ..model.run import AFTER, BETWEEN, WITHIN, RunArrays, run_arrays_of
 from ..model.scene import Scene, scene_of
+from ..model.step import ENERGY, IMPACTS_FULL
 from ..model.values import Reading, reading_of
 from .step import resume, start
-
-ROOM_FOR_IMPACTS = -13  # status of a run that needs more rows of EVENTS
-ENERGY = -5  # and of one whose energy overflows
 
 
 @nonallocating
@@ -74,13 +72,13 @@ def before_step(A: Scene, F: RunArrays, R: Reading) -> None:
 
 @nonallocating
 def after_step(A: Scene, F: RunArrays, R: Reading) -> int:
-    """Store the results of a step. Returns 0, or ENERGY or ROOM_FOR_IMPACTS with nothing done."""
+    """Store the results of a step. Returns 0, or ENERGY or IMPACTS_FULL with nothing done."""
     RUN, PAR, COUNT, LOG, T = F.RUN, A.PAR, A.COUNT, A.LOG, F.TOTAL
     if not math.isfinite(PAR.after):
         return ENERGY
     room = F.EVENTS.shape[0]
     if room > 0 and RUN.kept + COUNT.logged > room:
-        return ROOM_FOR_IMPACTS
+        return IMPACTS_FULL
     for k in range(COUNT.logged):
         if LOG[k].duration == 0.0 and LOG[k].normal != 0.0:
             RUN.impacts += 1

@@ -16,23 +16,22 @@ from ..contacts.memory import copy_recent
 from ..islands.accounting import flag_pairs
 from ..joints.pinned import NO_PINNED, hold, pinned_bodies
 from ..layout import READ
-from ..model.bodies import CHECK, Body
+from ..model.bodies import CHECK, MOBILITY, Body
 from ..model.contacts import Force, Impulse
 from ..model.joints import Joint, Pinned
 from ..model.parameters.events import MANY_BODIES, STEP_LOOKS, STEP_LOOKS_BODY
 from ..model.shapes import Link, Shape
-from ..model.step import Missed
+from ..model.step import FORCES, IMPACTS_FULL, LOG_FULL, PUSHES_FULL, Missed, needs_memory
 from ..model.values import reading_of
 from ..pairs.setup import with_more_room
 from ..report import Details, of_events
-from ..transfer import FORCES
 from .edits import edit_mass, edit_surface
 from .new_scene import tie_components
 from .remembering import UNBOUND, Remembering
-from .run import ROOM_FOR_IMPACTS, run
+from .run import run
 from .run_buffers import RunBuffers
 from .scene_memory import NO_LINKAGE, RULE_COLUMNS, Laid, Linkage, SceneMemory
-from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, step
+from .step import step
 
 if TYPE_CHECKING:
     import pymunk
@@ -117,8 +116,8 @@ class EventLoop(Remembering):
     @property
     def mobility(self) -> FloatArray:
         """(n, 2) 1/mass and 1/moment of bodies, also of those that joints hold."""
-        found = columns(self.scene.BODY, "inv_mass", "inv_inertia")
-        found[self.pinned["body"]] = columns(self.pinned, "inv_mass", "inv_inertia")
+        found = columns(self.scene.BODY, *MOBILITY)
+        found[self.pinned["body"]] = columns(self.pinned, *MOBILITY)
         return found
 
     def _plan(self, BODY: Rows[Body]) -> None:
@@ -152,26 +151,26 @@ class EventLoop(Remembering):
         self.joints = self.joints._replace(JOINT=joint, PARTNER=PARTNER)
 
     def step(self, reading: Table, dt: float, gx: float, gy: float, half_damping: float) -> int:
-        """Take a step, see `step.step`; a negative result is a code of `transfer.py`."""
+        """Take a step, see `step.step`; a negative result is a code of `model/step.py`."""
         known, call = self._bound
         if known is not reading:
             call = self._bind_to(reading)
         status = call(dt, gx, gy, half_damping, -1)
-        while status <= ROOM_FOR_LISTS:
+        while needs_memory(status):
             self._grow(result_of("step", status))
             bits = FORCES if reading_of(reading).STATES[READ, :, 6:].any() else 0
             status = self._bind_to(reading)(dt, gx, gy, half_damping, bits)
         return status
 
     def follow(self, buffers: RunBuffers, reading: Table) -> int:
-        """Take the steps of `buffers` on the states of a reading; returns all bits, a negative code of `transfer.py`,
-        or `run.ENERGY`."""
+        """Take the steps of `buffers` on the states of a reading; returns all bits, or a negative code of
+        `model/step.py`."""
         while True:
             call = buffers.call = buffers.call or run.bind(self.table, self.ties, buffers.table, reading)
             status = result_of("run", call())
-            if status == ROOM_FOR_IMPACTS:
+            if status == IMPACTS_FULL:
                 buffers.more_events()
-            elif status <= ROOM_FOR_LISTS:
+            elif needs_memory(status):
                 self._grow(status)
                 buffers.call = None
             else:
@@ -185,11 +184,11 @@ class EventLoop(Remembering):
     def _grow(self, wish: int) -> None:
         """Provide the memory that a step needs, `wish` being its status; the step can then be resumed."""
         scene = self.scene
-        if wish == ROOM_FOR_EVENTS:
+        if wish == LOG_FULL:
             self.scene = scene._replace(LOG=_longer(scene.LOG, int(scene.COUNT.logged)))
             self._memory.log = len(self.scene.LOG)
             return
-        if wish == ROOM_FOR_CONTACTS:
+        if wish == PUSHES_FULL:
             size, count = len(scene.KEYS), int(scene.COUNT.remembered)
             self._clean(size)
             if count - scene.COUNT.remembered >= size // 8:

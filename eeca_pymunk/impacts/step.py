@@ -10,19 +10,15 @@ from ..joints.pinned import put_pinned
 from ..model.joints import Joints, joints_of
 from ..model.parameters.joints import MEET_INSTANT
 from ..model.scene import Scene, scene_of
-from ..model.step import DONE, LOG_FULL, POOL_FULL, PUSHES_FULL
+from ..model.step import DONE, EVENTS, LOG_FULL, PUSHES_FULL
 from ..model.values import Reading, reading_of
 from ..prediction.scheduling import predict_due
-from ..transfer import EVENTS as SOME
 from ..transfer import read_states, write_states
 from .begin import begin
 from .close import close
 from .intervals import start_islands
 from .loop import follow
 from .midstep import act_together
-
-# Status of a step that needs more memory; afterwards `resume` it.
-ROOM_FOR_LISTS, ROOM_FOR_EVENTS, ROOM_FOR_CONTACTS = -10, -11, -12
 
 
 @kernel
@@ -52,7 +48,7 @@ def finish(A: Scene, J: Joints, R: Reading, status: int) -> int:
     if len(A.PINNED) > 0:
         load_welds(A, J, R)
     if A.COUNT.logged > 0 or A.COUNT.unmet > 0:
-        status |= SOME
+        status |= EVENTS
     return write_states(R.STATES, R.IDS, R.EXTRA, A.BODY, R.ENDS, A.PAR.dt, A.PAR.half_damping, status)
 
 
@@ -86,13 +82,9 @@ def resume(A: Scene, J: Joints, R: Reading, status: int) -> int:
     """The rest of a step, whose bits so far are `status`. Returns the bits of the step, a negative code, or a code for
     more memory."""
     met = act(A, J)
-    if met == POOL_FULL:
-        return ROOM_FOR_LISTS
-    if met == PUSHES_FULL:
-        return ROOM_FOR_CONTACTS
-    if met == LOG_FULL or A.COUNT.logged + A.COUNT.pushes > A.LOG.shape[0]:
-        return ROOM_FOR_EVENTS
-    return finish(A, J, R, status)
+    if met == DONE and A.COUNT.logged + A.COUNT.pushes > A.LOG.shape[0]:
+        met = LOG_FULL
+    return met if met != DONE else finish(A, J, R, status)
 
 
 @kernel
@@ -108,7 +100,7 @@ def step(
         bits: negative for a new step; the bits so far of one that continues after more memory was provided.
 
     Returns:
-        the bits EVENTS, FORCES, TURNS, a negative code of `transfer.py`, or a code for more memory.
+        the status, see `model/step.py`.
     """
     A, J, R = scene_of(TABLE), joints_of(JOINTS), reading_of(READING)
     if bits < 0:

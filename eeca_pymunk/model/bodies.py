@@ -38,6 +38,7 @@ class Body(Record):
 
 BODIES = kind_of(Body)
 POSE, VELOCITY = ("x", "y", "angle"), ("vx", "vy", "spin")
+MOBILITY, OF_SHAPES = ("inv_mass", "inv_inertia"), ("extent", "elasticity", "friction")  # no step changes these
 
 
 class Next(Record):

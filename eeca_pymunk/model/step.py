@@ -80,8 +80,19 @@ KINDS = (
 )
 IMPACTS, HITS, IMPACT, SOLVES, CONTACTS, JOINTS = 0, 1, 2, 3, 4, 5
 
-# Status of the event loop. All but DONE are resumable: lists, log or contacts need more memory, or an event is due that
-# the loop itself does not process.
-DONE, POOL_FULL, LOG_FULL, BLOCK_DUE, PUSHES_FULL = 0, 1, 2, 3, 4
+# Status of a step: bits (there are impulses, or something is unmet; forces have to be reset; angles or spins have to be
+# written), or a negative code.
+EVENTS, FORCES, TURNS = 1, 2, 4
+# The bodies are others; a static one was moved; a number that was read, a state or the energy at the end is not finite.
+OTHER_BODIES, MOVED_STATIC, NOT_FINITE, OVERFLOW, ENERGY = -1, -2, -3, -4, -5
+# Lists, log, contacts, or the impacts that a run stores, need more memory: provide it, and resume the step.
+POOL_FULL, LOG_FULL, PUSHES_FULL, IMPACTS_FULL = -10, -11, -12, -13
+# Of the stages of a step: done; an event is due that the event loop itself does not process.
+DONE, BLOCK_DUE = 0, 1
 # Of an interval, with nothing done: it is to be shorter; there is no work left for it in this step.
 AGAIN, SPENT = -1, -2
+
+
+def needs_memory(status: int) -> bool:
+    """Whether a step has stopped for more memory."""
+    return status <= POOL_FULL

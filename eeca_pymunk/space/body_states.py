@@ -16,8 +16,9 @@ from ..arrays import FloatArray, IntArray, Memory
 from ..compiled import Table
 from ..compiled.records import Rows
 from ..model.bodies import Body
+from ..model.step import FORCES, TURNS
 from ..rehearsing import accept_rounding, alter_end, copy_start
-from ..transfer import FORCES, TURNS, forget_last_end, read_states, write_ends, write_stopped_ends
+from ..transfer import forget_last_end, read_states, write_ends, write_stopped_ends
 from .bodies import STATE_FIELDS, Bodies
 from .private import batch as private_batch
 

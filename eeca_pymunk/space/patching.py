@@ -25,7 +25,7 @@ import pymunk
 
 from ..impacts.scene import Edits
 from ..layout import BODY_ROW
-from ..transfer import MOVED_STATIC, OTHER_BODIES
+from ..model.step import MOVED_STATIC, OTHER_BODIES
 from .body_values import masses as masses_in
 from .edits import Edited, clock, edited_since
 from .packing import ShapeRecord, read, read_surface

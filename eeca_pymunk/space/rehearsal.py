@@ -23,8 +23,8 @@ from ..arrays import IntArray
 from ..compiled.records import Rows, rows
 from ..layout import BEFORE_CALL, CHANGES_BEFORE, READ, REHEARSAL_START
 from ..model.shapes import HandledShape
+from ..model.step import TURNS
 from ..rehearsing import place_for_rehearsal, record_changes
-from ..transfer import TURNS
 from .decisions import NO_RULES, Decisions, Rules
 from .edits import type_changes
 from .handled_pairs import HandledPairs
@@ -131,7 +131,7 @@ class Rehearsal:
             sync: if given, the rehearsal may be left out, unless pymunk has taken a step since the last EECA step.
 
         Returns:
-            0 or a negative code of `transfer.py`, with nothing done.
+            0 or a negative code of `model/step.py`, with nothing done.
         """
         world = self.world
         self._settings = dt, *world.gravity, half_damping

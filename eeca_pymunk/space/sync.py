@@ -22,8 +22,8 @@ from functools import partial
 from typing import TYPE_CHECKING
 from weakref import WeakMethod, ref
 
+from ..model.step import TURNS
 from ..reentry import BUSY
-from ..transfer import TURNS
 from .arbiters import ReadTouches, show_contacts
 from .bodies import ANGULAR_VELOCITY, VELOCITY
 from .late_shapes import late_shapes
