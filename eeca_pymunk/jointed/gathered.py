@@ -9,6 +9,7 @@ from ..joints.ledger import clear_interval
 from ..joints.parts import meets_limit
 from ..model.joint_steps import ELASTIC
 from ..model.joints import GIVES_WAY, LEFT_APART, RATCHET, Joints
+from ..model.parameters.joints import NEARLY_HELD
 from ..model.scene import Scene
 from ..newton.motion import read_body, seat, size_up
 
@@ -34,12 +35,16 @@ def restore_joints(J: Joints, s: int) -> None:
 @nonallocating
 def gave_way(J: Joints, s: int) -> bool:
     """Whether joints of component s hold worse in the interval that it has just taken than they did at its start:
-    elastically, or by linear rows. Those that contradict one another do so in an interval of any length."""
-    if J.STEPPED[s].status < ELASTIC:
+    elastically, or by linear rows. Those that contradict one another do so in an interval of any length; joints that
+    were elastic before hold worse only if they are softer, and more than twice as far apart."""
+    B = J.STEPPED[s]
+    if B.status < ELASTIC:
         return False
+    first = J.COUPLING[J.COMPONENT[s].first_joint].joint  # has the compliance of all
+    worse = J.JOINT[first].compliance > J.KEPT[first].compliance and B.gave > max(B.apart, NEARLY_HELD)
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         touched = J.KEPT[J.COUPLING[k].joint].touched
-        if touched == LEFT_APART or (touched == GIVES_WAY and J.STEPPED[s].status == ELASTIC):
+        if touched == LEFT_APART or (touched == GIVES_WAY and B.status == ELASTIC and not worse):
             return False
     return True
 

@@ -24,7 +24,7 @@ def clear_ledger(ledger: JointLedger) -> None:
 def clear_interval(ledger: JointLedger) -> None:
     """Set all energies of an interval, and its status, to 0."""
     clear_ledger(ledger)
-    ledger.turned_work = ledger.lifted = ledger.gave = 0.0
+    ledger.turned_work = ledger.lifted = ledger.apart = ledger.gave = 0.0
     ledger.status = 0
 
 

@@ -90,14 +90,14 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
     for k in range(W.joints):
         W.J.JOINT[W.link[k].joint].side = W.link[k].side  # to which the ladder returns
     limit_work(W)
-    apart = farthest(W)
+    ledger.apart = farthest(W)
     status = climb(W, h, order, length, touched, own)
     before = step_linearly(W, h, length) if status == LINEAR else 0.0
     if status >= ELASTIC:
         status = take_gain(W, h, status, before)
     elif abs(W.J.PART_LEDGER.closed) > kinetic_of_component(local, W.bodies, NOW):  # but for round-off they cancel
         close_ledger(local, W.bodies, W.J.PART_LEDGER)
-    ledger.gave = max(farthest(W) - apart, 0.0) if status >= ELASTIC else 0.0
+    ledger.gave = max(farthest(W) - ledger.apart, 0.0) if status >= ELASTIC else 0.0
     add_part(ledger, W.J.PART_LEDGER)
     write_joints(W, h, GIVES_WAY if status == ELASTIC else LEFT_APART if status == LINEAR else 0)
     return HALVED if status == ELASTIC and farthest(W) <= NEARLY_HELD else status

@@ -134,7 +134,8 @@ class JointLedger(Record):
     closed: float  # work of closing joints that were apart at the start, of elastic stand-ins, of linear steps
     turned_work: float  # with contacts: work of torques beyond that along the angle
     lifted: float  # energy that separating overlapping bodies costs, paid from the losses of contacts
-    gave: float  # how much farther joints are apart at the end than at the start, over their units
+    apart: float  # how far joints are apart at the start, over their units, and how much farther at the end
+    gave: float
     status: int  # of the step
 
 

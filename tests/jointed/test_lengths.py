@@ -5,11 +5,16 @@ from __future__ import annotations
 import math
 from itertools import pairwise
 from random import Random
+from types import SimpleNamespace
 
 import pymunk
 import pytest
 
 import eeca_pymunk as ep
+from eeca_pymunk.compiled.records import kind_of, zeros
+from eeca_pymunk.jointed.gathered import gave_way
+from eeca_pymunk.model.joint_steps import ELASTIC, LINEAR, JointLedger
+from eeca_pymunk.model.joints import GIVES_WAY, Component, Coupling, Joint
 from eeca_pymunk.model.parameters.events import RESOLUTION
 from scenes.linkages import body, empty
 from tests.programs.compositions import Composition
@@ -182,3 +187,21 @@ def test_what_slides_along_a_wall_that_turns_does_not_go_through_it(spin: float,
     assert report.converged
     assert x <= 16.1 * unit
     assert y >= -16.75 * unit
+
+
+@pytest.mark.parametrize(
+    ("status", "compliance", "gave", "worse"),
+    [(ELASTIC, 1e-9, 1e-3, False), (ELASTIC, 2e-9, 1e-3, True), (ELASTIC, 2e-9, 1e-6, False), (LINEAR, 0.0, 0.0, True)],
+)
+def test_elastic_joints_hold_worse_if_they_are_softer_and_more_than_twice_as_far_apart(
+    status: int, compliance: float, gave: float, worse: bool
+) -> None:
+    """Those that contradict one another are as far apart in an interval of any length."""
+    J = SimpleNamespace(
+        COMPONENT=zeros(1, kind_of(Component)), COUPLING=zeros(1, kind_of(Coupling)), JOINT=zeros(1, kind_of(Joint)),
+        KEPT=zeros(1, kind_of(Joint)), STEPPED=zeros(1, kind_of(JointLedger)),
+    )  # fmt: skip
+    J.COMPONENT[0].end_joint = 1
+    J.KEPT[0].touched, J.KEPT[0].compliance, J.JOINT[0].compliance = GIVES_WAY, 1e-9, compliance
+    J.STEPPED[0].status, J.STEPPED[0].apart, J.STEPPED[0].gave = status, 1e-5, gave
+    assert gave_way(J, 0) == worse
