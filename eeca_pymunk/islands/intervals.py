@@ -200,7 +200,7 @@ def find_lifts(
     """Find the penetration corrections JUMP at the end of an interval h from instant t, with poses POSE in its middle
     and velocities VN at its end. Returns the cost up to which losses pay (`Rest.payable`). `lost`, `before`, `placed`:
     see `payment`."""
-    budget, payable = payment(A, isle, contacts.ROWS, n, m, lost, before, placed, False)
+    budget, payable = payment(A, isle, contacts.ROWS, contacts.L, VN, n, m, lost, before, placed, False)
     problem = Problem(contacts.ROWS, isle.IM, isle.II, isle.POSE, n, m)
     lifting(problem, POSE, VN, isle.ACC, h, isle.EXTENT, budget, left_to_lift(A, t + h), contacts.JUMP)
     return payable

@@ -16,6 +16,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..contacts.memory import shapes_of
@@ -24,7 +25,7 @@ from ..model.bodies import MOVED
 from ..model.contacts import Row
 from ..model.islands import Island
 from ..model.scene import Scene
-from ..rows.build import conserves
+from ..rows.build import conserves, normal_rate
 from .at_rest import moves_itself
 
 
@@ -45,12 +46,13 @@ def was_placed(A: Scene, isle: Island, n: int) -> bool:
 
 
 @nonallocating
-def driven(A: Scene, isle: Island, ROWS: Rows[Row], n: int, m: int) -> bool:
+def driven(A: Scene, isle: Island, ROWS: Rows[Row], L: FloatArray, V: FloatArray, n: int, m: int) -> bool:
     """Whether a body that moves by itself is deeper in an island of n bodies, at any of m contacts, than an interval
-    allows."""
+    allows; but for contacts that push with no impulse L (m, 2) and open at velocities V (k, 3), as they part without
+    it."""
     for z in range(m):
         q = max(ROWS[z].a, ROWS[z].b)  # bodies without mobility are the last ones
-        if q < n or not moves_itself(A, isle.WHO[q]):
+        if q < n or not moves_itself(A, isle.WHO[q]) or (L[z, 0] == 0.0 and normal_rate(ROWS[z], V) > 0.0):
             continue
         a, b = shapes_of(A, ROWS[z])
         if ROWS[z].gap < -depth_limit(A, a, b):
@@ -60,16 +62,18 @@ def driven(A: Scene, isle: Island, ROWS: Rows[Row], n: int, m: int) -> bool:
 
 @nonallocating
 def payment(
-    A: Scene, isle: Island, ROWS: Rows[Row], n: int, m: int, lost: float, before: float, placed: bool, jointed: bool
+    A: Scene, isle: Island, ROWS: Rows[Row], L: FloatArray, V: FloatArray, n: int, m: int, lost: float, before: float,
+    placed: bool, jointed: bool,
 ) -> Payment:  # fmt: skip
     """What pays for the correction of an island of n bodies and m contacts.
 
     Args:
+        L, V: impulses (m, 2) of the contacts, and velocities (k, 3) at the end of their interval.
         lost: energy that contacts have lost in the interval.
         before: earlier in this step; what is owed if below 0.
         placed: whether it `was_placed` into.  jointed: whether the island has joints.
     """
-    drives = driven(A, isle, ROWS, n, m)
+    drives = driven(A, isle, ROWS, L, V, n, m)
     counts = drives or jointed or len(isle.WHO) == n
     # Elastic contacts have no losses; what they seem to lose is round-off.
     losses = -1.0 if conserves(ROWS, m) else lost + (before if counts else min(before, 0.0))

@@ -44,11 +44,13 @@ def raise_gaps(
 
 
 @kernel
-def lift_island(A: Scene, J: Joints, interval: Interval, root: int, end: float, lost: float, build: bool) -> None:
-    """Correct penetration at the end of an island's motion, in which contacts have `lost` energy. `build`: whether the
-    columns of all components have to be computed."""
-    isle, groups, ROWS, _, _, m, n, _, _ = interval
-    budget, payable = payment(A, isle, ROWS, n, m, lost, A.RESTING[root].lost, False, True)
+def lift_island(
+    A: Scene, J: Joints, interval: Interval, L: FloatArray, root: int, end: float, lost: float, build: bool
+) -> None:  # fmt: skip
+    """Correct penetration at the end of an island's motion under impulses L (m, 2) of its contacts, which have `lost`
+    energy in it. `build`: whether the columns of all components have to be computed."""
+    isle, groups, ROWS, motion, _, m, n, _, _ = interval
+    budget, payable = payment(A, isle, ROWS, L, motion.V, n, m, lost, A.RESTING[root].lost, False, True)
     spent = correct_overlaps(A, J, interval, end, budget, build)
     if len(groups.JOINTED) > 0:
         paid, one = min(spent, payable), J.STEPPED[groups.JOINTED[0]]
@@ -66,7 +68,7 @@ def lift_at_cut(A: Scene, J: Joints, root: int, t: float) -> None:
         motion = Motion(isle.V.copy(), isle.V, NOTHING, isle.POSE.copy(), np.zeros((k, 2)), NOTHING)
         interval = Interval(isle, groups, ROWS, motion, make_columns(groups, ROWS, m), m, n, t, 0.0)
         fill_free(groups, interval.C, ROWS, isle.IM, isle.II, m)
-        lift_island(A, J, interval, root, t, 0.0, True)
+        lift_island(A, J, interval, contacts.L, root, t, 0.0, True)
         for g in range(len(groups.JOINTED)):
             A.RESTING[root].lost -= J.STEPPED[groups.JOINTED[g]].lifted
         for q in range(n):

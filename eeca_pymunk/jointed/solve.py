@@ -174,7 +174,7 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     # Corrected at the end of the interval: within a short one, paths would be steep.
     WHERE, HELD = motion.END.copy(), np.zeros(m)
     if not conserves(ROWS, m):
-        lift_island(A, J, interval, root, t + h, lost(interval, L), False)
+        lift_island(A, J, interval, L, root, t + h, lost(interval, L), False)
         HELD = project_velocities(A, J, interval, L, t + h, slow + pull * h)
     local.clear_places(A, MINE)
     first = COUNT.pushes
