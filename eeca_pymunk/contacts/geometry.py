@@ -13,8 +13,6 @@ angular momentum: there the points of the pair are displaced by the mean of the 
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from ..arrays import FloatArray
@@ -45,12 +43,9 @@ def gather_contacts(
         The number of rows, two at most for each pair.
     """
     SHAPE, LINK = A.SHAPE, A.LINK
-    POSE, V, EXTENT, PAIRS = isle.POSE, isle.V, isle.EXTENT, isle.PAIRS
-    ROWS = contacts.ROWS
+    POSE, PAIRS, ROWS = isle.POSE, isle.PAIRS, contacts.ROWS
     NOW, THEN = np.empty((2, 5)), np.empty((2, 5))  # (n_x, n_y, p_x, p_y, g) of up to two points
-    m = 0
-    shapes = len(SHAPE)
-    half = 0.5 * h
+    m, half = 0, 0.5 * h
     for c in range(len(PAIRS)):
         s, r, a, b = PAIRS[c, 0], PAIRS[c, 1], PAIRS[c, 2], PAIRS[c, 3]
         if isle.IM[a] == 0.0 and isle.IM[b] == 0.0:
@@ -62,11 +57,7 @@ def gather_contacts(
             continue
         note_side(A, s, r, NOW[0, 0], NOW[0, 1], True)
         # How far points of both bodies move against each other in h/2; about: in the frame of a wall that turns.
-        way = half * (
-            math.sqrt((V[b, 0] - V[a, 0]) ** 2 + (V[b, 1] - V[a, 1]) ** 2)
-            + abs(V[a, 2]) * EXTENT[a]
-            + abs(V[b, 2]) * EXTENT[b]
-        )
+        way = half * way_about(isle, a, b, 0.0)
         w = spin_of_wall(isle, a, b)
         about = half * way_about(isle, a, b, w) if w != 0.0 else way
         centre = MIDDLE
@@ -94,7 +85,7 @@ def gather_contacts(
         for z in range(count):
             i = m + z
             row = ROWS[i]
-            row.a, row.b, row.key = a, b, key_of(shapes, s, r) + z
+            row.a, row.b, row.key = a, b, key_of(A, s, r) + z
             row.nx, row.ny, row.gap = THEN[z, 0], THEN[z, 1], NOW[z, 4]
             row.elasticity, row.friction, row.surface = elasticity, friction, 0.0
             place_row(row, THEN[z, 2], THEN[z, 3], centre, isle.IM, isle.II)

@@ -9,22 +9,22 @@ from __future__ import annotations
 from ..arrays import FloatArray, IntArray
 from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
+from ..geometry.sides import pair_of, shapes_of_pair
 from ..model.contacts import Force, Row
 from ..model.scene import Scene
 from ..model.step import Count
 
 
 @nonallocating
-def key_of(shapes: int, a: int, b: int) -> int:
-    """Key of the first contact of shapes a and b, in either order, out of `shapes`; that of the second is 1 more."""
-    return (min(a, b) * shapes + max(a, b)) << 1
+def key_of(A: Scene, a: int, b: int) -> int:
+    """Key of the first contact of shapes a and b, in either order; that of the second is 1 more."""
+    return pair_of(A, a, b) << 1
 
 
 @inlined
 def shapes_of(A: Scene, row: Row) -> tuple[int, int]:
     """The shapes of a row, from its key."""
-    shapes, pair = A.SHAPE.shape[0], row.key >> 1
-    return pair // shapes, pair % shapes
+    return shapes_of_pair(A.SHAPE.shape[0], row.key >> 1)
 
 
 @nonallocating

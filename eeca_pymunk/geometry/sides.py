@@ -23,7 +23,7 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import Table, nonallocating
+from ..compiled import Table, inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.parameters.detection import STRAIGHT
 from ..model.parameters.intervals import INTERVAL_DEPTH, INTERVAL_DEPTH_LEAST, INTERVAL_DEPTH_WIDTH, INTERVAL_WAY
@@ -43,10 +43,22 @@ def remembers(A: Scene, a: int, b: int) -> bool:
     return bool(A.CORNER[4 * a].thin > 0 and A.CORNER[4 * b].thin > 0)
 
 
-@nonallocating
-def pair_number(A: Scene, a: int, b: int) -> int:
-    """The number of the pair a < b in the memory."""
-    return 1 + a * len(A.SHAPE) + b
+@inlined
+def pair_of(A: Scene, a: int, b: int) -> int:
+    """The number of the pair of shapes a and b, in either order."""
+    return min(a, b) * A.SHAPE.shape[0] + max(a, b)
+
+
+@inlined
+def shapes_of_pair(shapes: int, pair: int) -> tuple[int, int]:
+    """The shapes a < b of a pair, by its number, out of `shapes`; a < 0 for a negative number."""
+    return pair // shapes, pair % shapes
+
+
+@inlined
+def side_key(A: Scene, a: int, b: int) -> int:
+    """The key of a pair in the memory."""
+    return 1 + pair_of(A, a, b)
 
 
 @nonallocating
@@ -79,11 +91,9 @@ def note_side(A: Scene, a: int, b: int, nx: float, ny: float, held: bool) -> Non
     """Remember the normal n from shape a to shape b; `held` if forces hold them in contact."""
     if not remembers(A, a, b):
         return
-    if a > b:
-        a, b, nx, ny = b, a, -nx, -ny
-    key = pair_number(A, a, b)
+    key, sign = side_key(A, a, b), 1.0 if a < b else -1.0
     side = A.SIDE[side_row(A, key)]
-    side.key, side.nx, side.ny = key, nx, ny
+    side.key, side.nx, side.ny = key, sign * nx, sign * ny
     side.deep = held_side(A, a, b) if held else 0.0
 
 
@@ -121,10 +131,10 @@ def forget_sides(A: Scene, i: int, way: float) -> None:
     moved, or turned at its extent, by `way` (length), farther than from the middle of both shapes to their surfaces."""
     SIDE, LINK, shapes = A.SIDE, A.LINK, len(A.SHAPE)
     for row in range(len(SIDE)):
-        pair = SIDE[row].key - 1
-        if pair < 0 or (LINK[pair // shapes].owner != i and LINK[pair % shapes].owner != i):
+        a, b = shapes_of_pair(shapes, SIDE[row].key - 1)
+        if a < 0 or (LINK[a].owner != i and LINK[b].owner != i):
             continue
-        thick = half_width(A, pair // shapes) + half_width(A, pair % shapes)
+        thick = half_width(A, a) + half_width(A, b)
         if way > max(thick, INTERVAL_DEPTH_LEAST * A.BODY[i].extent):
             SIDE[row].key = -1  # deleted, not free: rows after it may belong to other pairs
 
@@ -135,13 +145,10 @@ def keep_sides(TABLE: Table, KNOWN: Rows[Side], PLACE: IntArray) -> None:
     A, k = scene_of(TABLE), PLACE.shape[0]
     for row in range(len(KNOWN)):
         known = KNOWN[row]
-        pair = known.key - 1
-        if pair < 0 or PLACE[pair // k] < 0 or PLACE[pair % k] < 0:
+        a, b = shapes_of_pair(k, known.key - 1)
+        if a < 0 or PLACE[a] < 0 or PLACE[b] < 0:
             continue
-        a, b, sign = PLACE[pair // k], PLACE[pair % k], 1.0
-        if a > b:
-            a, b, sign = b, a, -1.0
-        key = pair_number(A, a, b)
+        key, sign = side_key(A, PLACE[a], PLACE[b]), 1.0 if PLACE[a] < PLACE[b] else -1.0
         side = A.SIDE[side_row(A, key)]
         side.key, side.nx, side.ny, side.deep = key, sign * known.nx, sign * known.ny, known.deep
 
@@ -149,10 +156,7 @@ def keep_sides(TABLE: Table, KNOWN: Rows[Side], PLACE: IntArray) -> None:
 @nonallocating
 def side_of(A: Scene, a: int, b: int) -> tuple[float, float]:
     """The remembered normal from shape a to shape b, (0, 0) if there is none."""
-    sign = 1.0
-    if a > b:
-        a, b, sign = b, a, -1.0
-    key = pair_number(A, a, b)
+    key, sign = side_key(A, a, b), 1.0 if a < b else -1.0
     side = A.SIDE[side_row(A, key)]
     if side.key != key:
         return 0.0, 0.0
@@ -214,7 +218,7 @@ def closest_on_side(A: Scene, P: FloatArray, p: int, Q: FloatArray, q: int, a: i
         near = closest(P, p, Q, q)
         reach = deep
     else:
-        key = pair_number(A, a, b)
+        key = side_key(A, a, b)
         side = A.SIDE[side_row(A, key)]
         mx, my, reach = side.nx, side.ny, max(near_side(A, a, b), side.deep)
         if side.key != key:

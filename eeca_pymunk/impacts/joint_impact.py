@@ -11,6 +11,7 @@ from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, zeros
 from ..contacts.counts import spend
 from ..contacts.works import carried, gained_energy, kinetic_energy
+from ..geometry.sides import pair_of
 from ..islands.building import persists_from
 from ..islands.local import clear_places
 from ..islands.membership import jointed, members
@@ -102,7 +103,6 @@ def settle_energy(
 def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     """The impact of shapes a and b, predicted for instant t, with the components of their bodies; results as
     `resolution.strike`, at PAR.now, the instant at which they meet on their paths with joints."""
-    k = A.SHAPE.shape[0]
     i, j = A.LINK[a].owner, A.LINK[b].owner
     t, apart = locate_impact(A, J, a, b, t)
     A.PAR.now = t
@@ -126,7 +126,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
         return list_ended(A, n)
     lasts = persists_from(A, a, b, t)
     owed, _ = energy_owed(A, n)
-    block = make_block(A, n, m, PAIRS, min(a, b) * k + max(a, b), lasts, t)
+    block = make_block(A, n, m, PAIRS, pair_of(A, a, b), lasts, t)
     ROWS, V = block.ROWS, block.V
     rows = len(ROWS)
     L, OUT = np.zeros((rows, 2)), zeros(1, SOLVED)

@@ -14,6 +14,7 @@ from ..contacts.counts import looks_of, note_lock, note_unmet, spend
 from ..contacts.memory import shapes_of
 from ..contacts.single import note
 from ..contacts.works import carried
+from ..geometry.sides import pair_of
 from ..islands.building import join_reachable
 from ..islands.local import clear_places, set_places
 from ..islands.membership import jointed, members, unite
@@ -104,7 +105,6 @@ def strike(A: Scene, a: int, b: int, t: float, lasts: bool) -> int:
     Args:
         lasts: whether the contact of a and b persists from now on.
     """
-    k = A.SHAPE.shape[0]
     n, m, PAIRS = gather_block(A, a, b, t)
     if holds_joints(A, n):
         clear_places(A, A.BLOCK[:n])
@@ -112,7 +112,7 @@ def strike(A: Scene, a: int, b: int, t: float, lasts: bool) -> int:
     if lacks_room(A, n, m):
         return list_ended(A, n)
     owed, piled = energy_owed(A, n)
-    block = make_block(A, n, m, PAIRS, min(a, b) * k + max(a, b), lasts, t)
+    block = make_block(A, n, m, PAIRS, pair_of(A, a, b), lasts, t)
     rows = len(block.ROWS)
     L, OUT = np.zeros((rows, 2)), zeros(1, SOLVED)
     problem = Problem(block.ROWS, block.IM, block.II, block.POSE, n, rows)

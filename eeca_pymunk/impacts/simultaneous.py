@@ -18,7 +18,7 @@ from ..contacts.single import move_to, touches
 from ..contacts.targets import hardly_bounces
 from ..geometry.flight import pose, rate
 from ..geometry.manifold import face
-from ..geometry.sides import note_side
+from ..geometry.sides import note_side, pair_of, shapes_of_pair
 from ..islands.accounting import end_interval
 from ..islands.membership import budget_spent, fixed_support, in_large_island, remembered_force
 from ..model.contacts import ROW, Row
@@ -75,9 +75,9 @@ def gather_block(A: Scene, a: int, b: int, t: float) -> tuple[int, int, IntArray
     """Collect the block of an impact of shapes a and b at instant t: n bodies in A.BLOCK, which move to that instant,
     with their places in A.PLACE; and m pairs as numbers a k + b (k shapes) in increasing order. Returns n, m and the
     pairs."""
-    k, BODIES = A.SHAPE.shape[0], A.BLOCK
+    BODIES = A.BLOCK
     PAIRS = np.empty(16, np.int64)
-    PAIRS[0] = min(a, b) * k + max(a, b)
+    PAIRS[0] = pair_of(A, a, b)
     n, m, q = 0, 1, 0
     most = BLOCK_BODIES if in_large_island(A, a, b) else A.BLOCK.shape[0]
     for s in (a, b):
@@ -93,7 +93,7 @@ def gather_block(A: Scene, a: int, b: int, t: float) -> tuple[int, int, IntArray
                 o = int(A.POOL[p])
                 j = A.LINK[o].owner
                 moves = A.BODY[j].inv_mass > 0.0
-                key = min(s, o) * k + max(s, o)
+                key = pair_of(A, s, o)
                 # Pairs with earlier bodies of the block are there already.
                 if key == PAIRS[0] or (moves and 0 <= A.PLACE[j] < q - 1):
                     continue
@@ -167,7 +167,7 @@ def make_block(A: Scene, n: int, m: int, PAIRS: IntArray, hit: int, lasts: bool,
     found = np.empty((2, 5))
     rows, place = 0, n
     for z in range(m):
-        sa, sb = PAIRS[z] // k, PAIRS[z] % k
+        sa, sb = shapes_of_pair(k, PAIRS[z])
         i, j = LINK[sa].owner, LINK[sb].owner
         p, q = A.PLACE[i], A.PLACE[j]
         # A body without mobility has a local body for each of its contacts.

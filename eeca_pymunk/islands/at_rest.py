@@ -59,7 +59,7 @@ def renew_forces(A: Scene, c: int, stamp: float) -> None:
     """Set the stamp of the remembered forces of contact c, if they are of the last step, to that of the step
     `stamp`."""
     a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
-    key = key_of(A.SHAPE.shape[0], a, b)
+    key = key_of(A, a, b)
     for z in range(2):
         row = find(A.KEYS, key + z)
         if row >= 0 and A.FORCES[row].stamp >= stamp - 1.0:

@@ -125,7 +125,7 @@ def lossy(A: Scene, root: int) -> bool:
 def remembered_force(A: Scene, a: int, b: int, since: float) -> tuple[float, float]:
     """Normal force and load (mass length/time²) of a pair of shapes a and b, summed over its points, as of the steps
     from number `since` on; 0 if there is none."""
-    key = key_of(A.SHAPE.shape[0], a, b)
+    key = key_of(A, a, b)
     force, load = 0.0, 0.0
     for z in range(2):
         row = find(A.KEYS, key + z)

@@ -125,7 +125,7 @@ def supports_load(A: Scene, root: int, past: bool) -> bool:
 def remember_forces(A: Scene, c: int) -> None:
     """Write the forces of contact c into the memory of forces (`..contacts.memory`)."""
     a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
-    key = key_of(A.SHAPE.shape[0], a, b)
+    key = key_of(A, a, b)
     if c > 0 and A.PUSHED_BY[c - 1].a == a and A.PUSHED_BY[c - 1].b == b:
         key += 1  # the other end of a face
     if find(A.KEYS, key) >= 0 or table_has_room(A, 1):

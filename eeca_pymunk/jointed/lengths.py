@@ -44,7 +44,7 @@ def may_meet_others(A: Scene, i: int, way: float, t: float, h: float, KEY: IntAr
                 continue
             known = False
             for z in range(m):
-                known = known or KEY[z] >> 1 == key_of(A.SHAPE.shape[0], s, o) >> 1
+                known = known or KEY[z] >> 1 == key_of(A, s, o) >> 1
             if not known:
                 return True
     return False

@@ -84,7 +84,7 @@ def begin_side(A: Scene, a: int, b: int, start: float, duration: float, toleranc
     q = place_vertices(A, b, x_b, y_b, angle_b, Q)
     near = sides.closest_on_side(A, P, p, Q, q, a, b)
     d, nx, ny, px, py = near.distance, near.nx, near.ny, near.x, near.y
-    key = sides.pair_number(A, a, b)
+    key = sides.side_key(A, a, b)
     side = A.SIDE[sides.side_row(A, key)]
     held = d < -sides.near_side(A, a, b) or in_one_island(A, i, j)
     if d > sides.near_side(A, a, b):
@@ -138,7 +138,7 @@ def general(A: Scene, a: int, b: int, horizon: float) -> tuple[float, bool]:
         return search(A, a, b, horizon, math.inf)
     start = max(A.BODY[A.LINK[a].owner].since, A.BODY[A.LINK[b].owner].since)
     begin_side(A, a, b, start, max(horizon - start, 0.0), gap_round_off(A, a, b))
-    side = A.SIDE[sides.side_row(A, sides.pair_number(A, a, b))]
+    side = A.SIDE[sides.side_row(A, sides.side_key(A, a, b))]
     key, nx, ny, deep = side.key, side.nx, side.ny, side.deep
     t, certain = search(A, a, b, horizon, math.inf)
     side.key, side.nx, side.ny, side.deep = key, nx, ny, deep
