@@ -43,8 +43,8 @@ MUTATIONS = (
     # Flight and times of impact.
     Mutation("flight: a half is missing", "geometry/flight.py", "half = 0.5 * s", "half = s",
              "geometry/test_gap.py", "parabola"),
-    Mutation("flight: sign of an acceleration", "contacts/single.py", "body.vx += body.ax * s",
-             "body.vx -= body.ax * s", "closures/test_time_of_impact.py", "different_forces"),
+    Mutation("flight: sign of an acceleration", "geometry/flight.py", "BODY[i].vx + s * BODY[i].ax",
+             "BODY[i].vx - s * BODY[i].ax", "closures/test_time_of_impact.py", "different_forces"),
     Mutation("times: a clock's way is missing", "prediction/impact_times.py",
              "(BODY[j].vx + h * ax) - (BODY[i].vx + g * ax), (BODY[j].vy + h * ay) - (BODY[i].vy + g * ay)",
              "BODY[j].vx - BODY[i].vx, BODY[j].vy - BODY[i].vy",

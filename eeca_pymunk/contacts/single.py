@@ -1,4 +1,4 @@
-"""Impacts of a single disk, by the closed law; motion along paths; which shapes touch at an instant.
+"""Impacts of a single disk, by the closed law; which shapes touch at an instant.
 
 A is the scene, t an instant within the step, i and j rows of BODY, a, b, o and s rows of SHAPE.
 """
@@ -9,28 +9,13 @@ import math
 
 from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
-from ..geometry.flight import pose
+from ..geometry.flight import move_to, pose
 from ..geometry.gap import gap, gap_at, gap_round_off
 from ..model.bodies import Body
 from ..model.contacts import Impulse
 from ..model.scene import Scene
 from ..pairs.lists import far_apart
 from ..pairs.rules import barred, law
-
-
-@nonallocating
-def move_to(BODY: Rows[Body], i: int, t: float) -> None:
-    """Let the path of body i begin at instant t, with its pose and velocity there."""
-    body = BODY[i]
-    s = t - body.since
-    if s != 0.0:
-        body.x += (body.vx + 0.5 * body.ax * s) * s
-        body.y += (body.vy + 0.5 * body.ay * s) * s
-        body.angle += (body.spin + 0.5 * body.angular * s) * s
-        body.vx += body.ax * s
-        body.vy += body.ay * s
-        body.spin += body.angular * s
-        body.since = t
 
 
 @nonallocating

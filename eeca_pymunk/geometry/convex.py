@@ -169,6 +169,17 @@ def point_core(x: float, y: float, Q: FloatArray, q: int) -> tuple[float, float,
     return apart, -Q[edge, 2], -Q[edge, 3], True, edge, apart
 
 
+@inlined
+def from_faces(P: FloatArray, vertex_p: int, Q: FloatArray, vertex_q: int, faces: Faces, second: bool) -> Closest:
+    """The closest points of cores P and Q along the normal of the face of Q, if `second`, or of P, by the vertex of the
+    other core that is nearest along it."""
+    d = faces.apart_q if second else faces.apart_p
+    if second:
+        return Closest(d, -Q[faces.edge_q, 2], -Q[faces.edge_q, 3], P[vertex_p, 0], P[vertex_p, 1], True, faces)
+    nx, ny = P[faces.edge_p, 2], P[faces.edge_p, 3]
+    return Closest(d, nx, ny, Q[vertex_q, 0] - d * nx, Q[vertex_q, 1] - d * ny, True, faces)
+
+
 @nonallocating
 def closest(P: FloatArray, p: int, Q: FloatArray, q: int) -> Closest:
     """Closest points of cores P and Q. Coincident points get the normal (1, 0)."""
@@ -208,9 +219,4 @@ def closest(P: FloatArray, p: int, Q: FloatArray, q: int) -> Closest:
                 if nx * dx + ny * dy < 0.0:  # the other side of a segment
                     nx, ny = -nx, -ny
                 return Closest(d, nx, ny, x, y, True, faces)
-    if second:
-        nx, ny, x, y = -Q[edge_q, 2], -Q[edge_q, 3], P[vertex_p, 0], P[vertex_p, 1]
-    else:
-        nx, ny = P[edge_p, 2], P[edge_p, 3]
-        x, y = Q[vertex_q, 0] - apart * nx, Q[vertex_q, 1] - apart * ny
-    return Closest(apart, nx, ny, x, y, True, faces)
+    return from_faces(P, vertex_p, Q, vertex_q, faces, second)

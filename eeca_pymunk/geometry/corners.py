@@ -27,7 +27,7 @@ def core_room(LINK: Rows[Link]) -> FloatArray:
 
 def side_rows(few: int, shapes: int) -> int:
     """Rows of SIDE, a power of 2, for so many moving thin shapes among so many shapes; 0 if no thin shapes may meet."""
-    rows = 64 if few else 0
+    rows = _SIDES if few else 0
     while few and rows < max(4 * shapes, min(_SIDES * few, _MANY)):
         rows *= 2
     return rows

@@ -46,6 +46,25 @@ def rate(BODY: Rows[Body], i: int, t: float) -> tuple[float, float, float]:
     return BODY[i].vx + s * BODY[i].ax, BODY[i].vy + s * BODY[i].ay, BODY[i].spin + s * BODY[i].angular
 
 
+@nonallocating
+def move_to(BODY: Rows[Body], i: int, t: float) -> None:
+    """Let the path of body i begin at instant t, with its pose and velocity there."""
+    body = BODY[i]
+    if t != body.since:
+        body.x, body.y, body.angle = pose(BODY, i, t)
+        body.vx, body.vy, body.spin = rate(BODY, i, t)
+        body.since = t
+
+
+@inlined
+def rotated(x: float, y: float, angle: float) -> tuple[float, float]:
+    """A vector rotated by an angle; exact for angle 0 and for a vector of length 0."""
+    if angle == 0.0 or (x == 0.0 and y == 0.0):
+        return x, y
+    c, z = math.cos(angle), math.sin(angle)
+    return c * x - z * y, z * x + c * y
+
+
 @inlined
 def opening_rate(
     nx: float, ny: float, arm_a: float, arm_b: float, a: tuple[float, float, float], b: tuple[float, float, float]

@@ -17,20 +17,15 @@ from ..compiled import Table, nonallocating
 from ..model.parameters.detection import CORNER_ROUND_OFF, GAP_ROUND_OFF
 from ..model.scene import Scene, scene_of
 from .convex import place_vertices, point_core
-from .flight import pose
+from .flight import pose, rotated
 from .sides import closest_on_side
 
 
 @nonallocating
 def disk_centre(A: Scene, s: int, x: float, y: float, angle: float) -> tuple[float, float]:
     """World position of the one vertex of disk s; that of the body, to the last digit, if it is the centre of mass."""
-    px, py = A.VERTEX[A.LINK[s].first, 0], A.VERTEX[A.LINK[s].first, 1]
-    if px == 0.0 and py == 0.0:
-        return x, y
-    if angle == 0.0:
-        return x + px, y + py
-    c, z = math.cos(angle), math.sin(angle)
-    return x + (c * px - z * py), y + (z * px + c * py)
+    px, py = rotated(A.VERTEX[A.LINK[s].first, 0], A.VERTEX[A.LINK[s].first, 1], angle)
+    return x + px, y + py
 
 
 @nonallocating

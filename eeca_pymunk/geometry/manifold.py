@@ -146,15 +146,21 @@ def support_range(P: FloatArray, p: int, nx: float, ny: float, tolerance: float)
 
 
 @nonallocating
-def common_face(
-    P: FloatArray, p: int, Q: FloatArray, q: int, nx: float, ny: float, slack: float
-) -> tuple[float, float, float, bool]:  # fmt: skip
-    """The common face of cores P and Q with normal n from P to Q, where both have edges normal to n within `slack`
-    (length): least and largest position along t = (-n_y, n_x), the height of P along n, and whether there is one."""
-    low_p, high_p, top, size_p = support_range(P, p, nx, ny, slack)
-    low_q, high_q, _, size_q = support_range(Q, q, -nx, -ny, slack)
-    low, high = max(low_p, -high_q), min(high_p, -low_q)
-    return low, high, top, high - low > FACE_WIDTH * max(size_p, size_q)
+def face_points(
+    A: Scene, s: int, r: int, g: float, nx: float, ny: float, px: float, py: float, tolerance: float
+) -> tuple[int, float, float, float, float]:  # fmt: skip
+    """How many contact points `face` has for shapes s < r, whose placed cores stand in CORE, and these (2 each): the
+    ends of their common face; else only p, given as the normal n and the gap g are."""
+    P, Q, p, q = A.CORE[0], A.CORE[1], A.LINK[s].vertices, A.LINK[r].vertices
+    if p > 1 and q > 1:
+        slack = tolerance + max(-g, 0.0)
+        low_p, high_p, top, size_p = support_range(P, p, nx, ny, slack)
+        low_q, high_q, _, size_q = support_range(Q, q, -nx, -ny, slack)
+        low, high = max(low_p, -high_q), min(high_p, -low_q)
+        if high - low > FACE_WIDTH * max(size_p, size_q):
+            top += A.SHAPE[s].rounding + 0.5 * g
+            return 2, top * nx - low * ny, top * ny + low * nx, top * nx - high * ny, top * ny + high * nx
+    return 1, px, py, px, py
 
 
 @nonallocating
@@ -168,18 +174,9 @@ def face(A: Scene, s: int, r: int, POSE: FloatArray, a: int, b: int, tolerance: 
     if swapped:
         s, r, a, b = r, s, b, a
     g, nx, ny, px, py = ordered_gap(A, s, POSE[a, 0], POSE[a, 1], POSE[a, 2], r, POSE[b, 0], POSE[b, 1], POSE[b, 2])
-    count = 1
-    OUT[0, 0], OUT[0, 1], OUT[0, 2], OUT[0, 3], OUT[0, 4] = nx, ny, px, py, g
-    p, q = A.LINK[s].vertices, A.LINK[r].vertices
-    if p > 1 and q > 1:
-        low, high, top, wide = common_face(A.CORE[0], p, A.CORE[1], q, nx, ny, tolerance + max(-g, 0.0))
-        if wide:
-            count = 2
-            top += A.SHAPE[s].rounding + 0.5 * g
-            for k in range(2):
-                u = low if k == 0 else high
-                OUT[k, 0], OUT[k, 1], OUT[k, 4] = nx, ny, g
-                OUT[k, 2], OUT[k, 3] = top * nx - u * ny, top * ny + u * nx
+    count, OUT[0, 2], OUT[0, 3], OUT[1, 2], OUT[1, 3] = face_points(A, s, r, g, nx, ny, px, py, tolerance)
+    for k in range(count):
+        OUT[k, 0], OUT[k, 1], OUT[k, 4] = nx, ny, g
     if swapped:
         reverse(OUT, count)
     return count

@@ -29,7 +29,7 @@ from ..model.parameters.detection import STRAIGHT
 from ..model.parameters.intervals import INTERVAL_DEPTH, INTERVAL_DEPTH_LEAST, INTERVAL_DEPTH_WIDTH, INTERVAL_WAY
 from ..model.scene import Scene, scene_of
 from ..model.shapes import Side
-from .convex import Closest, Faces, closest, separation
+from .convex import Closest, Faces, closest, from_faces, separation
 
 _PROBES = 16  # rows in which a pair may be
 _SCATTER = 40503
@@ -227,10 +227,4 @@ def closest_on_side(A: Scene, P: FloatArray, p: int, Q: FloatArray, q: int, a: i
         return near
     apart_p, edge_p, vertex_q = separation(P, p, Q, q, mx, my)
     apart_q, edge_q, vertex_p = separation(Q, q, P, p, -mx, -my)
-    faces = Faces(edge_p, apart_p, edge_q, apart_q)
-    if apart_q > apart_p:
-        nx, ny, x, y = -Q[edge_q, 2], -Q[edge_q, 3], P[vertex_p, 0], P[vertex_p, 1]
-        return Closest(apart_q, nx, ny, x, y, True, faces)
-    nx, ny = P[edge_p, 2], P[edge_p, 3]
-    x, y = Q[vertex_q, 0] - apart_p * nx, Q[vertex_q, 1] - apart_p * ny
-    return Closest(apart_p, nx, ny, x, y, True, faces)
+    return from_faces(P, vertex_p, Q, vertex_q, Faces(edge_p, apart_p, edge_q, apart_q), apart_q > apart_p)

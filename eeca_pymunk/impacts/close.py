@@ -6,7 +6,7 @@ import math
 
 from ..arrays import IntArray
 from ..compiled import nonallocating
-from ..contacts.single import move_to
+from ..geometry.flight import move_to
 from ..geometry.gap import gap_at
 from ..islands.accounting import account_contact, apply_correction, hold_sides
 from ..islands.at_rest import report_at_rest, store_rest

@@ -14,9 +14,9 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, empty
-from ..contacts.single import move_to, touches
+from ..contacts.single import touches
 from ..contacts.targets import hardly_bounces
-from ..geometry.flight import pose, rate
+from ..geometry.flight import move_to, pose, rate
 from ..geometry.manifold import face
 from ..geometry.sides import note_side, pair_of, shapes_of_pair
 from ..islands.accounting import end_interval

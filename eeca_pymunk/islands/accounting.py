@@ -11,8 +11,7 @@ import numpy as np
 
 from ..compiled import Table, kernel, nonallocating
 from ..contacts.correction import turn_by, unturn
-from ..contacts.single import move_to
-from ..geometry.flight import norm
+from ..geometry.flight import move_to, norm
 from ..geometry.gap import gap
 from ..geometry.sides import note_side, remembers
 from ..model.bodies import AT_REST, CHANGED

@@ -11,8 +11,7 @@ import numpy as np
 from ..arrays import IntArray
 from ..compiled import kernel, nonallocating
 from ..contacts.memory import table_has_room
-from ..contacts.single import move_to
-from ..geometry.flight import fastest, norm
+from ..geometry.flight import fastest, move_to, norm
 from ..geometry.sides import half_width, smaller
 from ..model.bodies import AT_REST
 from ..model.contacts import ENDED, LASTED

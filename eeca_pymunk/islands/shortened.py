@@ -16,8 +16,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import inlined, kernel, nonallocating
 from ..contacts.counts import count_solve
 from ..contacts.interval import make_contacts, step_island
-from ..contacts.single import move_to
-from ..geometry.flight import norm
+from ..geometry.flight import move_to, norm
 from ..model.contacts import ENDED
 from ..model.parameters.intervals import INTERVAL_DEPTH, INTERVAL_RETRY, REPAY_ROUND_OFF
 from ..model.scene import Scene

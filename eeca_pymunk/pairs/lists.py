@@ -7,9 +7,8 @@ circles, and the pair is in no list. A pair of moving shapes is in both lists, a
 
 from __future__ import annotations
 
-import math
-
 from ..compiled import nonallocating
+from ..geometry.flight import norm, pose, rate, rotated
 from ..geometry.gap import gap_round_off
 from ..geometry.sides import smaller
 from ..model.parameters.impulses import FACE_ROUND_OFF, ROCKING
@@ -20,17 +19,9 @@ from .rules import law
 @nonallocating
 def circle_centre(A: Scene, s: int, t: float) -> tuple[float, float]:
     """Centre of the bounding circle of shape s at instant t."""
-    BODY, i = A.BODY, A.LINK[s].owner
-    h = t - BODY[i].since
-    x = BODY[i].x + (BODY[i].vx + 0.5 * BODY[i].ax * h) * h
-    y = BODY[i].y + (BODY[i].vy + 0.5 * BODY[i].ay * h) * h
-    a, b = A.SHAPE[s].centre_x, A.SHAPE[s].centre_y
-    if a != 0.0 or b != 0.0:
-        angle = BODY[i].angle + (BODY[i].spin + 0.5 * BODY[i].angular * h) * h
-        c, d = math.cos(angle), math.sin(angle)
-        x += c * a - d * b
-        y += d * a + c * b
-    return x, y
+    x, y, angle = pose(A.BODY, A.LINK[s].owner, t)
+    px, py = rotated(A.SHAPE[s].centre_x, A.SHAPE[s].centre_y, angle)
+    return x + px, y + py
 
 
 @nonallocating
@@ -45,10 +36,8 @@ def far_apart(A: Scene, a: int, b: int, t: float, reach: float) -> bool:
 @nonallocating
 def course(A: Scene, s: int, t: float) -> tuple[float, float]:
     """Direction of the velocity of the centre of mass of shape s's body at instant t; 0 if it has none."""
-    BODY, i = A.BODY, A.LINK[s].owner
-    h = t - BODY[i].since
-    ux, uy = BODY[i].vx + BODY[i].ax * h, BODY[i].vy + BODY[i].ay * h
-    u = math.sqrt(ux * ux + uy * uy)
+    ux, uy, _ = rate(A.BODY, A.LINK[s].owner, t)
+    u = norm(ux, uy)
     return (ux / u, uy / u) if u > 0.0 else (0.0, 0.0)
 
 

@@ -6,7 +6,7 @@ import math
 
 from ..compiled import nonallocating
 from ..geometry.convex import place_vertices, point_core
-from ..geometry.flight import pose, rate
+from ..geometry.flight import pose, rate, rotated
 from ..model.scene import Scene
 from .circles import circle_circle, circle_outline
 from .roots import flat
@@ -52,10 +52,7 @@ def carried_circle(A: Scene, s: int, start: float, duration: float) -> tuple[flo
     BODY, i = A.BODY, A.LINK[s].owner
     x, y, angle = pose(BODY, i, start)
     ux, uy, w = rate(BODY, i, start)
-    px, py = A.SHAPE[s].centre_x, A.SHAPE[s].centre_y
-    if angle != 0.0 and (px != 0.0 or py != 0.0):
-        c, z = math.cos(angle), math.sin(angle)
-        px, py = c * px - z * py, z * px + c * py
+    px, py = rotated(A.SHAPE[s].centre_x, A.SHAPE[s].centre_y, angle)
     twist = abs(BODY[i].angular)
     most = abs(w) + twist * duration
     return x + px, y + py, ux - w * py, uy + w * px, math.sqrt(px * px + py * py) * (most * most + twist)

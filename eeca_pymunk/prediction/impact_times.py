@@ -12,6 +12,7 @@ import math
 from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..geometry.flight import pose, rate
+from ..geometry.gap import gap_round_off
 from ..model.bodies import Body
 from ..model.parameters.detection import GAP_ROUND_OFF
 from ..model.parameters.events import APPROACH_ROUND_OFF, DISTANCE_ROUND_OFF, MISS_DISTANCE, PATH_REACH
@@ -90,13 +91,12 @@ def disk_disk(BODY: Rows[Body], i: int, j: int, horizon: float) -> tuple[float, 
 def disk_wall(A: Scene, i: int, b: int, horizon: float) -> tuple[float, bool]:
     """Single disk i and a static shape b: a closed form, except for round ends under acceleration."""
     body = A.BODY[i]
-    x, y, since = body.x, body.y, body.since
     extent = body.extent + A.SHAPE[b].rounding
-    tolerance = GAP_ROUND_OFF * (max(abs(x), abs(y)) + extent)
     t, certain = circle_outline(
-        x, y, body.vx, body.vy, body.ax, body.ay, extent, tolerance, A, b, max(horizon - since, 0.0)
-    )
-    return since + t, certain or t == math.inf
+        body.x, body.y, body.vx, body.vy, body.ax, body.ay, extent, gap_round_off(A, i, b), A, b,
+        max(horizon - body.since, 0.0),
+    )  # fmt: skip
+    return body.since + t, certain or t == math.inf
 
 
 @nonallocating

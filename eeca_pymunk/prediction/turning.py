@@ -23,7 +23,7 @@ from ..geometry import sides
 from ..geometry.convex import place_vertices
 from ..geometry.flight import pose
 from ..geometry.gap import gap_round_off
-from ..geometry.manifold import common_face
+from ..geometry.manifold import face_points
 from ..model.bodies import Body
 from ..model.parameters.events import ADVANCES, APPROACH_ROUND_OFF, LONGEST_SEARCH, RESOLUTION
 from ..model.parameters.intervals import TOUCH
@@ -112,20 +112,10 @@ def face_closes(
     Args:
         nx, ny: normal from a to b.  x, y: point of a's core.  d: gap of the cores.  one, two: motions of the bodies.
     """
-    P, Q, p, q = A.CORE[0], A.CORE[1], A.LINK[a].vertices, A.LINK[b].vertices
     g = d - A.SHAPE[a].rounding - A.SHAPE[b].rounding
-    away = A.SHAPE[a].rounding + 0.5 * g
-    low, high, top, wide = 0.0, 0.0, 0.0, False
-    if p > 1 and q > 1:
-        low, high, top, wide = common_face(P, p, Q, q, nx, ny, face_tolerance(A, a, b) + max(-g, 0.0))
-    for k in range(2 if wide else 1):
-        px, py = x + away * nx, y + away * ny
-        if wide:
-            along = low if k == 0 else high
-            px, py = (top + away) * nx - along * ny, (top + away) * ny + along * nx
-        if opening(one, two, nx, ny, px, py) < -still:
-            return True
-    return False
+    away, tolerance = A.SHAPE[a].rounding + 0.5 * g, face_tolerance(A, a, b)
+    _, px, py, qx, qy = face_points(A, a, b, g, nx, ny, x + away * nx, y + away * ny, tolerance)
+    return bool(min(opening(one, two, nx, ny, px, py), opening(one, two, nx, ny, qx, qy)) < -still)
 
 
 @nonallocating

@@ -8,7 +8,7 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk.contacts.interval import step_island
-from eeca_pymunk.contacts.single import move_to
+from eeca_pymunk.geometry.flight import move_to
 from eeca_pymunk.impacts.begin import begin, total
 from eeca_pymunk.impacts.intervals import cut_short, start_islands
 from eeca_pymunk.islands.accounting import end_interval

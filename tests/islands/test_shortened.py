@@ -8,7 +8,7 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk.compiled.records import rows
-from eeca_pymunk.contacts.single import move_to
+from eeca_pymunk.geometry.flight import move_to
 from eeca_pymunk.islands.shortened import losses, scale_impulses
 from eeca_pymunk.model.bodies import Body, Member, Next
 from eeca_pymunk.model.contacts import Pair, Pushed
