@@ -27,18 +27,18 @@ def circle_circle(
     Args:
         dx, dy: from centre to centre, length.  ux, uy: relative velocity.  ax, ay: relative acceleration.
         extent: sum of the radii.  tolerance: length, a gap that counts as closed.
-        duration: time up to which is searched; lower bounds are at least that. Infinite: the result is exact.
+        duration: finite time up to which is searched; lower bounds are at least that. After ADVANCES looks a search
+            is given up, and an impact before `duration` may be missed.
     """
     if ax == 0.0 and ay == 0.0:
         return ball_point(dx, dy, ux, uy, extent), True
-    if 0.0 < duration < math.inf:
+    if duration > 0.0:
         later = SEARCH_AHEAD * duration
         reach = extent + (abs(ux) + abs(uy) + 0.5 * (abs(ax) + abs(ay)) * later) * later
         if dx * dx + dy * dy > reach * reach:
             return later, False
     pull = math.sqrt(ax * ax + ay * ay)
-    stride = duration / RESOLUTION if duration < math.inf else 0.0
-    s = 0.0
+    s, stride = 0.0, duration / RESOLUTION
     for _ in range(ADVANCES):
         x, y = dx + (ux + 0.5 * ax * s) * s, dy + (uy + 0.5 * ay * s) * s
         vx, vy = ux + ax * s, uy + ay * s
@@ -76,8 +76,7 @@ def circle_outline(
     sides = count if count > 1 else 0
     straight = ax == 0.0 and ay == 0.0
     pull = math.sqrt(ax * ax + ay * ay)
-    stride = duration / RESOLUTION if duration < math.inf else 0.0
-    s = 0.0
+    s, stride = 0.0, duration / RESOLUTION
     for _ in range(ADVANCES):
         px, py = x + (vx + 0.5 * ax * s) * s, y + (vy + 0.5 * ay * s) * s
         ux, uy = vx + ax * s, vy + ay * s

@@ -84,7 +84,7 @@ def disk_disk(BODY: Rows[Body], i: int, j: int, horizon: float) -> tuple[float, 
         x_j - x_i, y_j - y_i, vx_j - vx_i, vy_j - vy_i, ax_j - ax_i, ay_j - ay_i, extent,
         GAP_ROUND_OFF * (far + extent), max(horizon - start, 0.0),
     )  # fmt: skip
-    return start + t, certain or t == math.inf
+    return start + t, certain
 
 
 @nonallocating
@@ -96,16 +96,12 @@ def disk_wall(A: Scene, i: int, b: int, horizon: float) -> tuple[float, bool]:
         body.x, body.y, body.vx, body.vy, body.ax, body.ay, extent, gap_round_off(A, i, b), A, b,
         max(horizon - body.since, 0.0),
     )  # fmt: skip
-    return body.since + t, certain or t == math.inf
+    return body.since + t, certain
 
 
 @nonallocating
 def time_of_impact(A: Scene, a: int, b: int, horizon: float) -> tuple[float, bool]:
-    """(t, certain) of shapes a and b, see the module.
-
-    Args:
-        horizon: instant up to which is searched; may be infinite for single disks only.
-    """
+    """(t, certain) of shapes a and b, see the module; searched up to a finite instant `horizon`."""
     if a > b:
         a, b = b, a
     disks = A.COUNT.disks
