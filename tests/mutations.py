@@ -302,7 +302,7 @@ MUTATIONS = (
     Mutation("joints: bodies that are let go keep no mobility", "impacts/scene.py",
              "        self.release(BODY)\n        self.joint,", "        self.joint,", "jointed/test_welds.py",
              "come_and_go"),
-    Mutation("correction: sign of its work", "contacts/correction.py", "square = -against(", "square = against(",
+    Mutation("correction: sign of its work", "contacts/correction.py", "= -work_of_forces(", "= work_of_forces(",
              "contacts/test_piles.py", "push_out"),
     Mutation("rest: forces keep half of the length of the step", "islands/at_rest.py",
              "longer = A.PAR.dt / pushed.length", "longer = 0.5", "islands/test_at_rest.py", "bear_its_weight"),

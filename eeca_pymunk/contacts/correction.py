@@ -27,11 +27,12 @@ from ..model.parameters.intervals import (
     CORRECTION_SWEEPS,
     CORRECTION_TRIES,
     CORRECTION_WORK,
+    LIFT_RESIDUAL,
     OVERLAP_LEFT,
 )
 from ..rows.build import normal_rate
 from ..rows.lifting import lift_above_walls
-from .works import against
+from .works import work_of_forces
 
 
 @kernel
@@ -59,8 +60,8 @@ def lifting(
     if deepest >= -left * size or not budget >= 0.0:
         return
     D = np.zeros((len(IM), 3))
-    lift_above_walls(problem, n, GAPS, D, 0.1 * OVERLAP_LEFT * size, CORRECTION_SWEEPS + CORRECTION_WORK // m)
-    D = min(admissible(D, EXTENT, n, size), 1.0) * D
+    lift_above_walls(problem, n, GAPS, D, LIFT_RESIDUAL * OVERLAP_LEFT * size, CORRECTION_SWEEPS + CORRECTION_WORK // m)
+    D = admissible(D, EXTENT, n, size) * D
     END = POSE + 0.5 * h * VN
     NEW = END + D
     turn = x = y = 0.0
@@ -70,12 +71,12 @@ def lifting(
         touched[ROWS[i].a] = 1
         touched[ROWS[i].b] = 1
     for tries in range(CORRECTION_TRIES):
-        work, square = -against(ACC, IM, II, n, D), 0.0
+        work, square = -work_of_forces(ACC, IM, II, n, D), 0.0
         if len(IM) == n:
             NEW = END + D
             turn, x, y, spin, inertia = unturn(NEW, D, VN, IM, II, touched, 0.0)
             work, square = work + turn * spin, 0.5 * inertia * turn * turn
-        if not work + square > budget + CORRECTION_ROUND_OFF * against(np.abs(ACC), IM, II, n, np.abs(D)):
+        if not work + square > budget + CORRECTION_ROUND_OFF * work_of_forces(np.abs(ACC), IM, II, n, np.abs(D)):
             break
         # p D cost p linear - p^2 square = most, as the part p of D changes `spin`, which is that after D; the moment
         # of inertia is taken as constant.

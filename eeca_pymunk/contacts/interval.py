@@ -21,15 +21,17 @@ from ..model.parameters.intervals import (
     INTERVAL_RESIDUAL_SPEED,
     INTERVAL_UNMET,
     LARGE_ISLAND,
+    REACH_ROUND_OFF,
+    RESIDUAL_OF_SPEED,
     TRAVEL_MARGIN,
 )
-from ..model.parameters.joints import COLUMN_CONTACTS
 from ..model.scene import Scene, scene_of
 from ..rows.blocks import clear_report
 from ..rows.build import conserves, rates
 from ..rows.energy import lock, works
 from ..rows.gentle import excessive, unwedge
 from ..rows.inplace import copy
+from ..rows.laws import solved_exactly
 from ..rows.sweeps import velocities
 from .geometry import gather_contacts
 from .memory import find, remember_loads, table_has_room
@@ -85,7 +87,7 @@ def speeds(
         speed = math.sqrt((V[i, 0] - x) ** 2 + (V[i, 1] - y) ** 2) + abs(V[i, 2]) * EXTENT[i]
         REACH[i] = TRAVEL_MARGIN * speed * h
         if i < n:
-            REACH[i] += TRAVEL_MARGIN * pull * h * h + 1e-9 * EXTENT[i]
+            REACH[i] += TRAVEL_MARGIN * pull * h * h + REACH_ROUND_OFF * EXTENT[i]
             square += speed * speed
             most = max(most, speed)
         else:
@@ -192,7 +194,7 @@ def step_island(
         target(ROWS, m, isle.ACC, begun.EXPECTED, pull, h)
         problem, L, FREE = Problem(ROWS, isle.IM, isle.II, isle.POSE, n, m), contacts.L[:m], isle.V + h * isle.ACC
         velocities(problem, L, FREE, VN)
-        scale = pull * h if pull > 0.0 else 1e-3 * fast
+        scale = pull * h if pull > 0.0 else RESIDUAL_OF_SPEED * fast
         elastic = conserves(ROWS, m)
         # A truncated solve dissipates energy in large elastic islands: these are solved to the fine tolerance.
         few = n < LARGE_ISLAND
@@ -202,7 +204,7 @@ def step_island(
             problem, L, VN, FREE, rounds, INTERVAL_RESIDUAL * scale, coarse, A.RESTING[isle.WHO[0]], most, OUT[0]
         )
         # Few contacts are solved to INTERVAL_UNMET; more are left as far as their budget of sweeps solves them.
-        quick, exactly = fast + pull * h, few and m <= COLUMN_CONTACTS
+        quick, exactly = fast + pull * h, solved_exactly(n, m)
         if not exactly:
             stop_at_walls(A, problem, n, np.zeros(m, np.int64), L, VN)
         velocities(problem, L, FREE, VN)  # without the round-off of many sweeps

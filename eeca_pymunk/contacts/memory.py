@@ -31,7 +31,7 @@ def shapes_of(A: Scene, row: Row) -> tuple[int, int]:
 def find(KEYS: IntArray, key: int) -> int:
     """Row of a key in KEYS (c,), or -1 - (the free row where it would be)."""
     mask = len(KEYS) - 1
-    # Fibonacci hashing of both halves; the two contacts of a pair are next to each other.
+    # A product with a large odd number scatters the pairs; the two contacts of a pair are next to each other.
     pair = key >> 1
     row = (((pair ^ (pair >> 20)) * 11400714819323 >> 6) & ~1 | key & 1) & mask
     while KEYS[row] != key:

@@ -18,10 +18,9 @@ from ..model.bodies import Rest
 from ..model.contacts import Problem, Solved
 from ..model.parameters import intervals
 from ..model.parameters.impulses import POLISH_AUGMENTATION, POLISHES_INTERVAL
-from ..model.parameters.joints import COLUMN_CONTACTS
 from ..rows.conjugate import sweep_conjugate
 from ..rows.direct import refine_and_sweep
-from ..rows.laws import solve_few
+from ..rows.laws import solve_few, solved_exactly
 from ..rows.sweeps import sweep
 
 
@@ -56,9 +55,7 @@ def relax(
     out.sweeps += sweeps
     if worst <= fine:
         return worst
-    # few: of so few contacts and bodies that homotopies can solve it.
-    fails, done, few = 0, 0, problem.m <= COLUMN_CONTACTS and problem.n < intervals.LARGE_ISLAND
-    last = worst
+    fails, done, last, few = 0, 0, worst, solved_exactly(problem.n, problem.m)
     while done < rounds:
         passes = POLISHES_INTERVAL if STATE.augmentation > POLISH_AUGMENTATION else 1
         STATE.augmentation, worst, taken = refine_and_sweep(

@@ -1,12 +1,4 @@
-"""Works over an interval, and kinetic energy. The works of an island close by identity, as impulses
-times means of velocities before and after:
-
-    change of energy = forces + carried + lifted - restitution - friction,
-
-of kinetic energy, and of potential energy as far as the penetration correction changes it. `forces` are those that
-cause its accelerations. `restitution` and `friction` are >= 0. `lifted` is the energy that the correction costs, below
-0 if bodies sink by it, and at most these losses.
-"""
+"""Works of contacts and forces over an interval, and kinetic energy. The losses of contacts are in `..rows.energy`."""
 
 from __future__ import annotations
 
@@ -17,7 +9,7 @@ from ..model.contacts import Row
 
 
 @nonallocating
-def carried(
+def external_work(
     ROWS: Rows[Row], L: FloatArray, V: FloatArray, VN: FloatArray, IM: FloatArray, II: FloatArray, m: int
 ) -> float:
     """External work of m contacts with impulses L (m, 2): of bodies that impulses do not move or do not turn, at the
@@ -43,9 +35,8 @@ def carried(
 
 
 @nonallocating
-def against(ACC: FloatArray, IM: FloatArray, II: FloatArray, n: int, D: FloatArray) -> float:
-    """Work of the forces that cause accelerations ACC (k, 3) over displacements D (k, 3), for the first n bodies: that
-    *against* these forces with the other sign."""
+def work_of_forces(ACC: FloatArray, IM: FloatArray, II: FloatArray, n: int, D: FloatArray) -> float:
+    """Work of the forces that cause accelerations ACC (k, 3) over displacements D (k, 3), for the first n bodies."""
     work = 0.0
     for i in range(n):
         work += (ACC[i, 0] * D[i, 0] + ACC[i, 1] * D[i, 1]) / IM[i]

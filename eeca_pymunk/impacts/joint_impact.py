@@ -10,7 +10,7 @@ from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, zeros
 from ..contacts.counts import spend
-from ..contacts.works import carried, gained_energy, kinetic_energy
+from ..contacts.works import external_work, gained_energy, kinetic_energy
 from ..geometry.sides import pair_of
 from ..islands.building import persists_from
 from ..islands.local import clear_places
@@ -79,7 +79,7 @@ def settle_energy(
     `driven` by partners, what contacts and projections have not done is work of these.
     """
     ROWS, V, IM, II, rows = block.ROWS, block.V, block.IM, block.II, len(block.ROWS)
-    outside = carried(ROWS, L, V, V, IM, II, rows)
+    outside = external_work(ROWS, L, V, V, IM, II, rows)
     gained, square = gained_energy(V, FREE, IM, II, n), kinetic_energy(V - FREE, IM, II, n)
     if driven:
         OUT[0].restitution += kinetic_energy(BEFORE - FREE, IM, II, n)

@@ -13,7 +13,7 @@ from ..compiled.records import Rows, zeros
 from ..contacts.counts import looks_of, note_lock, note_unmet, spend
 from ..contacts.memory import shapes_of
 from ..contacts.single import note
-from ..contacts.works import carried
+from ..contacts.works import external_work
 from ..geometry.sides import pair_of
 from ..islands.building import join_reachable
 from ..islands.local import clear_places, set_places
@@ -40,7 +40,7 @@ def finish_block(
     note_lock(A, OUT[0])
     A.PAR.restitution += OUT[0].restitution
     A.PAR.frictional += OUT[0].friction
-    A.PAR.external += carried(ROWS, L, V, V, block.IM, block.II, len(ROWS))
+    A.PAR.external += external_work(ROWS, L, V, V, block.IM, block.II, len(ROWS))
     for q in range(n):
         i = A.BLOCK[q]
         BODY[i].vx, BODY[i].vy, BODY[i].spin = V[q, 0], V[q, 1], V[q, 2]

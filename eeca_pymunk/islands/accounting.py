@@ -1,5 +1,10 @@
 """The end of an island's interval: the works of its contacts up to there enter the ledger. They are exact, as forces
-are constant and velocities linear.
+are constant and velocities linear:
+
+    change of energy = work of forces + external work + cost of the correction - restitution - friction,
+
+of kinetic energy, and of potential energy as far as the penetration correction changes it. The forces are those that
+cause the accelerations; both losses are >= 0; the correction costs at most these, and less than 0 if bodies sink by it.
 
 If an interval is cut, its forces up to there may have given energy: then they are replaced (`shortened.py`). They may
 also have changed the angular momentum, since the arms are those of the middle of the whole interval.

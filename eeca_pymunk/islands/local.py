@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..contacts.memory import shapes_of, table_has_room
-from ..contacts.works import carried
+from ..contacts.works import external_work
 from ..model.islands import Island, IslandContacts
 from ..model.scene import Scene
 from ..pairs.lists import mark_pair
@@ -135,7 +135,7 @@ def write_contacts(
         # Rates that do work, without the swing of a turning wall: they are linear in between.
         pushed.un_before, pushed.ut_before = ROWS[z].un, ROWS[z].ut - ROWS[z].swung
         pushed.un_after, pushed.ut_after = normal_rate(ROWS[z], VN), tangent_rate(ROWS[z], VN) + ROWS[z].swung
-        pushed.work = carried(ROWS[z : z + 1], L[z : z + 1], isle.V, VN, isle.IM, isle.II, 1)
+        pushed.work = external_work(ROWS[z : z + 1], L[z : z + 1], isle.V, VN, isle.IM, isle.II, 1)
         pushed.held = 0.0
         pushed.nx, pushed.ny = ROWS[z].nx, ROWS[z].ny
         # The point from its arms: r = arm_t n - arm_n t.

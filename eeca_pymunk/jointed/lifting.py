@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..contacts.correction import admissible, least_of, turn_by, unturn
-from ..contacts.works import against
+from ..contacts.works import work_of_forces
 from ..islands.depths import left_to_lift
 from ..islands.intervals import contacts_at
 from ..islands.local import clear_places
@@ -125,9 +125,9 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget
     free = is_free(isle, groups, n, J)
     if free:
         keep_centre(D, isle.IM, n)
-    cost, part = -against(isle.ACC, isle.IM, isle.II, n, D), admissible(D, isle.EXTENT, n, size)
+    cost, part = -work_of_forces(isle.ACC, isle.IM, isle.II, n, D), admissible(D, isle.EXTENT, n, size)
     # Contacts that contradict one another give displacements without bound, of which only a part is taken.
-    round_off = CORRECTION_ROUND_OFF * against(np.abs(isle.ACC), isle.IM, isle.II, n, np.abs(D))
+    round_off = CORRECTION_ROUND_OFF * work_of_forces(np.abs(isle.ACC), isle.IM, isle.II, n, np.abs(D))
     if cost * part > max(0.5 * budget, round_off * part):  # the other half is for what closing joints costs
         part = 0.5 * budget / cost
     STORED = np.zeros(len(groups.COMPONENT))
@@ -144,7 +144,7 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget
             if s >= 0 and moves > 0.0:
                 STORED[g] = close_at_poses(A, J, s, END, NEW, V, isle.IM, isle.II, end, h)
                 spent += STORED[g]
-        spent -= against(isle.ACC, isle.IM, isle.II, n, NEW - END)
+        spent -= work_of_forces(isle.ACC, isle.IM, isle.II, n, NEW - END)
         turn, x, y, spin, inertia = unturn(NEW, NEW - END, V, isle.IM, isle.II, ALL, 0.0)
         spent += turn * spin + 0.5 * inertia * turn * turn
         if spent <= budget + round_off * part and math.isfinite(spent):

@@ -1,4 +1,4 @@
-"""The first lists of a scene: margins, and the cell lengths of both grids.
+"""Margins of a scene, the cell lengths of both grids, and the first lists.
 
 Shapes of radius r with margins m, spread evenly, have (2 + 2 m / r)² phi neighbours each, where the packing phi is the
 part of the area that bounding circles cover. Margins are chosen for a number of neighbours by this equation, and all
@@ -12,12 +12,18 @@ import math
 
 from ..arrays import FloatArray
 from ..compiled import Table, nonallocating
-from ..model.parameters.detection import ALL_PAIRS, ALL_WALLS, MARGIN_HALVINGS, MOST_NEIGHBOURS
+from ..model.parameters.detection import (
+    ALL_PAIRS,
+    ALL_WALLS,
+    MARGIN_HALVINGS,
+    MARGIN_LEAST,
+    MARGIN_MOST,
+    MOST_NEIGHBOURS,
+)
 from ..model.scene import Scene, scene_of
 from .grid import make_lists
 from .walls import box_wall, size_walls, wall_grid
 
-LEAST, MOST = 0.1, 20.0  # margins, in radii
 LISTS_MADE, POOL_TOO_SMALL = -1, -2
 
 
@@ -70,7 +76,7 @@ def fill_lists(table: Table, BOUND: FloatArray, neighbours: float, halved: int, 
             entries += A.LIST[s].number
         # Margins do not fall with the bounding radius, so the shapes of median radius have the median margin.
         small, large = margin_at(A, BOUND, (A.GRID.moving - 1) // 2), margin_at(A, BOUND, A.GRID.moving // 2)
-        if entries <= MOST_NEIGHBOURS * A.GRID.moving or 0.5 * (small + large) <= LEAST * middle(BOUND):
+        if entries <= MOST_NEIGHBOURS * A.GRID.moving or 0.5 * (small + large) <= MARGIN_LEAST * middle(BOUND):
             return LISTS_MADE
         for s in range(A.GRID.moving):
             A.MARK[s].margin *= 0.5
@@ -118,8 +124,8 @@ def choose_margins(A: Scene, median: float, neighbours: float) -> None:
     for s in range(A.GRID.moving):
         packing += (A.SHAPE[s].bound / wide) * (A.SHAPE[s].bound / tall)
     phi = max(math.pi * packing, 1e-6)
-    factor = min(max(math.sqrt(0.25 * neighbours / phi) - 1.0, LEAST), MOST)
-    factor = MOST if A.GRID.moving <= ALL_PAIRS else factor
+    factor = min(max(math.sqrt(0.25 * neighbours / phi) - 1.0, MARGIN_LEAST), MARGIN_MOST)
+    factor = MARGIN_MOST if A.GRID.moving <= ALL_PAIRS else factor
     # Points have a margin too; if all shapes are points, any length will do.
     size = median if median > 0.0 else largest if largest > 0.0 else 1.0
     for s in range(A.GRID.moving):

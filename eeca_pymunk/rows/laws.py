@@ -12,12 +12,19 @@ from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import JointedProblem, Problem, Row, Solved
+from ..model.parameters.intervals import LARGE_ISLAND
 from ..model.parameters.joints import COLUMN_CONTACTS, COLUMN_HOMOTOPIES, COLUMN_SWEEPS, COLUMN_SWEEPS_AFTER
 from .columns import as_columns, breach
 from .conjugate import sweep_conjugate
 from .coulomb import slip_freely
 from .homotopy import follow_homotopy
 from .sweeps import push, restore_impulses, sweep, velocities
+
+
+@nonallocating
+def solved_exactly(n: int, m: int) -> bool:
+    """Whether an interval of n bodies without joints has so few contacts, m, that homotopies may solve it."""
+    return n < LARGE_ISLAND and m <= COLUMN_CONTACTS
 
 
 @kernel

@@ -29,5 +29,7 @@ ALL_PAIRS = work(16, "moving shapes", "Number up to which each shape is in the n
 NEIGHBOURS = work(8.0, "shapes",
     "Length of a near list for which margins are chosen; the cheapest for packings from .05 to .65.")
 MOST_NEIGHBOURS = work(20.0, "shapes", "Mean length of near lists above which margins are halved.")
+MARGIN_LEAST = work(0.1, "radii", "Smallest margin.")
+MARGIN_MOST = work(20.0, "radii", "Largest margin, and that of few shapes.")
 MARGIN_HALVINGS = work(8, "number", "Halvings of margins, at most.")
 ALL_WALLS = work(16, "static shapes", "Number up to which all static shapes are tested without a grid.")

@@ -42,6 +42,6 @@ BODY_LOOKS = work(6, "looks", "Work of a body in a solve.")
 PAIR_LOOKS = work(1, "looks", "Work of the geometry of a pair in a solve, or of the gap that leaves it out.")
 OPERATION_LOOKS = work(0.001, "looks", "Work of an operation of a homotopy.")
 SWEEP_LOOKS = work(0.15, "looks", "Work of a contact in a sweep.")
-DIRECT_LOOKS = work(0.08, "looks", "Work of a direct solution, times the square of its contacts.")
+DIRECT_LOOKS = work(0.08, "looks", "Work of a direct solution, times its contacts, times these up to DENSE_CONTACTS.")
 INITIAL_PENETRATION = heuristic(1e-06, "of the smaller shape",
     "Overlap above which shapes that the program placed into each other are separated. Smaller: large piles move on.")

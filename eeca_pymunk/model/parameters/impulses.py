@@ -11,7 +11,7 @@ JAMMED = round_off(1e-09, "of A_nn", "Mobility along the impulse of a slipping c
 ARM_ROUND_OFF = round_off(1e-15, "of the point's coordinates", "Arm of a normal impulse that is 0.")
 ON_CONE = round_off(1e-12, "of the largest friction",
     "Friction nearer than this to the edge of its cone counts as that of slip.")
-WEDGED = heuristic(0.01, "of the speed",
+WEDGED = heuristic(0.01, "of |a| h, or of the approach speed of an impact",
     "Velocity that a solve leaves, or part of its impulses that the energy lock takes, from which on contacts count "
     "as wedged: without friction.")
 ON_CONE_SWEPT = round_off(1e-9, "of the largest friction", "The same at the start of a homotopy, after sweeps.")

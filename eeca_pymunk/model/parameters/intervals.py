@@ -29,6 +29,7 @@ INTERVAL_WAY = heuristic(0.5, "of the smaller shape; rad",
 TRAVEL_MARGIN = accuracy(1.1, "of the way by the speeds and accelerations at its start",
     "Reach of shapes within an interval. Smaller: impulses within it bring shapes together that are not in it. Larger: "
     "more candidates.")
+REACH_ROUND_OFF = round_off(1e-9, "of a body", "Reach of a body at rest within an interval.")
 INTERVAL_DEPTH = heuristic(0.05, "of the smaller shape", "Depth by which a contact may close in one interval.")
 INTERVAL_DEPTH_WIDTH = heuristic(0.1, "of both half widths",
     "Depth by which a contact may close in one interval, or an impact that is passed over by the end of the step: a "
@@ -53,6 +54,8 @@ MIDPOINT_SAME = round_off(1e-07, "of the smaller shape",
     "Half the displacement of a pair below which the geometry at the middle is that of the start.")
 MANIFOLD_ROUND_OFF = round_off(1e-09, "of the smaller shape", "Tolerance of a manifold.")
 INTERVAL_RESIDUAL = accuracy(1e-12, "of |a| h", "Residual of islands near rest and of elastic islands.")
+RESIDUAL_OF_SPEED = accuracy(0.001, "of the fastest speed",
+    "What stands for |a| h in residuals, and in WEDGED, where nothing accelerates.")
 INTERVAL_UNMET = accuracy(1e-06, "of |a| h", "Residual beyond which few contacts count as unsolved in reports.")
 INTERVAL_RESIDUAL_MOVING = accuracy(1e-07, "of |a| h", "Residual of a large moving island.")
 INTERVAL_RESIDUAL_SPEED = accuracy(0.0001, "of its speed",
@@ -71,6 +74,7 @@ FAILED_DIRECT_AGAIN = work(2, "direct solutions",
     "Direct solutions without progress after which the solve ends if that of the last step failed.")
 LONGEST_BACKOFF = work(32.0, "solves", "Largest number of solves in a row in which direct solutions are suspended.")
 OVERLAP_LEFT = accuracy(1e-09, "of the smallest body", "Overlap that is not corrected.")
+LIFT_RESIDUAL = accuracy(0.1, "of OVERLAP_LEFT", "Change of a gap in a sweep at which a correction is solved.")
 CORRECTION_STEP = accuracy(0.25, "of the smaller body",
     "Way of any point of a body by the correction in one interval, at most: half of what would take its centre "
     "through a thin wall that it touches. More turns boxes in large piles to and fro, deeper and deeper into each "
