@@ -5,7 +5,8 @@
 with the roundings r; p is halfway between the two surfaces. Exchanging a and b changes no bit of g, n (but its sign)
 and p: pairs are computed from the lower shape number to the higher one.
 
-The placed cores of a and b stand in CORE afterwards, but for points.
+The placed cores of a and b stand in CORE afterwards, but for points; a segment in a corner is longer there, as
+`sides.corner_of` extends it.
 """
 
 from __future__ import annotations

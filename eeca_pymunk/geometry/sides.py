@@ -202,7 +202,7 @@ def corner_of(
 @nonallocating
 def closest_on_side(A: Scene, P: FloatArray, p: int, Q: FloatArray, q: int, a: int, b: int) -> Closest:
     """`closest` of the cores P and Q of shapes a < b; for thin ones that touch or cross, on the side that the pair
-    remembers, and in corners on the inner side."""
+    remembers, and in corners on the inner side: there P or Q is extended (`corner_of`), for the caller too."""
     near = closest(P, p, Q, q)
     if not remembers(A, a, b):
         return near

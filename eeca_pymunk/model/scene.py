@@ -23,7 +23,7 @@ class Scene(NamedTuple):
     BODY, STATE (n,): bodies, and their next events.  SHAPE, LINK (k,): shapes.  VERTEX (v, 4): see `shapes.Link`.
     MARK, CELL (k,), LIST (moving,): margin circles, places in the grid, near lists.
     POOL int32: numbers of shapes, all near lists one after the other.  FLAG (as POOL): 1 if an island's solve contains
-    the pair, which then makes no events.
+    the pair, or its impact was left out in this step: it makes no events.
     HEAD (power of 2,): first shape in each bucket of the grid of moving shapes, -1 for none.  GRID: its record.
     BOX (static shapes, 4): left, bottom, right, top.  CSR: starts of the cells of their grid, then shapes.
     RULE (r, 6): pairs a < b for which a collision handler decides: shapes a, b, elasticity (negative: no contact),

@@ -98,7 +98,8 @@ def remove(A: Scene, a: int, b: int) -> None:
 
 @nonallocating
 def mark_pair(A: Scene, a: int, b: int, value: int) -> None:
-    """Set the flags of a pair in the lists that contain it: 1 while an island solves it, so that it makes no events."""
+    """Set the flags of a pair in the lists that contain it: 1 while an island solves it, or after its impact was left
+    out in this step, so that it makes no events."""
     for s, o in ((a, b), (b, a)):
         q = place_in(A, s, o) if s < A.LIST.shape[0] else -1
         if q >= 0:

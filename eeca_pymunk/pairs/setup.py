@@ -1,4 +1,4 @@
-"""The first near lists of a scene, and memory for them."""
+"""Memory of the near lists of a scene."""
 
 from __future__ import annotations
 
