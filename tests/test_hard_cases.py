@@ -48,7 +48,7 @@ BROKEN = {
         "swap of velocities",
     ),
     "impacts a thousandth late": (
-        "impact_times.one_pull",
+        "impact_times.meet_in_free_fall",
         "lambda of: lambda *a: of(*a) + 1e-3",
         "dt from 3e-5 to 1/10",
     ),

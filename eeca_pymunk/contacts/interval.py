@@ -80,7 +80,7 @@ def speeds(
             y += V[i, 1] / IM[i]
         x /= mass
         y /= mass
-    square, most, pull, carried = 0.0, 0.0, 0.0, 0.0
+    square, most, pull, wall_speed = 0.0, 0.0, 0.0, 0.0
     for i in range(n):
         pull = max(pull, math.sqrt(ACC[i, 0] ** 2 + ACC[i, 1] ** 2) + abs(ACC[i, 2]) * EXTENT[i])
     for i in range(len(IM)):
@@ -91,9 +91,9 @@ def speeds(
             square += speed * speed
             most = max(most, speed)
         else:
-            carried = max(carried, speed)
+            wall_speed = max(wall_speed, speed)
     if pull == 0.0:
-        return max(math.sqrt(square / n), carried), max(most, carried), pull
+        return max(math.sqrt(square / n), wall_speed), max(most, wall_speed), pull
     return math.sqrt(square / n), most, pull
 
 

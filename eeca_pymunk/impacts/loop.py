@@ -25,7 +25,7 @@ from ..pairs.grid import renew_circle
 from ..pairs.lists import mark_pair
 from ..prediction.disks import body_of, continue_path
 from ..prediction.heap import pop, push_event, sweep_out
-from ..prediction.next_event import has_left
+from ..prediction.next_event import margin_used
 from ..prediction.scheduling import look_ahead, predict_next
 from ..prediction.turning import note_sides
 from .intervals import cut_short, start_waiting
@@ -84,7 +84,7 @@ def run_events(A: Scene, may_persist: bool, most: float) -> int:
                 room = continue_path(A, i, t, end)
             else:
                 one, room = i, True
-                if has_left(A, s, t):
+                if margin_used(A, s, t):
                     room = renew_circle(A, s, t, AHEAD) >= 0
             if not room:
                 A.PAR.now = t

@@ -24,8 +24,7 @@ from ..islands.membership import budget_spent, fixed_support, in_large_island, r
 from ..model.contacts import ROW, Row
 from ..model.parameters.impulses import BLOCK_BODIES
 from ..model.scene import Scene
-from ..pairs.lists import face_tolerance
-from ..pairs.rules import barred, law
+from ..pairs.rules import barred, face_tolerance, law
 from ..rows.build import normal_rate, place_row
 from ..rows.inplace import sort
 

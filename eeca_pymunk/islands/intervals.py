@@ -117,12 +117,12 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
     m = 0
     with_supports = bodies_with_supports(A, isle, n)
     placed = was_placed(A, isle, n)
-    quiet = 0.0 if placed else rest_threshold(A, root, MINE, with_supports, may_lose, t)
+    rest_speed = 0.0 if placed else rest_threshold(A, root, MINE, with_supports, may_lose, t)
     payable = 0.0 if placed else math.inf
     owed = max(-A.RESTING[root].lost, 0.0)
     shortest = A.PAR.dt / RESOLUTION
     if p > 0 and h > 0.0:
-        m = step_island(A, isle, contacts, n, h, sweeps, least, owed, quiet)
+        m = step_island(A, isle, contacts, n, h, sweeps, least, owed, rest_speed)
         # With losses nothing bounces for long: there only a single contact ends one interval of a step so.
         turns = COUNT.together == 0 and (not may_lose or (m == 1 and t == 0.0))
         sticks, stuck = not candidates.in_haste(A), h

@@ -45,7 +45,7 @@ def set_circle(A: Scene, s: int, x: float, y: float) -> None:
 
 
 @nonallocating
-def link(A: Scene, s: int) -> None:
+def enter(A: Scene, s: int) -> None:
     """Enter shape s into the grid at its margin circle."""
     MARK, HEAD = A.MARK, A.HEAD
     level = level_of(MARK[s].reach, A.GRID.cell)
@@ -75,7 +75,7 @@ def unlink(A: Scene, s: int) -> None:
 
 
 @nonallocating
-def near(A: Scene, o: int, x: float, y: float, radius: float) -> bool:
+def overlaps(A: Scene, o: int, x: float, y: float, radius: float) -> bool:
     """Whether the circle of radius `MARK.reach` of shape o overlaps the circle (x, y, radius)."""
     dx, dy = A.MARK[o].x - x, A.MARK[o].y - y
     reach = radius + A.MARK[o].reach

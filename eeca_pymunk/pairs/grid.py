@@ -12,8 +12,8 @@ from ..compiled import Table, fetch, nonallocating
 from ..geometry.flight import norm, pose
 from ..model.scene import Scene, scene_of
 from ..model.shapes import BATCH, LEVELS
-from .cells import bucket, cell_at, link, near, set_circle, unlink
-from .lists import append, circle_centre, course, may_collide, place_in, remove
+from .cells import bucket, cell_at, enter, overlaps, set_circle, unlink
+from .lists import append, circle_centre, direction_of_motion, may_collide, place_in, remove
 from .walls import box_wall, seek_walls
 
 _FIRST_CAPACITY = 8
@@ -40,7 +40,7 @@ def join_chosen(A: Scene, s: int, n: int) -> bool:
 
 
 @nonallocating
-def walk(A: Scene, s: int, n: int) -> bool:
+def join_near(A: Scene, s: int, n: int) -> bool:
     """`join` s with the shapes near its margin circle in n buckets, whose first shapes are in GRID.walked. False if the
     pool is full. All chains advance together, so that their cache misses overlap."""
     MARK, chosen, walked = A.MARK, A.GRID.chosen, A.GRID.walked
@@ -50,7 +50,7 @@ def walk(A: Scene, s: int, n: int) -> bool:
         for k in range(n):
             o = walked[k]
             chosen[found] = o
-            found += 1 if near(A, o, x, y, radius) else 0
+            found += 1 if overlaps(A, o, x, y, radius) else 0
             after = int(MARK[o].following)
             fetch(MARK, after, 0)
             walked[more] = after
@@ -85,7 +85,7 @@ def seek_moving(A: Scene, s: int) -> bool:
         if last or float(east - west + 1) * float(north - south + 1) > 4.0 * left + 16.0:
             for o in range(GRID.moving):
                 here = CELL[o].level == level and CELL[o].bucket >= 0 and o != s
-                if here and near(A, o, x, y, radius) and place_in(A, s, o) < 0 and not join(A, s, o):
+                if here and overlaps(A, o, x, y, radius) and place_in(A, s, o) < 0 and not join(A, s, o):
                     return False
             continue
         heads = 0
@@ -96,7 +96,7 @@ def seek_moving(A: Scene, s: int) -> bool:
                 GRID.walked[heads] = o
                 heads += 1 if o >= 0 else 0
                 if heads == BATCH or (heads > 0 and column == east and row == north):
-                    if not walk(A, s, heads):
+                    if not join_near(A, s, heads):
                         return False
                     heads = 0
     return True
@@ -115,7 +115,7 @@ def drop_distant(A: Scene, s: int) -> int:
     x, y, radius = MARK[s].x, MARK[s].y, MARK[s].reach
     for q in range(start, start + LIST[s].number):
         o = int(POOL[q])
-        if near(A, o, x, y, radius) if o < moving else FLAG[q] != 0:
+        if overlaps(A, o, x, y, radius) if o < moving else FLAG[q] != 0:
             POOL[start + kept], FLAG[start + kept] = o, FLAG[q]
             kept += 1
         elif o < moving:
@@ -155,13 +155,13 @@ def renew_circle(A: Scene, s: int, t: float, ahead: float) -> int:
     else:
         x, y = circle_centre(A, s, t)
     if ahead > 0.0:
-        ux, uy = course(A, s, t)
+        ux, uy = direction_of_motion(A, s, t)
         x, y = x + ahead * margin * ux, y + ahead * margin * uy
     set_circle(A, s, x, y)
     A.GRID.renewals += 1
     kept = drop_distant(A, s)
     found = seek_moving(A, s) and seek_walls(A, s)
-    link(A, s)
+    enter(A, s)
     return kept if found else -1
 
 
@@ -179,11 +179,11 @@ def make_lists(A: Scene, t: float) -> bool:
         x, y = circle_centre(A, s, t)
         set_circle(A, s, x, y)
     GRID.pool_end = moving * _FIRST_CAPACITY
-    everybody = moving > 0 and A.MARK[0].margin == math.inf
+    all_pairs = moving > 0 and A.MARK[0].margin == math.inf
     for s in range(moving):
         if not seek_walls(A, s):
             return False
-        if everybody:
+        if all_pairs:
             for o in range(s):
                 if not join(A, s, o):
                     return False
@@ -191,7 +191,7 @@ def make_lists(A: Scene, t: float) -> bool:
             # Each pair once: s is compared with the shapes entered before it.
             if not seek_moving(A, s):
                 return False
-            link(A, s)
+            enter(A, s)
     return True
 
 

@@ -9,11 +9,7 @@ from __future__ import annotations
 
 from ..compiled import nonallocating
 from ..geometry.flight import norm, pose, rate, rotated
-from ..geometry.gap import gap_round_off
-from ..geometry.sides import smaller
-from ..model.parameters.impulses import FACE_ROUND_OFF, ROCKING
 from ..model.scene import Scene
-from .rules import law
 
 
 @nonallocating
@@ -34,7 +30,7 @@ def far_apart(A: Scene, a: int, b: int, t: float, reach: float) -> bool:
 
 
 @nonallocating
-def course(A: Scene, s: int, t: float) -> tuple[float, float]:
+def direction_of_motion(A: Scene, s: int, t: float) -> tuple[float, float]:
     """Direction of the velocity of the centre of mass of shape s's body at instant t; 0 if it has none."""
     ux, uy, _ = rate(A.BODY, A.LINK[s].owner, t)
     u = norm(ux, uy)
@@ -104,13 +100,3 @@ def mark_pair(A: Scene, a: int, b: int, value: int) -> None:
         q = place_in(A, s, o) if s < A.LIST.shape[0] else -1
         if q >= 0:
             A.FLAG[q] = value
-
-
-@nonallocating
-def face_tolerance(A: Scene, a: int, b: int) -> float:
-    """The `tolerance` (length) of `..geometry.manifold.face` in an impact of shapes a and b: the difference of gaps up
-    to which both ends of a common face touch at once."""
-    tolerance = FACE_ROUND_OFF * gap_round_off(A, a, b)
-    if law(A, a, b)[0] < 1.0:
-        tolerance = max(tolerance, ROCKING * smaller(A, a, b))
-    return tolerance

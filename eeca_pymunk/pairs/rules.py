@@ -1,11 +1,14 @@
-"""Elasticity, friction and surface velocity of a pair of shapes: pymunk's products, or the values that collision
-handlers or joints have set for this step in RULE (see `..model.scene`), whose rows are sorted by pair.
+"""Laws of a pair of shapes. Elasticity, friction and surface velocity are pymunk's products, or the values that
+collision handlers or joints have set for this step in RULE (see `..model.scene`), whose rows are sorted by pair.
 """
 
 from __future__ import annotations
 
 from ..arrays import FloatArray
 from ..compiled import nonallocating
+from ..geometry.gap import gap_round_off
+from ..geometry.sides import smaller
+from ..model.parameters.impulses import FACE_ROUND_OFF, ROCKING
 from ..model.scene import Scene
 
 
@@ -43,3 +46,13 @@ def law(A: Scene, a: int, b: int) -> tuple[float, float, float, float]:
         return RULE[r, 2], RULE[r, 3], sign * RULE[r, 4], sign * RULE[r, 5]
     surface_x, surface_y = two.surface_x - one.surface_x, two.surface_y - one.surface_y
     return one.elasticity * two.elasticity, one.friction * two.friction, surface_x, surface_y
+
+
+@nonallocating
+def face_tolerance(A: Scene, a: int, b: int) -> float:
+    """The `tolerance` (length) of `..geometry.manifold.face` in an impact of shapes a and b: the difference of gaps up
+    to which both ends of a common face touch at once."""
+    tolerance = FACE_ROUND_OFF * gap_round_off(A, a, b)
+    if law(A, a, b)[0] < 1.0:
+        tolerance = max(tolerance, ROCKING * smaller(A, a, b))
+    return tolerance

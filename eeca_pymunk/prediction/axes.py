@@ -24,7 +24,7 @@ from ..compiled.records import Rows
 from ..geometry.flight import pose, rate
 from ..model.bodies import Body
 from ..model.scene import Scene
-from .roots import flat
+from .roots import falling_root
 
 
 class MotionState(NamedTuple):
@@ -66,7 +66,7 @@ def first_close(best: float, near: float, closing: bool, g: float, w: float, of:
     closing = closing or (g <= of.tolerance and approaches)
     # The root is needed only if the bound is negative at `best`.
     if best == math.inf or g + (w - 0.5 * of.bend * best) * best < 0.0:
-        root = flat(g, w, -of.bend)
+        root = falling_root(g, w, -of.bend)
         if not approaches:
             root = max(root, math.sqrt(2.0 * of.depth / max(of.bend, 1e-300)))
         best = min(best, root)

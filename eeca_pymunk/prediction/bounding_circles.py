@@ -9,7 +9,7 @@ from ..geometry.convex import place_vertices, point_core
 from ..geometry.flight import pose, rate, rotated
 from ..model.scene import Scene
 from .circles import circle_circle, circle_outline
-from .roots import flat
+from .roots import falling_root
 
 
 @nonallocating
@@ -72,4 +72,4 @@ def carried_circles_meet(A: Scene, a: int, b: int, start: float, duration: float
     if gap <= 0.0:
         return 0.0
     pull = math.sqrt((BODY[j].ax - BODY[i].ax) ** 2 + (BODY[j].ay - BODY[i].ay) ** 2)
-    return flat(gap, ((ux_b - ux_a) * dx + (uy_b - uy_a) * dy) / d, -(pull + bend_a + bend_b))
+    return falling_root(gap, ((ux_b - ux_a) * dx + (uy_b - uy_a) * dy) / d, -(pull + bend_a + bend_b))

@@ -14,7 +14,7 @@ from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..model.parameters.events import ADVANCES, RESOLUTION, SEARCH_AHEAD
 from ..model.scene import Scene
-from .roots import ball_point, flat
+from .roots import disks_meet, falling_root
 
 
 @nonallocating
@@ -31,7 +31,7 @@ def circle_circle(
             is given up, and an impact before `duration` may be missed.
     """
     if ax == 0.0 and ay == 0.0:
-        return ball_point(dx, dy, ux, uy, extent), True
+        return disks_meet(dx, dy, ux, uy, extent), True
     if duration > 0.0:
         later = SEARCH_AHEAD * duration
         reach = extent + (abs(ux) + abs(uy) + 0.5 * (abs(ax) + abs(ay)) * later) * later
@@ -45,7 +45,7 @@ def circle_circle(
         d = math.sqrt(x * x + y * y)
         gap = d - extent
         w = (x * vx + y * vy) / d if d > 0.0 else math.sqrt(vx * vx + vy * vy)
-        step = flat(gap, w, -pull)
+        step = falling_root(gap, w, -pull)
         if gap <= tolerance:
             if w < 0.0:
                 return s + step, True
@@ -88,7 +88,7 @@ def circle_outline(
             if h > apart:
                 apart, near = h, j
             if h - extent >= -tolerance:
-                enters = flat(h - extent, ux * nx + uy * ny, ax * nx + ay * ny)
+                enters = falling_root(h - extent, ux * nx + uy * ny, ax * nx + ay * ny)
                 if enters == math.inf:
                     return math.inf, True
                 if enters >= entry:
@@ -109,7 +109,7 @@ def circle_outline(
         if straight:
             if beside:  # in overlap
                 return (0.0 if ux * nx + uy * ny < 0.0 else math.inf), True
-            return ball_point(px - VERTEX[corner, 0], py - VERTEX[corner, 1], ux, uy, extent), True
+            return disks_meet(px - VERTEX[corner, 0], py - VERTEX[corner, 1], ux, uy, extent), True
         gap = apart - extent
         if not beside:
             dx, dy = px - VERTEX[corner, 0], py - VERTEX[corner, 1]
@@ -118,7 +118,7 @@ def circle_outline(
             if d > 0.0:
                 nx, ny = dx / d, dy / d
         w = ux * nx + uy * ny
-        step = flat(gap, w, -pull)
+        step = falling_root(gap, w, -pull)
         if gap <= tolerance:
             if w < 0.0:
                 return s + step, True

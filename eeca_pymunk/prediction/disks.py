@@ -17,8 +17,8 @@ from ..model.shapes import BATCH
 from ..pairs.grid import renew_circle
 from ..pairs.rules import barred
 from .heap import push_event
-from .impact_times import misses, one_pull, time_of_impact
-from .next_event import has_left, leaves
+from .impact_times import meet_in_free_fall, misses, time_of_impact
+from .next_event import inside_until, margin_used
 
 
 @nonallocating
@@ -32,7 +32,7 @@ def first_chosen(A: Scene, i: int, chosen: int, best: float, other: int) -> tupl
     """As `first_impact`, among the first `chosen` disks in GRID.chosen, all of equal acceleration."""
     for k in range(chosen):
         o = A.GRID.chosen[k]
-        t = one_pull(A.BODY, i, o, best)
+        t = meet_in_free_fall(A.BODY, i, o, best)
         if t < best or (t == best and other >= 0 and o < other):
             best, other = t, o
     return best, other
@@ -79,10 +79,10 @@ def first_impact(
 
 
 @nonallocating
-def expect(A: Scene, i: int, best: float, other: int, now: float, end: float) -> None:
+def set_next_event(A: Scene, i: int, best: float, other: int, now: float, end: float) -> None:
     """Set the next event of single disk i: meeting shape `other` at instant `best`, or leaving its margin circle
     before. An event that is due in this step goes on the heap."""
-    out = leaves(A, i, i, now)
+    out = inside_until(A, i, i, now)
     if other >= 0:
         A.STATE[i].known = A.STATE[body_of(A, other)].version
     if out <= best and out < math.inf:
@@ -98,7 +98,7 @@ def expect(A: Scene, i: int, best: float, other: int, now: float, end: float) ->
 def predict_disk(A: Scene, i: int, now: float, end: float, several: bool) -> None:
     """As `next_event.predict`, for a single disk."""
     best, other = first_impact(A, i, 0, math.inf, NOTHING, end, several)
-    expect(A, i, best, other, now, end)
+    set_next_event(A, i, best, other, now, end)
 
 
 @nonallocating
@@ -111,7 +111,7 @@ def continue_path(A: Scene, i: int, now: float, end: float) -> bool:
     if later >= 0 and A.STATE[body_of(A, later)].version == A.STATE[i].known:
         best, certain = time_of_impact(A, i, later, end)
         other = later if certain else CHECK
-    if has_left(A, i, now):
+    if margin_used(A, i, now):
         h = now - BODY[i].since
         if later == NOTHING or other >= 0:
             # Its path changes at its next impact, so the new circle is centred near that place.
@@ -124,12 +124,12 @@ def continue_path(A: Scene, i: int, now: float, end: float) -> bool:
         # The kept impact is void, or only a lower bound: the old entries are tested too.
         known = 0
     best, other = first_impact(A, i, known, best, other, end, False)
-    expect(A, i, best, other, now, end)
+    set_next_event(A, i, best, other, now, end)
     return True
 
 
 @nonallocating
-def holds(A: Scene, i: int, end: float) -> bool:
+def still_valid(A: Scene, i: int, end: float) -> bool:
     """Whether the prediction of an earlier step for single disk i is still valid, because neither path has changed; if
     so, it goes on the heap. The instant is computed again from the paths as this step describes them, so that no bit
     depends on the age of the prediction."""

@@ -18,7 +18,7 @@ from ..model.parameters.detection import GAP_ROUND_OFF
 from ..model.parameters.events import APPROACH_ROUND_OFF, DISTANCE_ROUND_OFF, MISS_DISTANCE, PATH_REACH
 from ..model.scene import Scene
 from .circles import circle_circle, circle_outline
-from .roots import ball_point
+from .roots import disks_meet
 from .turning import general
 
 
@@ -45,14 +45,14 @@ def between(BODY: Rows[Body], i: int, j: int, t: float, ax: float, ay: float) ->
 @inlined
 def misses(BODY: Rows[Body], i: int, j: int, ax: float, ay: float, latest: float) -> bool:
     """Whether single disks i and j with equal accelerations a certainly part, miss each other, or are too far away to
-    meet until `latest`. Never true if `one_pull` is finite. Without branches."""
+    meet until `latest`. Never true if `meet_in_free_fall` is finite. Without branches."""
     start = max(BODY[i].since, BODY[j].since)
     dx, dy, ux, uy = between(BODY, i, j, start, ax, ay)
     return certainly_apart(dx, dy, ux, uy, BODY[i].extent + BODY[j].extent, latest - start)
 
 
 @nonallocating
-def one_pull(BODY: Rows[Body], i: int, j: int, latest: float) -> float:
+def meet_in_free_fall(BODY: Rows[Body], i: int, j: int, latest: float) -> float:
     """Instant at which single disks i and j with equal accelerations, which cancel, meet; closed form. Disks that touch
     and approach by no more than the round-off of their speeds count as parting. Infinite if the instant is certainly
     after `latest`."""
@@ -65,7 +65,7 @@ def one_pull(BODY: Rows[Body], i: int, j: int, latest: float) -> float:
     if -(dx * ux + dy * uy) < APPROACH_ROUND_OFF * extent * fastest:
         if dx * dx + dy * dy < extent * extent * (1.0 + DISTANCE_ROUND_OFF):
             return math.inf
-    return start + ball_point(dx, dy, ux, uy, extent)
+    return start + disks_meet(dx, dy, ux, uy, extent)
 
 
 @nonallocating
@@ -73,7 +73,7 @@ def disk_disk(BODY: Rows[Body], i: int, j: int, horizon: float) -> tuple[float, 
     """Single disks i and j: a closed form if their accelerations are equal."""
     ax_i, ay_i, ax_j, ay_j = BODY[i].ax, BODY[i].ay, BODY[j].ax, BODY[j].ay
     if ax_i == ax_j and ay_i == ay_j:
-        return one_pull(BODY, i, j, math.inf), True
+        return meet_in_free_fall(BODY, i, j, math.inf), True
     start, extent = max(BODY[i].since, BODY[j].since), BODY[i].extent + BODY[j].extent
     x_i, y_i, _ = pose(BODY, i, start)
     x_j, y_j, _ = pose(BODY, j, start)

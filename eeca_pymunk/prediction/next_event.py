@@ -21,7 +21,7 @@ from .impact_times import time_of_impact
 
 
 @nonallocating
-def leaves(A: Scene, i: int, s: int, now: float) -> float:
+def inside_until(A: Scene, i: int, s: int, now: float) -> float:
     """Instant up to which the centre of the bounding circle of shape s, of body i, stays inside its margin circle:
     exact for a straight path of a shape about the centre of mass, else a lower bound. `now` itself if it is outside."""
     BODY, SHAPE, MARK = A.BODY, A.SHAPE, A.MARK
@@ -68,7 +68,7 @@ def passage(room: float, u: float, g: float) -> float:
 
 
 @nonallocating
-def has_left(A: Scene, s: int, now: float) -> bool:
+def margin_used(A: Scene, s: int, now: float) -> bool:
     """Whether shape s has used more than 1 - MARGIN_LEFT of its margin."""
     x, y = circle_centre(A, s, now)
     return bool(norm(x - A.MARK[s].x, y - A.MARK[s].y) > (1.0 - MARGIN_LEFT) * A.MARK[s].margin)
@@ -102,7 +102,7 @@ def predict(A: Scene, i: int, now: float, end: float, until: float) -> None:
     horizon = horizon_of(A, i, end)
     first = STATE[i].first_shape
     for s in range(first, first + STATE[i].shapes):
-        t = leaves(A, i, s, now)
+        t = inside_until(A, i, s, now)
         if t < best:
             best, own, other = t, s, LEAVE
         start = LIST[s].start

@@ -9,7 +9,7 @@ from ..model.parameters.events import MISS_DISTANCE
 
 
 @nonallocating
-def flat(g: float, w: float, alpha: float) -> float:
+def falling_root(g: float, w: float, alpha: float) -> float:
     """First root of g + w s + alpha s² / 2 = 0 in s >= 0 with the gap falling; 0 in overlap that deepens.
 
     The falling root is 2 g / (sqrt(D) - w) with D = w² - 2 alpha g for w < 0, and (w + sqrt(D)) / -alpha for w >= 0 >
@@ -37,7 +37,7 @@ def flat(g: float, w: float, alpha: float) -> float:
 
 
 @nonallocating
-def ball_point(dx: float, dy: float, ux: float, uy: float, extent: float) -> float:
+def disks_meet(dx: float, dy: float, ux: float, uy: float, extent: float) -> float:
     """First root of |d + u s| = extent in s >= 0 with the distance falling; 0 for circles that overlap and approach.
 
     With b = d . u < 0 the root is s = c / (sqrt(D) - b), c = |d|² - extent² and D = b² - |u|² c. The discriminant

@@ -7,7 +7,7 @@ import math
 from ..compiled import fetch, inlined, nonallocating
 from ..model.bodies import AT_REST
 from ..model.scene import Scene
-from .disks import holds, predict_disk
+from .disks import predict_disk, still_valid
 from .next_event import predict
 
 
@@ -42,7 +42,7 @@ def predict_due(A: Scene) -> None:
     for i in range(A.BODY.shape[0] - 1):
         alone = A.STATE[i].island < 0
         if A.BODY[i].due < dt or not (alone or A.MEMBER[i].rest == AT_REST):
-            if not (alone and i < disks and holds(A, i, dt)):
+            if not (alone and i < disks and still_valid(A, i, dt)):
                 A.BLOCK[n] = i
                 n += 1
     predict_all(A, n, 0.0, dt)

@@ -28,7 +28,7 @@ from ..model.bodies import Body
 from ..model.parameters.events import ADVANCES, APPROACH_ROUND_OFF, LONGEST_SEARCH, RESOLUTION
 from ..model.parameters.intervals import TOUCH
 from ..model.scene import Scene
-from ..pairs.lists import face_tolerance
+from ..pairs.rules import face_tolerance
 from .axes import Closing, MotionState, bends, fixed_axis, motion, pulled_along, speed_bound, turning_axis
 from .bounding_circles import carried_circles_meet, circles_meet
 from .work import most_work

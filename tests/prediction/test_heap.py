@@ -13,7 +13,7 @@ from eeca_pymunk.model.bodies import POSE, VELOCITY, Body
 from eeca_pymunk.model.scene import Scene
 from eeca_pymunk.model.shapes import Mark
 from eeca_pymunk.prediction.heap import pop, push_event, sweep_out
-from eeca_pymunk.prediction.next_event import has_left, leaves
+from eeca_pymunk.prediction.next_event import inside_until, margin_used
 from tests.packed import Thing, World, box, disk
 
 
@@ -94,11 +94,11 @@ def test_nobody_leaves_before_the_instant_told(turning: bool, pulled: bool, unit
         scene = marked(world, float(place[0]), float(place[1]), margin)
         looks = 0
         while True:
-            t = leaves(scene, 0, 0, now)
+            t = inside_until(scene, 0, 0, now)
             assert t >= now
             for instant in np.linspace(now, t, 20):
                 assert np.hypot(*(centre_at(world, instant) - place)) <= margin * (1.0 + 1e-9)
-            if has_left(scene, 0, t):
+            if margin_used(scene, 0, t):
                 break
             looks += 1
             now = t
@@ -114,15 +114,15 @@ def test_who_was_put_elsewhere_has_left_already(speed: float, pull: float) -> No
     # At rest, or on its way through the circle, which it leaves again later.
     world = World([Thing(disk(0.1), (5.0, 0.0, 0.0), (speed, 0.0, 0.0), (pull, 0.0, 0.0))])
     scene = marked(world, 0.0, 0.0, 1.0)
-    assert leaves(scene, 0, 0, 0.0) == 0.0
-    assert has_left(scene, 0, 0.0)
+    assert inside_until(scene, 0, 0, 0.0) == 0.0
+    assert margin_used(scene, 0, 0.0)
 
 
 def test_who_rests_or_knows_everybody_never_leaves() -> None:
     world = World([Thing(disk(0.1), (0.5, 0.0, 0.0))])
     for margin in (1.0, math.inf):
         scene = marked(world, 0.0, 0.0, margin)
-        assert leaves(scene, 0, 0, 0.0) == math.inf
+        assert inside_until(scene, 0, 0, 0.0) == math.inf
 
 
 def test_entries_that_are_alike_are_swept_out() -> None:

@@ -9,38 +9,38 @@ import pytest
 
 from eeca_pymunk.geometry.gap import gap
 from eeca_pymunk.prediction.impact_times import time_of_impact
-from eeca_pymunk.prediction.roots import ball_point, flat
+from eeca_pymunk.prediction.roots import disks_meet, falling_root
 from tests.packed import Thing, World, disk, hull
 from tests.prediction.forecasts import UNITS, check_by_sampling, first_falling_root, gap_now, next_impact, static
 
 
 def test_flat_root_keeps_its_digits() -> None:
-    assert flat(1.0, -2.0, 0.0) == 0.5
-    assert flat(0.0, -1.0, 5.0) == 0.0
-    assert flat(-1e-17, -1.0, 5.0) == 0.0
-    assert flat(0.0, 1.0, 0.0) == math.inf
-    assert flat(1.0, -1.0, 1.0) == math.inf  # turns before it arrives
-    assert flat(0.0, 2.0, -4.0) == 1.0  # thrown up, falls back
-    assert flat(-1.0, 1.0, -4.0) == 0.5  # never opens: back where it was
-    assert flat(0.0, 0.0, 0.0) == math.inf
-    assert flat(1e-12, -1.0, -1e-3) == pytest.approx(1e-12, rel=1e-15)
+    assert falling_root(1.0, -2.0, 0.0) == 0.5
+    assert falling_root(0.0, -1.0, 5.0) == 0.0
+    assert falling_root(-1e-17, -1.0, 5.0) == 0.0
+    assert falling_root(0.0, 1.0, 0.0) == math.inf
+    assert falling_root(1.0, -1.0, 1.0) == math.inf  # turns before it arrives
+    assert falling_root(0.0, 2.0, -4.0) == 1.0  # thrown up, falls back
+    assert falling_root(-1.0, 1.0, -4.0) == 0.5  # never opens: back where it was
+    assert falling_root(0.0, 0.0, 0.0) == math.inf
+    assert falling_root(1e-12, -1.0, -1e-3) == pytest.approx(1e-12, rel=1e-15)
     rng = np.random.default_rng(0)
     for g, w, alpha in rng.normal(size=(500, 3)) * (1, 1, 1):
         if g > 0.0:
             expected = first_falling_root([0.5 * alpha, w, g])
-            assert flat(g, w, alpha) == pytest.approx(expected, rel=1e-9)
+            assert falling_root(g, w, alpha) == pytest.approx(expected, rel=1e-9)
 
 
 def test_grazing_disks_one_billionth_deep() -> None:
     # Offset D - 1e-9: c² = D² - offset², the half chord.
     deep = 1e-9
     half = math.sqrt(deep * (2.0 - deep))
-    assert ball_point(3.0, 1.0 - deep, -1.0, 0.0, 1.0) == pytest.approx(3.0 - half, abs=1e-11)
-    assert ball_point(3.0, 1.0 + deep, -1.0, 0.0, 1.0) == math.inf
-    assert ball_point(1.0, 0.0, 1.0, 0.3, 1.0) == math.inf  # touching, parting
-    assert ball_point(1.0, 0.0, -1.0, 0.3, 1.0) == 0.0
-    assert ball_point(0.5, 0.0, -1.0, 0.3, 1.0) == 0.0  # overlap
-    assert ball_point(0.5, 0.0, 1.0, 0.3, 1.0) == math.inf
+    assert disks_meet(3.0, 1.0 - deep, -1.0, 0.0, 1.0) == pytest.approx(3.0 - half, abs=1e-11)
+    assert disks_meet(3.0, 1.0 + deep, -1.0, 0.0, 1.0) == math.inf
+    assert disks_meet(1.0, 0.0, 1.0, 0.3, 1.0) == math.inf  # touching, parting
+    assert disks_meet(1.0, 0.0, -1.0, 0.3, 1.0) == 0.0
+    assert disks_meet(0.5, 0.0, -1.0, 0.3, 1.0) == 0.0  # overlap
+    assert disks_meet(0.5, 0.0, 1.0, 0.3, 1.0) == math.inf
 
 
 @pytest.mark.parametrize("unit", UNITS)
