@@ -13,12 +13,12 @@ import pymunk
 import pytest
 
 import eeca_pymunk as ep
-from eeca_pymunk import transfer
 from eeca_pymunk.arrays import IntArray
 from eeca_pymunk.compiled import Table
 from eeca_pymunk.compiled.records import Rows
 from eeca_pymunk.errors import NotFiniteError
 from eeca_pymunk.model.contacts import Impulse
+from eeca_pymunk.model.step import EVENTS
 from eeca_pymunk.packed_stepper import PackedStepper
 from eeca_pymunk.report import Details, Outcome, of_events
 from eeca_pymunk.space import packing
@@ -49,7 +49,7 @@ class Flight:
 
     def step(self, reading: Table, dt: float, gx: float, gy: float, half_damping: float) -> int:
         status = flown(self.world, dt, half_damping)
-        return status if self.stepper.told is None or status < 0 else status | transfer.EVENTS
+        return status if self.stepper.told is None or status < 0 else status | EVENTS
 
     def rule(self, rules: object) -> None:
         """Nothing meets."""

@@ -51,7 +51,7 @@ def pair_of(A: Scene, a: int, b: int) -> int:
 
 @inlined
 def shapes_of_pair(shapes: int, pair: int) -> tuple[int, int]:
-    """The shapes a < b of a pair, by its number, out of `shapes`; a < 0 for a negative number."""
+    """The shapes a < b of a pair, by its number >= 0, out of `shapes`."""
     return pair // shapes, pair % shapes
 
 
@@ -131,8 +131,10 @@ def forget_sides(A: Scene, i: int, way: float) -> None:
     moved, or turned at its extent, by `way` (length), farther than from the middle of both shapes to their surfaces."""
     SIDE, LINK, shapes = A.SIDE, A.LINK, len(A.SHAPE)
     for row in range(len(SIDE)):
+        if SIDE[row].key <= 0:
+            continue
         a, b = shapes_of_pair(shapes, SIDE[row].key - 1)
-        if a < 0 or (LINK[a].owner != i and LINK[b].owner != i):
+        if LINK[a].owner != i and LINK[b].owner != i:
             continue
         thick = half_width(A, a) + half_width(A, b)
         if way > max(thick, INTERVAL_DEPTH_LEAST * A.BODY[i].extent):

@@ -12,7 +12,7 @@ from eeca_pymunk.compiled.records import columns, rows
 from eeca_pymunk.contacts.correction import lifting
 from eeca_pymunk.contacts.interval import make_contacts, step_island
 from eeca_pymunk.contacts.memory import copy_recent
-from eeca_pymunk.contacts.works import carried
+from eeca_pymunk.contacts.works import external_work
 from eeca_pymunk.geometry.corners import moving_thin
 from eeca_pymunk.impacts.scene import EventLoop
 from eeca_pymunk.impacts.scene_memory import Laid
@@ -139,7 +139,7 @@ class Pile:
     def carried(self, vn: np.ndarray) -> float:
         """External work of the contacts, with velocities `vn` after the step."""
         c = self.contacts
-        return float(carried(c.ROWS, c.L, self.v, vn, self.im, self.ii, self.m))
+        return float(external_work(c.ROWS, c.L, self.v, vn, self.im, self.ii, self.m))
 
     def forces(self, h: float, vn: np.ndarray) -> float:
         """Work of the acceleration over the step."""
