@@ -6,7 +6,8 @@ events in `loop.py`, `close.py`. An impact acts on one disk (`..contacts.single`
 (`simultaneous.py`, `resolution.py`; `joint_impact.py` if joints hold any of them). `midstep.py` solves all contacts of
 a step at once; `run.py` takes many steps in one call.
 
-`scene.py` owns the arrays, `memory.py` and `remembering.py` store what a state of a run consists of.
+`scene.py` owns the arrays, `memory.py` and `remembering.py` store what a state of a run consists of, `edits.py` writes
+what programs edit in place.
 
 Names of arguments: A is the scene, J its joints (`..model.joints`); STATES, IDS, EXTRA, ENDS the arrays exchanged with
 pymunk (`..layout`); F the arrays of a run (`..model.run`).
