@@ -127,7 +127,7 @@ HOMOTOPIES: list[Part] = [(homotopy, "start_homotopy", lambda *_: 1)]
 MATRICES: list[Part] = [
     (module, "matrix_jointed", lambda problem, slip, at, kind, N, W: N * N) for module in (homotopy, dense)
 ]
-CHANGES: list[Part] = [(homotopy, name, lambda tableau, *_: tableau.T.shape[1]) for name in ("slip", "change")]
+CHANGES: list[Part] = [(homotopy, name, lambda tableau, *_: len(tableau.T)) for name in ("slip", "change")]
 ITERATIONS: list[Part] = [(press, "advance", lambda A, J, interval, *_: interval.m + 2)]
 INTERVALS: list[Part] = [(solve, "pairs_within", lambda *_: 3)]  # one pair, and two more
 
