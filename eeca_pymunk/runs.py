@@ -11,6 +11,7 @@ import numpy.typing as npt
 from tqdm import tqdm
 
 from .arrays import FloatArray, IntArray
+from .impacts.edits import write_edits
 from .impacts.run_buffers import RunBuffers
 from .layout import BODY_ROW, READ, WRITTEN
 from .model.run import BETWEEN
@@ -126,7 +127,7 @@ class RunningStepper(PackedStepper):
     def patch(self, world: World, moved: bool) -> bool:
         loop, surfaces = self.event_loop, self._sleep is not None
         if loop is not None and not moved and (edits := world.patch_values()) is not None:
-            loop.edit(edits)
+            write_edits(loop.table, edits)
             return True
         if world.joints is not None:
             if found := world.patch_rows(surfaces):

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from .runs import RunningStepper
 
-_MARK = 0x65656361_00000001
+_MARK = 0x65656361_00000002
 
 
 def get_state(stepper: RunningStepper) -> IntArray:

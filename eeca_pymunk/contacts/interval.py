@@ -144,9 +144,8 @@ def find_rest(
     rates(contacts.ROWS, V, m)
     target(contacts.ROWS, m, isle.ACC, begun.EXPECTED, begun.pull, h)
     found, OUT[0].direct = find_static_forces(
-        problem, contacts.L[:m], V, V + h * isle.ACC, isle.FELT, contacts.VN, begun.pull * h, rest_speed,
-        hold,
-    )  # fmt: skip
+        problem, contacts.L[:m], V, V + h * isle.ACC, isle.FELT, contacts.VN, begun.pull * h, rest_speed, hold
+    )
     if found:
         OUT[0].at_rest = 1
         if hold:

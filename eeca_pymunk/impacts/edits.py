@@ -1,11 +1,29 @@
-"""Kernels of edits in place that keep the results of earlier steps: each writes the values of a shape or body, and lets
-the islands at rest that they concern be solved again."""
+"""Edits in place that keep the results of earlier steps: values of shapes and bodies are written into the rows, and the
+islands at rest that they concern are solved again."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from ..arrays import FloatArray
 from ..compiled import Table, nonallocating
-from ..model.bodies import AT_REST, CHANGED
-from ..model.scene import scene_of
+from ..compiled.records import columns
+from ..model.bodies import AT_REST, CHANGED, MOBILITY
+from ..model.scene import Scene, scene_of
+from ..model.shapes import SURFACE
+
+
+class Edits(NamedTuple):
+    """Values that were edited in place.
+
+    Attributes:
+        surfaces: by row of SHAPE: elasticity, friction, surface velocity (2; length/time).
+        masses: by row of BODY: 1/mass, 1/moment.
+    """
+
+    surfaces: Mapping[int, tuple[float, ...]]
+    masses: Mapping[int, tuple[float, ...]]
 
 
 @nonallocating
@@ -31,3 +49,26 @@ def edit_mass(table: Table, i: int, inv_mass: float, inv_inertia: float) -> None
     A.BODY[i].inv_mass, A.BODY[i].inv_inertia = inv_mass, inv_inertia
     if A.MEMBER[i].rest == AT_REST:
         A.MEMBER[A.STATE[i].island].rest = CHANGED
+
+
+def write_edits(table: Table, edits: Edits) -> None:
+    """Write edited values into the rows of a scene, which goes on with the results of earlier steps."""
+    for kernel, found in ((edit_surface, edits.surfaces), (edit_mass, edits.masses)):
+        if found:
+            write = kernel.bind(table)
+            for row, numbers in found.items():
+                write(row, *numbers)
+
+
+def values_of(scene: Scene) -> tuple[FloatArray, FloatArray]:
+    """(k, 4) and (n, 2) the values of all shapes and bodies that `Edits` may have."""
+    return columns(scene.SHAPE, *SURFACE), columns(scene.BODY, *MOBILITY)
+
+
+def edits_since(scene: Scene, *then: FloatArray) -> Edits:
+    """The present values of a scene that differ from those `then`, a result of `values_of`."""
+    surfaces, masses = (
+        {int(row): tuple(now[row].tolist()) for row in (now != old).any(axis=1).nonzero()[0]}
+        for now, old in zip(values_of(scene), then, strict=True)
+    )
+    return Edits(surfaces, masses)

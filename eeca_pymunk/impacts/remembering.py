@@ -20,6 +20,7 @@ from ..model.step import Count, Step
 from ..pairs.grid import relist
 from ..pairs.setup import refilled
 from ..report import Outcome
+from .edits import edits_since, values_of, write_edits
 from .memory import GROWN_ARRAYS, OF_SCENE, gathered, recalled, remembered
 from .scene_memory import SceneMemory
 
@@ -166,11 +167,15 @@ class Remembering:
 
     def remembered(self) -> list[AnyArray]:
         """All arrays that determine the next step, apart from the states exchanged with pymunk."""
-        return remembered(self.scene)
+        return [*remembered(self.scene), *values_of(self.scene)]
 
     def recall(self, take: Callable[[Any, tuple[int, ...]], AnyArray]) -> None:
-        """Set the arrays of `remembered`; `take` returns the next one, for a dtype and a shape."""
+        """Set the arrays of `remembered`; `take` returns the next one, for a dtype and a shape. Values of shapes and
+        bodies remain the present ones, and count as edited where they differ."""
         self.scene = recalled(self.scene, take)
+        write_edits(
+            self.table, edits_since(self.scene, *(take(then.dtype, then.shape) for then in values_of(self.scene)))
+        )
         self.__dict__.pop("fresh", None)
 
     def _gather(self) -> IntArray:

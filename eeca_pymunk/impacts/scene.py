@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -25,7 +25,6 @@ from ..model.step import FORCES, IMPACTS_FULL, LOG_FULL, PUSHES_FULL, Missed, ne
 from ..model.values import reading_of
 from ..pairs.setup import with_more_room
 from ..report import Details, of_events
-from .edits import edit_mass, edit_surface
 from .new_scene import tie_components
 from .remembering import UNBOUND, Remembering
 from .run import run
@@ -35,18 +34,6 @@ from .step import step
 
 if TYPE_CHECKING:
     import pymunk
-
-
-class Edits(NamedTuple):
-    """Values that were edited in place.
-
-    Attributes:
-        surfaces: by row of SHAPE: elasticity, friction, surface velocity (2; length/time).
-        masses: by row of BODY: 1/mass, 1/moment.
-    """
-
-    surfaces: Mapping[int, tuple[float, ...]]
-    masses: Mapping[int, tuple[float, ...]]
 
 
 def _longer(table: Rows[R], used: int) -> Rows[R]:
@@ -212,14 +199,6 @@ class EventLoop(Remembering):
         KEYS, TABLE = np.full(size, -1, np.int64), rows(Force, size)
         copy_recent(scene.KEYS, scene.FORCES, scene.COUNT, KEYS, TABLE, float(scene.PAR.stamp) - 1.0)
         self.scene = scene._replace(KEYS=KEYS, FORCES=TABLE)
-
-    def edit(self, edits: Edits) -> None:
-        """Write edited values into the rows, and go on with the results of earlier steps."""
-        for kernel, found in ((edit_surface, edits.surfaces), (edit_mass, edits.masses)):
-            if found:
-                write = kernel.bind(self.table)
-                for row, numbers in found.items():
-                    write(row, *numbers)
 
     def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
         """Set the law of pairs of shapes a < b: elasticity (below 0: they pass through each other), friction and

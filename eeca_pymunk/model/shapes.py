@@ -26,6 +26,9 @@ class Shape(Record):
     bound: float  # radius of that circle: length
 
 
+SURFACE = "elasticity", "friction", "surface_x", "surface_y"
+
+
 class Link(Record):
     """What a shape belongs to.
 

@@ -11,8 +11,8 @@ reading would give, bit by bit. Which edits can be patched, by which function:
 | | with joints, or where bodies may sleep | also filters | forgotten, but those of joints |
 
 Where results are kept, the islands at rest that touch what was edited are solved again, and all else goes on as if
-nothing had been edited. An edit that gives a shape losses, or takes them away (elasticity 1), counts as one of its
-filter; so does, where there are joints, one of friction from or to 0: pivots hold disks that have none where they are.
+nothing had been edited. An edit that gives a shape losses, or takes them away (elasticity 1), is one for `patch_rows`;
+so is, where there are joints, one of friction from or to 0: pivots hold disks that have none where they are.
 
 All others (of vertices, kinds and functions of bodies, sensors; additions and removals) need a new reading.
 """
@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import pymunk
 
-from ..impacts.scene import Edits
+from ..impacts.edits import Edits
 from ..layout import BODY_ROW
 from ..model.step import MOVED_STATIC, OTHER_BODIES
 from .body_values import masses as masses_in
@@ -51,9 +51,9 @@ def _edited(world: World) -> Edited | None:
 
 
 def _is_kept(new: ShapeRecord, old: ShapeRecord, jointed: bool) -> bool:
-    """Whether results of earlier steps hold, apart from those at rest, for a shape with these values."""
+    """Whether results of earlier steps hold, apart from those at rest, for a shape with this other surface."""
     (_, e, mu, *_), (_, e0, mu0, *_) = new.numbers, old.numbers
-    return new.filter == old.filter and (e < 1.0) == (e0 < 1.0) and not (jointed and (mu > 0.0) != (mu0 > 0.0))
+    return (e < 1.0) == (e0 < 1.0) and not (jointed and (mu > 0.0) != (mu0 > 0.0))
 
 
 def patch_values(world: World) -> Edits | None:

@@ -10,7 +10,7 @@ from typing import Any
 import pymunk
 
 from ..arrays import BoolArray
-from ..impacts.scene import Edits
+from ..impacts.edits import Edits
 from ..impacts.scene_memory import SceneMemory
 from ..layout import BODY_ROW, KNOWN_ID
 from ..report import nothing
@@ -176,9 +176,9 @@ class World(BodyStates):
         """Shapes and bodies to be read again: those edited, in the space or outside, and the bodies of shapes that were
         added or removed, whose mass may have changed; None if unknown. `contents`: the result of `_count` now."""
         edited = edited_since(self.read_at)
-        if edited is None or contents == self._contents:
-            return edited and edited.things
-        found = edited.things
+        found = None if edited is None else edited.things
+        if found is None or contents == self._contents:
+            return found
         for shape in self.records.keys() ^ set(self.space.shapes):
             record = self.records.get(shape)
             found.update((shape.body, record and record.body))

@@ -120,6 +120,35 @@ def test_a_box_at_rest_slides_when_friction_falls(joints: bool, edited: str) -> 
 
 
 @pytest.mark.parametrize("joints", [False, True])
+@pytest.mark.parametrize("edited", ["floor", "box"])
+@pytest.mark.parametrize("steps", [0, 3])
+def test_a_state_of_rest_that_is_set_back_feels_the_friction_of_now(joints: bool, edited: str, steps: int) -> None:
+    slope, mu = 0.3, 0.1
+    _, floor, (shape,), stepper = at_rest(slope, 1, joints)
+    state = stepper.get_state()
+    (floor if edited == "floor" else shape).friction = mu
+    for _ in range(steps):
+        stepper.step(DT)
+    stepper.set_state(state)
+    for _ in range(10):
+        stepper.step(DT)
+    assert shape.body is not None
+    speed = 10 * DT * G * (math.sin(slope) - mu * math.cos(slope))
+    assert shape.body.velocity.x == pytest.approx(-speed, rel=1e-9)
+
+
+def test_a_state_of_rest_that_is_set_back_bears_the_weight_of_now() -> None:
+    _, _, boxes, stepper = at_rest(0.0, 3, joints=False)
+    state = stepper.get_state()
+    assert boxes[2].body is not None
+    boxes[2].body.mass = 5.0
+    stepper.set_state(state)
+    report = stepper.step(DT)
+    on_floor = report.contacts.point[:, 1] < 0.75
+    assert report.impulse[on_floor].sum() == pytest.approx(7.0 * G * DT, rel=1e-9)
+
+
+@pytest.mark.parametrize("joints", [False, True])
 def test_boxes_on_boxes_at_rest_follow_an_edit_below(joints: bool) -> None:
     """The lowest box and what it bears slide as one: friction between boxes holds."""
     slope, mu = 0.3, 0.2
