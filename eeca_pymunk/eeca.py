@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Protocol
 
 from .closures.time_of_impact import TimeOfImpact
+from .impacts.taking_over import Kept
 from .runs import RunningStepper
-from .saved import Saved, sides_of
+from .saved import Saved
 from .space.world import World
 from .stepper import Method
 
@@ -55,23 +56,22 @@ class EECA(RunningStepper):
     def make_method(self, world: World) -> Method:
         return self.closure.prepare(world)
 
-    def choose_method(self, world: World, past: World | None) -> None:
-        loop = None if past is None else self.event_loop
-        sides = None if past is None or loop is None else sides_of(past, loop)
+    def choose_method(self, world: World, past: World | None, kept: Kept | None = None) -> None:
+        before = None if past is None else self.event_loop
         if past is world:  # its rows or joints have changed
-            if loop is not None:
-                loop.release(world.BODY)
+            if before is not None:
+                before.release(world.BODY)
             world.load()
+        if before is not None:
+            world.memory = world.memory.other()
         saved, self._saved = self._saved, None
         if past is None and saved is not None and saved.resume(world, self.decisions):
             self._use(saved.method, None)
             return
         self._use(self.make_method(world))
         loop = self.event_loop
-        if self._patches and world.joints is None and loop is not None:
-            loop.keep_fresh()
-        if sides is not None and loop is not None:
-            sides.recall(world, loop)
+        if loop is not None and before is not None and kept is not None:
+            loop.take_over(before, kept)
         if world.joints is not None:
             assert loop is not None  # other methods refuse joints
             world.joints.planned(loop.held)

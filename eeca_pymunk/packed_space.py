@@ -15,11 +15,13 @@ from .arrays import FloatArray, IntArray
 from .energy.ledger import BOOK_AFTER
 from .errors import NotFiniteError
 from .impacts.scene import EventLoop
+from .impacts.taking_over import Kept
 from .model.step import ENERGY, NOT_FINITE, OVERFLOW
 from .space.arbiters import Touches, touches_of
 from .space.checks import check_ignored
 from .space.decisions import NO_RULES, Decisions, Rules
 from .space.describe import describe
+from .space.kept import kept_rows
 from .space.sleep_groups import put_to_sleep, sleeping_groups, wake_neighbours
 from .space.sleeping import AT_FIRST, Sleep
 from .space.sync import Sync
@@ -106,9 +108,10 @@ class PackedSpace(Stepper):
     def make_method(self, world: World) -> Method:
         """A method for a world, without results of earlier steps."""
 
-    def choose_method(self, world: World, past: World | None) -> None:
+    def choose_method(self, world: World, past: World | None, kept: Kept | None = None) -> None:
         """Choose the method of a world. `past`: the world of the present method, which is the same one if its joints or
-        rows have changed; None for a world that was read for the first time, or after `refresh`."""
+        rows have changed; None for a world that was read for the first time, or after `refresh`. `kept`: its rows for
+        which results of earlier steps hold."""
         self._use(self.make_method(world))
 
     def _use(self, method: Method, ruled: Rules | None = NO_RULES) -> None:
@@ -162,7 +165,8 @@ class PackedSpace(Stepper):
         slept, self._slept = self._slept, None
         if self._sleep is not None and slept is not None:
             self._sleep.recall(dict(zip(slept[0], slept[1].tolist(), strict=True)), slept[3])
-        self.choose_method(world, past)
+        kept = None if past is None or past.void or self.event_loop is None else kept_rows(world, past)
+        self.choose_method(world, past, kept)
         if past is not None:
             past.end()
         if self._sleep is not None and (book := self._method.outcome()[0]) is not None:

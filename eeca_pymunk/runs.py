@@ -11,15 +11,15 @@ import numpy.typing as npt
 from tqdm import tqdm
 
 from .arrays import FloatArray, IntArray
-from .impacts.edits import write_edits
+from .impacts.edits import FILTER, Changes, write_edits
 from .impacts.run_buffers import RunBuffers
+from .impacts.taking_over import kept_in_place
 from .layout import BODY_ROW, READ, WRITTEN
 from .model.run import BETWEEN
 from .model.step import FORCES
 from .packed_stepper import PackedStepper
 from .reentry import refuse_within
 from .report import RunReport
-from .saved import sides_of
 from .space.world import World
 from .states import get_state, set_state
 from .stepper import check_dt, check_steps
@@ -43,7 +43,6 @@ class RunningStepper(PackedStepper):
     """
 
     rolling: Rolling | None = None
-    _patches = False  # whether a shape or body was ever edited in place
 
     def __getstate__(self) -> dict[str, object]:
         return {**super().__getstate__(), "rolling": None}
@@ -125,26 +124,21 @@ class RunningStepper(PackedStepper):
             world.STATES[WRITTEN, rows >= 0] = np.nan
 
     def patch(self, world: World, moved: bool) -> bool:
-        loop, surfaces = self.event_loop, self._sleep is not None
-        if loop is not None and not moved and (edits := world.patch_values()) is not None:
+        loop = self.event_loop
+        if loop is None:
+            return False
+        changes: Changes | None
+        if not moved and (edits := world.patch_values()) is not None:
             write_edits(loop.table, edits)
-            return True
-        if world.joints is not None:
-            if found := world.patch_rows(surfaces):
-                self.choose_method(world, world)
-            return found is not None
-        if loop is None or not hasattr(loop, "fresh"):
-            # From now on each new loop keeps a copy of its scene, from which patches start. This edit is not patched.
-            self._patches = True
-            return False
-        sides, found = sides_of(world, loop), world.patch_rows(surfaces)
-        if found is None:
-            return False
-        if found.elasticity and bool(loop.scene.COUNT.lossy) != bool((world.SHAPE["elasticity"] < 1.0).any()):
-            return False
-        loop.reset(found.reach or found.moved, found.moved)
-        if sides is not None:
-            sides.recall(world, loop)
+            changes = [(FILTER, row) for row in edits.filters]
+            renewed = not changes or loop.renew(changes, loop.measured)
+        else:
+            changes = world.patch_rows(self._sleep is not None)
+            if changes is None:
+                return False
+            renewed = world.joints is None and loop.renew(changes, world.packed.measured())
+        if not renewed:
+            self.choose_method(world, world, kept_in_place(len(world.BODY), len(world.shapes), changes))
         return True
 
     def run(self, steps: int, dt: float, progress: bool = False) -> RunReport:

@@ -118,15 +118,12 @@ def read_states(
 
 
 @kernel
-def forget_last_end(table: Table) -> None:
-    """Let all bodies count as placed by the program where they were read, as before the first step: STATES[WRITTEN] is
-    what was read of bodies without a row, and unknown, nan, of others; functions have given no accelerations."""
+def accept_static(table: Table) -> None:
+    """Let static bodies count as not moved: STATES[WRITTEN] is what was read of them."""
     R = reading_of(table)
-    STATES, IDS, EXTRA = R.STATES, R.IDS, R.EXTRA
-    for i in range(IDS.shape[1]):
-        for c in range(layout.STATE_COLUMNS):
-            STATES[layout.WRITTEN, i, c] = STATES[layout.READ, i, c] if IDS[layout.BODY_ROW, i] < 0 else math.nan
-        forget_acceleration(EXTRA, i)
+    for i in range(R.IDS.shape[1]):
+        for c in range(layout.STATE_COLUMNS if R.IDS[layout.BODY_ROW, i] < 0 else 0):
+            R.STATES[layout.WRITTEN, i, c] = R.STATES[layout.READ, i, c]
 
 
 @kernel

@@ -7,6 +7,8 @@ from collections.abc import Callable
 import pymunk
 
 import eeca_pymunk as ep
+from eeca_pymunk.impacts.scene_memory import SceneMemory
+from eeca_pymunk.space.world import World
 from scenes.scene import add_disk, add_walls
 
 Make = Callable[[pymunk.Space], ep.Stepper]
@@ -55,3 +57,19 @@ def state(space: pymunk.Space) -> list[tuple[float, ...]]:
     )  # fmt: skip
     bodies = [(*b.position, b.angle, *b.velocity, b.angular_velocity, *b.force, b.torque) for b in space.bodies]
     return [settings, *bodies]
+
+
+LONG_AGO = -(1 << 60)  # a clock from which on all edits are more than are kept
+
+
+class Forgetful(ep.EECA):
+    """Knows no object from earlier readings, only results of earlier steps."""
+
+    def patch(self, world: World, moved: bool) -> bool:
+        return False
+
+    def _update_world(self, anew: bool = False) -> World:
+        world = self._world
+        if world is not None:
+            world.read_at, world.memory = LONG_AGO, SceneMemory()
+        return super()._update_world(anew)

@@ -23,11 +23,11 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import Table, inlined, nonallocating
+from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.parameters.detection import STRAIGHT
 from ..model.parameters.intervals import INTERVAL_DEPTH, INTERVAL_DEPTH_LEAST, INTERVAL_DEPTH_WIDTH, INTERVAL_WAY
-from ..model.scene import Scene, scene_of
+from ..model.scene import Scene
 from ..model.shapes import Side
 from .convex import Closest, Faces, closest, from_faces, separation
 
@@ -142,9 +142,9 @@ def forget_sides(A: Scene, i: int, way: float) -> None:
 
 
 @nonallocating
-def keep_sides(TABLE: Table, KNOWN: Rows[Side], PLACE: IntArray) -> None:
+def keep_sides(A: Scene, KNOWN: Rows[Side], PLACE: IntArray) -> None:
     """Remember the sides KNOWN of pairs of k shapes whose present numbers, PLACE (k,), are not -1."""
-    A, k = scene_of(TABLE), PLACE.shape[0]
+    k = PLACE.shape[0]
     for row in range(len(KNOWN)):
         known = KNOWN[row]
         a, b = shapes_of_pair(k, known.key - 1)

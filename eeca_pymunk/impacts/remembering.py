@@ -10,14 +10,12 @@ import numpy as np
 from ..arrays import AnyArray, FloatArray, IntArray
 from ..compiled import Table, replaced, table_of
 from ..compiled.records import Rows, as_integers, numbers, put
-from ..geometry.corners import find_corners
 from ..model.bodies import POSE, VELOCITY, Body
 from ..model.contacts import Impulse
 from ..model.joints import OF_JOINTS, Joint, Joints, joints_of
 from ..model.scene import Scene, scene_of
 from ..model.shapes import Side
 from ..model.step import Count, Step
-from ..pairs.grid import relist
 from ..pairs.setup import refilled
 from ..report import Outcome
 from .edits import edits_since, values_of, write_edits
@@ -40,7 +38,7 @@ class Remembering:
     Attributes:
         log: the memory of LOG; another object once that is elsewhere.
         own, fresh: after `keep_fresh`, the memory of the arrays that steps change (`memory.OF_SCENE`), as integers, and
-            a copy of it from before the first step, to which `reset` returns.
+            a copy of it from before the first step, to which `reset_to` returns.
     """
 
     joint: Rows[Joint]
@@ -139,30 +137,14 @@ class Remembering:
             put(moved, state, *POSE, *VELOCITY)
             moved["since"] = 0.0
             BODY[at] = moved
-        self.reset(False)
-
-    def reset(self, lists: bool, corners: bool = False) -> None:
-        """Return to the state of a new loop, after `keep_fresh`, with the present BODY and shapes.
-
-        Args:
-            lists: whether shapes have changed since, so that near lists have.  corners: whether static shapes have
-                moved.
-        """
         self.own[:] = self.fresh
         if self.table is not self._first:
             # The first arrays again, not larger ones: memory then grows at the same steps as in a new loop.
             first = scene_of(self._first)
             self.scene = self.scene._replace(**{name: getattr(first, name) for name in GROWN_ARRAYS})
             self._first = self.table
-        scene = self.scene
-        scene.KEYS.fill(-1)
-        if corners and len(scene.CORNER):
-            find_corners(scene.LINK, scene.VERTEX, scene.CORNER)
+        self.scene.KEYS.fill(-1)
         if self.listed:
-            self._make_lists()
-        elif lists and relist(self.table):
-            self.fresh[:] = self.own
-        elif lists:
             self._make_lists()
 
     def remembered(self) -> list[AnyArray]:

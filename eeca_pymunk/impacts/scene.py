@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -25,12 +25,14 @@ from ..model.step import FORCES, IMPACTS_FULL, LOG_FULL, PUSHES_FULL, Missed, ne
 from ..model.values import reading_of
 from ..pairs.setup import with_more_room
 from ..report import Details, of_events
+from .edits import SAME, Changes, renew
 from .new_scene import tie_components
 from .remembering import UNBOUND, Remembering
 from .run import run
 from .run_buffers import RunBuffers
 from .scene_memory import NO_LINKAGE, RULE_COLUMNS, Laid, Linkage, SceneMemory
 from .step import step
+from .taking_over import Kept, take_over
 
 if TYPE_CHECKING:
     import pymunk
@@ -69,7 +71,8 @@ class EventLoop(Remembering):
     ) -> None:  # fmt: skip
         BODY, memory = laid.BODY, memory or SceneMemory()
         n = len(BODY)
-        self.together = together
+        self.together, self.measured = together, list(laid.measured)
+        self._changes: IntArray = np.zeros((4, 2), np.int64)
         self.joint, self.partner, self._still = linkage
         self.pinned = self._hold(BODY, laid.SHAPE, laid.LINK)
         budget = STEP_LOOKS + STEP_LOOKS_BODY * n * max(n, MANY_BODIES) // MANY_BODIES
@@ -185,6 +188,7 @@ class EventLoop(Remembering):
             self.scene = self.scene._replace(
                 PUSHED_BY=_longer(scene.PUSHED_BY, used), PUSHED=_longer(scene.PUSHED, used)
             )
+            self._memory.contacts = len(self.scene.PUSHED)
             return
         self.scene = with_more_room(scene, float(scene.PAR.now))
         flag_pairs(self.table)
@@ -199,6 +203,24 @@ class EventLoop(Remembering):
         KEYS, TABLE = np.full(size, -1, np.int64), rows(Force, size)
         copy_recent(scene.KEYS, scene.FORCES, scene.COUNT, KEYS, TABLE, float(scene.PAR.stamp) - 1.0)
         self.scene = scene._replace(KEYS=KEYS, FORCES=TABLE)
+
+    def renew(self, changes: Changes, measured: Sequence[int]) -> bool:
+        """Go on after changes of the rows in place; False if a new scene is needed. `measured`: the `Measures` of the
+        rows now."""
+        if list(measured) != self.measured:
+            return False
+        # The same array again, as long as it suffices: calls with other ones take longer.
+        if len(changes) > len(self._changes):
+            self._changes = np.zeros((2 * len(changes), 2), np.int64)
+        self._changes.fill(SAME)
+        for row, change in enumerate(changes):
+            self._changes[row] = change
+        return bool(renew(self.table, self._changes))
+
+    def take_over(self, before: EventLoop, kept: Kept) -> None:
+        """Before the first step: go on with the results of the loop before, for the rows that are the same."""
+        changes: IntArray = np.array(kept.changes, np.int64).reshape(-1, 2)
+        take_over(before.table, self.table, kept.bodies, kept.shapes, changes)
 
     def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
         """Set the law of pairs of shapes a < b: elasticity (below 0: they pass through each other), friction and

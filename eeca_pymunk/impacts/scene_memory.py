@@ -68,7 +68,8 @@ class SceneMemory:
     """Memory for the scenes of one stepper: each replaces the one before, whose arrays it overwrites.
 
     Attributes:
-        joints: for their joints.  log: number of rows that LOG has at least, as an earlier scene needed them.
+        joints: for their joints.
+        log, contacts: numbers of rows that LOG and PUSHED have at least, as an earlier scene needed them.
         thin: number of thin shapes that move in the last scene, 0 if no thin shapes may meet.
     """
 
@@ -76,8 +77,17 @@ class SceneMemory:
 
     def __init__(self) -> None:
         self._layout = Layout(_arrays())
-        self.joints, self.log = JointMemory(), 0
+        self.joints, self.log, self.contacts = JointMemory(), 0, 0
         self._unjointed: tuple[Table, int] = None, 0
+        self._other: SceneMemory | None = None
+
+    def other(self) -> SceneMemory:
+        """Memory for the next scene, while the last one here still exists: two take turns."""
+        if self._other is None:
+            self._other = SceneMemory()
+            self._other._other = self
+        self._other.log, self._other.contacts = self.log, self.contacts
+        return self._other
 
     def scene(self, laid: Laid, PINNED: Rows[Pinned], limit: int, together: bool, budget: int) -> Table:
         """The table of a scene that has taken no step; the arrays given are kept, not copied. The numbers are fields of
@@ -85,7 +95,7 @@ class SceneMemory:
         BODY, SHAPE, LINK, VERTEX, disks, (moving, corners, self.thin, lossy) = laid
         n, k = len(BODY), len(LINK)
         room = _CONTACTS
-        while lossy and room < min(_OF_A_BODY * n, _MANY):
+        while room < max(min(_OF_A_BODY * n, _MANY) if lossy else 0, self.contacts):
             room *= 2
         pool, heads = pool_sizes(moving)
         counts = {

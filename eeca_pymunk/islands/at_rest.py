@@ -55,6 +55,14 @@ def stays_at_rest(A: Scene, i: int, last: float) -> bool:
 
 
 @nonallocating
+def disturb(A: Scene, i: int) -> None:
+    """Let an island at rest of body i be solved again."""
+    root = A.STATE[i].island
+    if root >= 0 and A.MEMBER[root].rest == AT_REST:
+        A.MEMBER[root].rest = CHANGED
+
+
+@nonallocating
 def renew_forces(A: Scene, c: int, stamp: float) -> None:
     """Set the stamp of the remembered forces of contact c, if they are of the last step, to that of the step
     `stamp`."""

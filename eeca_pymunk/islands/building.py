@@ -27,7 +27,7 @@ from .intervals import begin_interval
 from .local import drop_contacts
 from .membership import approach, budget_spent, fixed_support, jointed, largest_island, members_of, persists, unite
 from .partial_rest import rests_in_part
-from .penetration import hold_penetrating
+from .penetration import hold_penetrating, wake_penetrated
 from .support import support
 
 
@@ -95,6 +95,8 @@ def build_islands(A: Scene) -> int:
     to be called again with more memory."""
     STATE, COUNT, BODY = A.STATE, A.COUNT, A.BODY
     n = BODY.shape[0] - 1
+    if COUNT.any_placed > 0:
+        wake_penetrated(A)
     wake_changed(A)
     for c in range(COUNT.pushes):
         a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b

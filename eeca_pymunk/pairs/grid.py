@@ -202,12 +202,11 @@ def build(table: Table, t: float) -> bool:
 
 
 @nonallocating
-def relist(table: Table) -> bool:
-    """Make all lists at instant 0 after shapes have changed or static shapes have moved. False if the pool is full, or
-    if static shapes have a grid, which is not made again here."""
-    A = scene_of(table)
-    if A.GRID.columns != 0:
+def relist(A: Scene, t: float, walls: bool) -> bool:
+    """Make all lists again at instant t, after filters have changed; if `walls`, outlines or places of static shapes.
+    False if another scene is needed: there are margin circles, a grid of static shapes, or too small a pool."""
+    if A.GRID.columns != 0 or (A.LIST.shape[0] > 0 and A.MARK[0].margin < math.inf):
         return False
-    for w in range(A.BOX.shape[0]):
+    for w in range(A.BOX.shape[0] if walls else 0):
         box_wall(A, w)
-    return make_lists(A, 0.0)
+    return make_lists(A, t)

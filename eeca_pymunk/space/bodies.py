@@ -144,16 +144,16 @@ class Bodies:
         """(N, 2) length, in body coordinates."""
         return columns(self.VALUES, "centre_x", "centre_y")
 
-    def same_inertia(self, before: Bodies) -> list[tuple[int, int]]:
-        """Rows, here and in an earlier reading, of the bodies that are not static and have the same `inertia`."""
-        old, kinds = before.row, self.VALUES["kind"].tolist()
+    def same_in(self, before: Bodies) -> list[tuple[int, int, bool]]:
+        """Rows, here and in an earlier reading, of the bodies that are not static in both and have the same kind and
+        centre of mass; and whether their mass and moment are the same."""
+        old, kinds, slept = before.row, self.VALUES["kind"].tolist(), before.asleep.tolist()
         at = [(i, old[body]) for body, i in self.row.items() if body in old and kinds[i] != STATIC]
-        new, known, slept = self._values, before._values, before.asleep.tolist()
+        new, known = self._values, before._values
         return [
-            (i, j)
+            (i, j, new[i] is known[j] or body_values.masses(new[i]) == body_values.masses(known[j]))
             for i, j in at
-            if (new[i] is known[j] and not slept[j])
-            or body_values.inertia(new[i], False) == body_values.inertia(known[j], slept[j])
+            if not slept[j] and (new[i] is known[j] or body_values.centre(new[i]) == body_values.centre(known[j]))
         ]
 
     @cached_property

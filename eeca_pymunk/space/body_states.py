@@ -18,7 +18,7 @@ from ..compiled.records import Rows
 from ..model.bodies import Body
 from ..model.step import FORCES, TURNS
 from ..rehearsing import accept_rounding, alter_end, copy_start
-from ..transfer import forget_last_end, read_states, write_ends, write_stopped_ends
+from ..transfer import accept_static, read_states, write_ends, write_stopped_ends
 from .bodies import STATE_FIELDS, Bodies
 from .private import batch as private_batch
 
@@ -44,7 +44,7 @@ _IDS, _EXTRA, _HOOKED = (
     2 * layout.STATE_COLUMNS + 4,
     2 * layout.STATE_COLUMNS + 4 + layout.EXTRA_COLUMNS,
 )
-_KERNELS = copy_start, write_ends, write_stopped_ends, alter_end, accept_rounding, forget_last_end
+_KERNELS = copy_start, write_ends, write_stopped_ends, alter_end, accept_rounding, accept_static
 
 
 class _Writers(dict[int, Callable[[], None]]):
@@ -70,16 +70,18 @@ class BodyStates:
         bodies: in pymunk's order, N with the static ones.
         BODY: (n,).  STATES, IDS, EXTRA, ENDS, HOOKED: the arrays exchanged with pymunk, see `layout.py`.
         reading: their table.  bound: kernels bound to it, see `Layout`.
-        copy_start, write_ends, accept_rounding, forget_last_end: functions, see `rehearsing.copy_start`,
-            `transfer.write_ends`, `rehearsing.accept_rounding` and `transfer.forget_last_end`.
+        copy_start, write_ends, accept_rounding, accept_static: functions, see `rehearsing.copy_start`,
+            `transfer.write_ends`, `rehearsing.accept_rounding` and `transfer.accept_static`.
         gather: reads the state of all bodies into STATES[READ].
         eccentric: whether the centre of mass of any body is not its origin. pymunk places such a body by its present
             angle: its pose is written a second time, by the new angle.
+        same_as_before: the bodies that were in the world before, see `Bodies.same_in`.
     """
 
     bodies: Bodies
     BODY: Rows[Body]
     eccentric: bool
+    same_as_before: Sequence[tuple[int, int, bool]] = ()
     gather: Callable[[], None]
     copy_start: Callable[[], int]
     write_ends: Callable[[int], int]
@@ -113,7 +115,7 @@ class BodyStates:
         """Set `reading` and `bound`, and make the functions that use kernels on these arrays."""
         self.reading, self.bound = reading, bound
         self.copy_start, self.write_ends, self._write_stopped_ends, self._alter_end, *more = bound(*_KERNELS)
-        self.accept_rounding, self.forget_last_end = more
+        self.accept_rounding, self.accept_static = more
 
     def load(self) -> None:
         """Read the present states into BODY."""
@@ -196,12 +198,15 @@ class BodyStates:
         return state
 
     def recall(self, before: BodyStates) -> None:
-        """Copy STATES[WRITTEN] from the world before, of bodies whose mass, moment and centre of gravity are the same:
-        the next step counts them as unedited unless their state differs from it."""
-        same = self.bodies.same_inertia(before.bodies)
-        if same:
-            to, of = zip(*same, strict=True)
-            self.STATES[layout.WRITTEN, to] = before.STATES[layout.WRITTEN, of]
+        """Copy STATES[WRITTEN] from the world before, of bodies whose kind and centre of gravity are the same: the next
+        step counts them as unedited unless their state differs from it. Of those with another mass or moment only poses
+        are copied, so that their velocities count as edited."""
+        self.same_as_before = self.bodies.same_in(before.bodies)
+        for columns, whole in ((layout.STATE_COLUMNS, True), (3, False)):
+            same = [(i, j) for i, j, unedited in self.same_as_before if unedited == whole]
+            if same:
+                to, of = zip(*same, strict=True)
+                self.STATES[layout.WRITTEN, to, :columns] = before.STATES[layout.WRITTEN, of, :columns]
 
     def void_predictions(self) -> None:
         """Void all predictions: in the next step all bodies count as placed by the program (PLACED in `layout.py`)."""

@@ -12,8 +12,9 @@ from .private import spaces as private
 
 _KIND = {pymunk.Body.DYNAMIC: DYNAMIC, pymunk.Body.KINEMATIC: KINEMATIC, pymunk.Body.STATIC: STATIC}
 _VALUES = struct.Struct("4q9d2q")  # a `BodyValues`
-# Mass, moment and their inverses; in the bytes they are [_FROM:_TO], and the centre of gravity [_TO:_CENTRE].
-_MASSES, _FROM, _TO, _CENTRE = struct.Struct("4d"), 32, 64, 80
+# Mass, moment and their inverses; in the bytes they are [_FROM:_TO], the centre of gravity [_TO:_CENTRE], and the kind
+# [:_KIND_END].
+_MASSES, _KIND_END, _FROM, _TO, _CENTRE = struct.Struct("4d"), 8, 32, 64, 80
 FIXED = math.inf, math.inf, 0.0, 0.0  # those of static, kinematic and sleeping bodies
 
 
@@ -45,6 +46,6 @@ def others(values: bytes) -> bytes:
     return values[:_FROM] + values[_TO:]
 
 
-def inertia(values: bytes, asleep: bool) -> bytes:
-    """Masses and centre of gravity, for comparison; of a sleeping body with the masses FIXED."""
-    return _MASSES.pack(*FIXED) + values[_TO:_CENTRE] if asleep else values[_FROM:_CENTRE]
+def centre(values: bytes) -> bytes:
+    """Kind and centre of gravity, for comparison."""
+    return values[:_KIND_END] + values[_TO:_CENTRE]

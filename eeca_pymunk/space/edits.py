@@ -33,7 +33,7 @@ _METHODS: tuple[tuple[type, tuple[str, ...]], ...] = (
     (pymunk.Poly, ("unsafe_set_radius", "unsafe_set_vertices")),
 )
 _SURFACE = ("filter", "elasticity", "friction", "surface_velocity")  # these change neither masses nor outlines
-_VALUES = ("elasticity", "friction", "surface_velocity", "mass", "moment")  # nor which shapes may touch, or sizes
+_VALUES = (*_SURFACE, "mass", "moment")  # nor sizes
 SLEEP = ("sleep", "sleep_with_group")
 _KEPT = 4096  # number of edits that are kept, the last ones
 _wrapped = False

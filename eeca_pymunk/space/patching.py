@@ -3,43 +3,33 @@
 Only edited objects are read again, and their rows, or all, are written in place: afterwards these are those that a new
 reading would give, bit by bit. Which edits can be patched, by which function:
 
-| function | space | edits | results of earlier steps |
+| function | space | edits | rows |
 |---|---|---|---|
-| `patch_values` | any | elasticity, friction, surface velocity | kept |
-| | without joints | masses and moments of bodies | kept |
-| `patch_rows` | without joints and sleeping | also filters, radii, moved static bodies | forgotten |
-| | with joints, or where bodies may sleep | also filters | forgotten, but those of joints |
+| `patch_values` | any | elasticity, friction, surface velocity, filter | those edited |
+| | without joints | masses and moments of bodies | those edited |
+| `patch_rows` | without joints and sleeping | also radii, moved static bodies | all |
 
-Where results are kept, the islands at rest that touch what was edited are solved again, and all else goes on as if
-nothing had been edited. An edit that gives a shape losses, or takes them away (elasticity 1), is one for `patch_rows`;
-so is, where there are joints, one of friction from or to 0: pivots hold disks that have none where they are.
-
-All others (of vertices, kinds and functions of bodies, sensors; additions and removals) need a new reading.
+All others (of vertices, kinds and functions of bodies, sensors; additions and removals) need a new reading. In either
+case results of earlier steps are kept for all that has not changed (`..impacts.taking_over`). `patch_values` does not
+even make a new scene; only the islands at rest that touch what was edited are solved again.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import pymunk
 
-from ..impacts.edits import Edits
-from ..layout import BODY_ROW
+from ..impacts.edits import MASS, OUTLINE, Changes, Edits
+from ..layout import BODY_ROW, READ, WRITTEN
 from ..model.step import MOVED_STATIC, OTHER_BODIES
 from .body_values import masses as masses_in
 from .edits import Edited, clock, edited_since
+from .kept import changes_of
 from .packing import ShapeRecord, read, read_surface
 
 if TYPE_CHECKING:
     from .world import World
-
-
-class Patched(NamedTuple):
-    """What a patch has changed."""
-
-    elasticity: bool  # of a shape from below 1 to 1 or more, or back
-    reach: bool  # filters or radii
-    moved: bool  # static bodies
 
 
 def _edited(world: World) -> Edited | None:
@@ -51,13 +41,20 @@ def _edited(world: World) -> Edited | None:
 
 
 def _is_kept(new: ShapeRecord, old: ShapeRecord, jointed: bool) -> bool:
-    """Whether results of earlier steps hold, apart from those at rest, for a shape with this other surface."""
+    """Whether a scene may go on with this other record of a shape. A new one is needed if the shape has losses now and
+    had none (elasticity 1), or the reverse; and, where there are joints, if friction was or is 0: pivots hold disks
+    that have none where they are."""
     (_, e, mu, *_), (_, e0, mu0, *_) = new.numbers, old.numbers
     return (e < 1.0) == (e0 < 1.0) and not (jointed and (mu > 0.0) != (mu0 > 0.0))
 
 
+def _signed(word: int) -> int:
+    """The integer with the bits of 64 that are read as one without sign."""
+    return word - (word >> 63 << 64)
+
+
 def patch_values(world: World) -> Edits | None:
-    """Read edited surfaces and masses again.
+    """Read edited surfaces, filters and masses again.
 
     Returns:
         what the event loop must write into the rows; None, with nothing changed, if there were other edits.
@@ -86,32 +83,36 @@ def patch_values(world: World) -> Edits | None:
             if values is not None:
                 masses[bodies.row[thing]] = values
     places = world.places
-    surfaces = {places[shape]: record.numbers[1:] for shape, record in records.items()}
+    surfaces, filters = {}, {}
+    for shape, new in records.items():
+        if (old := world.records[shape]) is not None and new.filter != old.filter:
+            filters[places[shape]] = tuple([_signed(word) for word in new.filter])
+        if old is not None and new.numbers != old.numbers:
+            surfaces[places[shape]] = new.numbers[1:]
     world.records.update(records)
     world.packed.note_edited(records)
     bodies.set_masses(masses)
     mobilities = {int(world.IDS[BODY_ROW, i]): masses_in(values)[2:] for i, values in masses.items()}
     world.read_at, world.objects_read = now, world.objects_read + len(records) + len(masses)
-    return Edits(surfaces, mobilities)
+    return Edits(surfaces, mobilities, filters)
 
 
-def patch_rows(world: World, surfaces: bool) -> Patched | None:
-    """Write all edits since the world was read into its rows, as if no step had been taken since. Where there are
-    joints, bodies keep the results of earlier steps. No shapes were added or removed.
+def patch_rows(world: World, surfaces: bool) -> Changes | None:
+    """Write all edits since the world was read into its rows. No shapes were added or removed.
 
     Args:
         surfaces: whether only edits may be patched that leave sizes, masses and places unchanged.
 
     Returns:
-        what was changed; None if a new reading is needed: the rows are then invalid.
+        the changes; None if a new reading is needed.
 
     Raises:
         ValueError, UnsupportedFeature, NotFiniteError: as a new reading would.
     """
-    now, edited, joints = clock(), _edited(world), world.joints
+    now, edited, joints, bodies = clock(), _edited(world), world.joints, world.bodies
     if edited is None:
         return None
-    (stale, reshaped, _), elasticity, reach, bodies = edited, False, False, world.bodies
+    stale, reshaped, _ = edited
     records: dict[pymunk.Shape, ShapeRecord] = {}
     for shape in [thing for thing in stale if thing in world.records]:
         record = world.records[shape]
@@ -120,11 +121,8 @@ def patch_rows(world: World, surfaces: bool) -> Patched | None:
         records[shape] = new = read(shape) if shape in reshaped else read_surface(shape, record)
         if (new.body, new.points) != (record.body, record.points):
             return None
-        resized = new.numbers[0] != record.numbers[0]
-        if resized and surfaces:
+        if surfaces and new.numbers[0] != record.numbers[0]:
             return None
-        reach |= resized or new.filter != record.filter
-        elasticity |= (new.numbers[1] < 1.0) != (record.numbers[1] < 1.0)
     masses: dict[int, bytes] = {}
     for i in [bodies.row[thing] for thing in stale if thing in bodies.row]:
         values, others_changed = bodies.changed(i)
@@ -139,13 +137,24 @@ def patch_rows(world: World, surfaces: bool) -> Patched | None:
         return None
     if status != 0:
         bodies.check_finite(world.state)
+    places = world.places
+    changes = [(MASS, int(world.IDS[BODY_ROW, i])) for i in masses] + (_moved_shapes(world) if moved else [])
+    for shape, new in records.items():
+        if (old := world.records[shape]) is not None:
+            changes += changes_of(places[shape], new, old)
     bodies.set_masses(masses)
     world.records.update(records)
     if not world.packed.write_again(world.records, records, moved):
+        world.void = True
         return None
     world.read_at, world.objects_read = now, world.objects_read + len(records) + len(masses)
-    if joints is None:
-        world.forget_last_end()
-    else:
+    world.accept_static()
+    if joints is not None:
         joints.refresh()
-    return Patched(elasticity, reach, moved)
+    return changes
+
+
+def _moved_shapes(world: World) -> Changes:
+    """The changes of the shapes of static bodies that were moved."""
+    moved = world.bodies.static & (world.STATES[READ, :, :3] != world.STATES[WRITTEN, :, :3]).any(axis=1)
+    return [(OUTLINE, row) for row in moved[world.owner].nonzero()[0].tolist()]

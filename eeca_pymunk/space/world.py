@@ -10,7 +10,7 @@ from typing import Any
 import pymunk
 
 from ..arrays import BoolArray
-from ..impacts.edits import Edits
+from ..impacts.edits import Changes, Edits
 from ..impacts.scene_memory import SceneMemory
 from ..layout import BODY_ROW, KNOWN_ID
 from ..report import nothing
@@ -22,7 +22,7 @@ from .edits import Counts, clock, counts, edited_since
 from .hooks import Hooks
 from .joints import JointRows
 from .packing import Packed, ShapeRecords, records_of, shape_counts
-from .patching import Patched, patch_rows, patch_values
+from .patching import patch_rows, patch_values
 from .private import spaces as private
 from .rehearsal import Rehearsal
 
@@ -59,7 +59,8 @@ class World(BodyStates):
         sleeps: whether bodies could sleep when it was read.  read_at: `edits.clock` when shapes and bodies were read.
         patches: number of patches so far.  packed: the arrays of the rows, and the kernel that writes them.
         objects_read: number of bodies, shapes and constraints read from pymunk for this world; others were known.
-        memory: of the scenes of its event loop, used again by the next world.
+        memory: of the scene of its event loop.
+        void: whether the rows are invalid, after a patch that has failed.
         parted: pairs of rows of SHAPE that do not collide, by `collide_bodies` of a joint of their bodies.
     """
 
@@ -99,7 +100,8 @@ class World(BodyStates):
         self.rules = NO_RULES
         self.without_contacts = partial(nothing, self.bodies.items)
         self.joints: JointRows | None = None
-        if past is not None and past.joints is not None:
+        self.void = False
+        if past is not None:
             self.joints = past.joints
             self.recall(past)
         self.read_settings(anew=True)
@@ -188,17 +190,17 @@ class World(BodyStates):
         """`patching.patch_values`, then the settings of the space if these have changed."""
         edits = patch_values(self)
         if edits is not None:
-            self._count_patch(False)
+            self._count_patch(bool(edits.filters))
         return edits
 
-    def patch_rows(self, surfaces: bool) -> Patched | None:
+    def patch_rows(self, surfaces: bool) -> Changes | None:
         """`patching.patch_rows`, then the settings of the space if these have changed, and the present states into
         BODY."""
-        found = patch_rows(self, surfaces or self.joints is not None)
-        if found is not None:
-            self._count_patch(found.reach or found.moved)
+        changes = patch_rows(self, surfaces or self.joints is not None)
+        if changes is not None:
+            self._count_patch(True)
             self.read_states(0.0, 0.0, 1.0)
-        return found
+        return changes
 
     def _count_patch(self, reshaped: bool) -> None:
         self.patches += 1

@@ -1,0 +1,69 @@
+"""Which rows of a world are those of an earlier one, so that results of earlier steps hold for them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..arrays import IntArray
+from ..impacts.edits import FILTER, MASS, OUTLINE, SURFACE, Changes
+from ..impacts.taking_over import Kept
+from ..layout import BODY_ROW, READ, WRITTEN
+from .packing import ShapeRecord
+
+if TYPE_CHECKING:
+    from .world import World
+
+
+def same_outline(new: ShapeRecord | None, old: ShapeRecord | None) -> bool:
+    """Whether two records of a shape have the same vertices and radius on the same body."""
+    if new is None or old is None:
+        return False
+    return new is old or (new.body, new.points, new.numbers[0]) == (old.body, old.points, old.numbers[0])
+
+
+def changes_of(row: int, new: ShapeRecord, old: ShapeRecord) -> Changes:
+    """The changes of the shape in this row of SHAPE."""
+    kinds = (
+        (OUTLINE, not same_outline(new, old)),
+        (FILTER, new.filter != old.filter),
+        (SURFACE, new.numbers != old.numbers),
+    )
+    return [(kind, row) for kind, changed in kinds if changed]
+
+
+def kept_rows(world: World, past: World) -> Kept:
+    """What a world that was just read has kept of the one before, `past`."""
+    row, old_row = world.IDS[BODY_ROW], past.IDS[BODY_ROW]
+    bodies: IntArray = np.full(len(past.BODY), -1, np.int64)
+    changes: Changes = []
+    for i, j, unedited in world.same_as_before:
+        bodies[old_row[j]] = row[i]
+        if not unedited:
+            changes.append((MASS, row[i]))
+    bodies[-1] = len(world.BODY) - 1  # the ground
+    places, records, before = world.places, world.records, past.records
+    now, then, items, old_items = world.STATES[READ], past.STATES[WRITTEN], world.bodies.items, past.bodies.items
+    owner, old_owner = world.owner.tolist(), past.owner.tolist()
+    shapes = [-1] * len(past.shapes)
+    unmoved: dict[int, bool] = {}  # of static bodies
+    for s, shape in enumerate(past.shapes):
+        place = places.get(shape, -1)
+        if place < 0 or not same_outline(records[shape], before[shape]):
+            continue
+        i, j = owner[place], old_owner[s]
+        if items[i] is not old_items[j]:
+            continue
+        if old_row[j] >= 0:
+            same = bodies[old_row[j]] == row[i]
+        else:
+            if i not in unmoved:
+                unmoved[i] = bool(row[i] < 0 and (now[i, :3] == then[j, :3]).all())
+            same = unmoved[i]
+        if same:
+            shapes[s] = place
+            new, old = records[shape], before[shape]
+            if new is not old and new is not None and old is not None:
+                changes += changes_of(place, new, old)
+    return Kept(bodies, np.array(shapes, np.int64), changes)
