@@ -71,7 +71,7 @@ class EECA(RunningStepper):
         self._use(self.make_method(world))
         loop = self.event_loop
         if loop is not None and before is not None and kept is not None:
-            loop.take_over(before, kept)
+            loop.go_on_from(before, kept)
         if world.joints is not None:
             assert loop is not None  # other methods refuse joints
             world.joints.planned(loop.held)

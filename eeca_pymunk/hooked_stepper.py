@@ -147,8 +147,8 @@ class HookedStepper(PackedSpace):
         if bits < 0:
             self._raise_failure(world, dt, bits)
         if world.hooks.moved:
-            world.hooks.positions(world.state, world.STATES[WRITTEN], dt)
-            world.bodies.check_finite(world.ended(), TOO_FAR)
+            if not world.hooks.positions(world.state, world.STATES[WRITTEN], dt):
+                world.bodies.check_finite(world.ended(), TOO_FAR)
             bits = world.write_whole()
         return bits, lost
 

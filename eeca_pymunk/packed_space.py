@@ -109,9 +109,8 @@ class PackedSpace(Stepper):
         """A method for a world, without results of earlier steps."""
 
     def choose_method(self, world: World, past: World | None, kept: Kept | None = None) -> None:
-        """Choose the method of a world. `past`: the world of the present method, which is the same one if its joints or
-        rows have changed; None for a world that was read for the first time, or after `refresh`. `kept`: its rows for
-        which results of earlier steps hold."""
+        """Choose the method of a world. `past`: that of the present method, the same one if its joints or rows have
+        changed; None at first, or after `refresh`.  `kept`: its rows for which results of earlier steps hold."""
         self._use(self.make_method(world))
 
     def _use(self, method: Method, ruled: Rules | None = NO_RULES) -> None:
@@ -138,8 +137,7 @@ class PackedSpace(Stepper):
         return world if world is not None and world.current() else self._update_world()
 
     def _update_world(self, anew: bool = False) -> World:
-        """The present space as a checked World: the last one if only settings changed, that one patched, or a new
-        reading (always if `anew`)."""
+        """The present space as a checked World: the last one, or that one patched, or a new reading (if `anew`)."""
         past, self._world = self._world, None
         self._put_copy_to_sleep()
         if self._sleep is not None and self.space.sleep_time_threshold == math.inf:

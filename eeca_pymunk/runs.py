@@ -131,12 +131,12 @@ class RunningStepper(PackedStepper):
         if not moved and (edits := world.patch_values()) is not None:
             write_edits(loop.table, edits)
             changes = [(FILTER, row) for row in edits.filters]
-            renewed = not changes or loop.renew(changes, loop.measured)
+            renewed = not changes or loop.go_on(changes, loop.measured)
         else:
             changes = world.patch_rows(self._sleep is not None)
             if changes is None:
                 return False
-            renewed = world.joints is None and loop.renew(changes, world.packed.measured())
+            renewed = world.joints is None and loop.go_on(changes, world.packed.measured())
         if not renewed:
             self.choose_method(world, world, kept_in_place(len(world.BODY), len(world.shapes), changes))
         return True

@@ -34,8 +34,8 @@ TABLES = {
         SIDE:Side[1] CORNER:Corner[1] PINNED:Pinned[1] MISSED:Missed[1] PAR:Step COUNT:Count
     """,
     "Reading": """
-        TOTALS:i8[1] BODIES:BodyValues[1] SHAPES:ShapeValues[1] OWNER:i8[1] POINT:f8[2] STATES:f8[3] IDS:i8[2]
-        EXTRA:f8[2] ENDS:f8[1] HOOKED:f8[3] BODY:Body[1] SHAPE:Shape[1] LINK:Link[1] VERTEX:f8[2] ORDER:i8[1]
+        TOTALS:i8[1] BODIES:BodyValues[1] SHAPES:ShapeValues[1] OWNER:i8[1] POINT:f8[2] PLACED:f8[2] STATES:f8[3]
+        IDS:i8[2] EXTRA:f8[2] ENDS:f8[1] HOOKED:f8[3] BODY:Body[1] SHAPE:Shape[1] LINK:Link[1] VERTEX:f8[2] ORDER:i8[1]
         MEASURED:Measures
     """,
     "Joints": """
@@ -63,7 +63,6 @@ ENTRIES = {
     "pairs.margins:begin_lists": "{Scene}",
     "pairs.margins:fill_lists": "{Scene} f8[1] f8 i8 bool",
     "pairs.candidates:candidates": "{Scene} f8[1] i8[2] f8[2]",
-    "geometry.corners:find_corners": "Link[1] f8[2] Corner[1]",
     "transfer:read_states": "f8[3] i8[2] f8[2] Body[1] f8 f8 f8",
     "transfer:write_states": "f8[3] i8[2] f8[2] Body[1] f8[1] f8 f8 i8",
     "transfer:accept_static": "{Reading}",

@@ -140,9 +140,9 @@ class Layout(Generic[T]):
         array = self._memory.array(shape or (1,), plan.dtypes[name], at)
         return array if shape else array[0]
 
-    def write(self, name: str, content: bytes | bytearray) -> None:
-        """Write all of an array of this memory in the last table."""
-        first = self._table[self._plan.first_word[name]] - self._memory.address
+    def write(self, name: str, content: bytes | bytearray, start: int = 0) -> None:
+        """Write an array of this memory in the last table, from byte `start` on."""
+        first = self._table[self._plan.first_word[name]] - self._memory.address + start
         self._memory.raw[first : first + len(content)] = content
 
     def floats(self, name: str) -> memoryview:

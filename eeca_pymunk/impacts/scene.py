@@ -204,7 +204,7 @@ class EventLoop(Remembering):
         copy_recent(scene.KEYS, scene.FORCES, scene.COUNT, KEYS, TABLE, float(scene.PAR.stamp) - 1.0)
         self.scene = scene._replace(KEYS=KEYS, FORCES=TABLE)
 
-    def renew(self, changes: Changes, measured: Sequence[int]) -> bool:
+    def go_on(self, changes: Changes, measured: Sequence[int]) -> bool:
         """Go on after changes of the rows in place; False if a new scene is needed. `measured`: the `Measures` of the
         rows now."""
         if list(measured) != self.measured:
@@ -217,7 +217,7 @@ class EventLoop(Remembering):
             self._changes[row] = change
         return bool(renew(self.table, self._changes))
 
-    def take_over(self, before: EventLoop, kept: Kept) -> None:
+    def go_on_from(self, before: EventLoop, kept: Kept) -> None:
         """Before the first step: go on with the results of the loop before, for the rows that are the same."""
         changes: IntArray = np.array(kept.changes, np.int64).reshape(-1, 2)
         take_over(before.table, self.table, kept.bodies, kept.shapes, changes)

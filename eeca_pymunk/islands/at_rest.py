@@ -10,9 +10,6 @@ supports it moves, and when collision handlers or joints give other laws to pair
 
 from __future__ import annotations
 
-import math
-
-from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..contacts.memory import find, key_of
 from ..contacts.single import kinetic, note
@@ -21,6 +18,7 @@ from ..model.contacts import LASTED
 from ..model.parameters.rest import REST_RETRY
 from ..model.scene import Scene
 from ..pairs.lists import mark_pair
+from ..pairs.rules import checksum
 from .rest import candidate_speed, speed, spins_freely
 
 
@@ -89,17 +87,6 @@ def wake_supported(A: Scene) -> None:
                 other = A.STATE[j].island
                 if A.BODY[j].inv_mass > 0.0 and other >= 0 and MEMBER[other].rest == CHANGED:
                     MEMBER[root].rest, more = CHANGED, True
-
-
-@nonallocating
-def checksum(RULE: FloatArray) -> float:
-    """A number that other laws of pairs change: the sum of their values, weighted by their places."""
-    total, weight, golden = 0.0, 0.0, 0.5 * (math.sqrt(5.0) - 1.0)
-    for r in range(RULE.shape[0]):
-        for c in range(RULE.shape[1]):
-            weight += golden if weight < 1.0 else golden - 1.0  # between 0 and 1.62, nowhere the same
-            total += weight * (RULE[r, c] + 1.0)
-    return total
 
 
 @nonallocating

@@ -27,7 +27,7 @@ class Step(Record):
     after: float  # the same at its end, and `stored`
     stamp: float  # number of the step
     pulled: float  # |a|, largest acceleration without contacts: length/time²
-    rules: float  # `islands.at_rest.checksum` of the laws of pairs when islands were last built
+    rules: float  # `pairs.rules.checksum` of the laws of pairs when islands were last built
 
 
 class Count(Record):

@@ -34,11 +34,11 @@ class BodyValues(Record):
 
 
 class ShapeValues(Record):
-    """A solid shape as pymunk has it, in pymunk's order. Its vertices are consecutive rows, counter-clockwise, in the
-    coordinates of its body."""
+    """A solid shape as pymunk has it, in pymunk's order. Its vertices are consecutive rows of POINT, counter-clockwise,
+    in the coordinates of its body."""
 
     owner: int  # number of its body, in pymunk's order
-    vertices: int
+    points: int  # number of its vertices
     group: int  # of its filter
     categories: int
     mask: int
@@ -47,7 +47,8 @@ class ShapeValues(Record):
     friction: float
     surface_x: float  # surface velocity, length/time
     surface_y: float
-    first: int  # its first vertex
+    first: int  # of its rows of PLACED: the first, and their number
+    vertices: int
 
 
 class Measures(Record):
@@ -63,9 +64,10 @@ class Reading(NamedTuple):
     """A space as pymunk has it, and the rows that are made of it.
 
     BODIES (N,), SHAPES (k,): values, in pymunk's order; OWNER (k,): `owner` of the shapes; POINT (v, 2): the vertices
-    of all shapes, overwritten. STATES, IDS, EXTRA, ENDS, HOOKED: see `..layout`. Out: BODY (moving bodies + 1,), SHAPE,
-    LINK (k,), VERTEX (v, 4), whose rows in use come first; ORDER (k + N + 2,), the index in SHAPES of every row of
-    SHAPE, and scratch; TOTALS: counts of what was read. MEASURED: by `..impacts.new_scene.measure_scene`.
+    of all shapes. STATES, IDS, EXTRA, ENDS, HOOKED: see `..layout`. Out: PLACED (v, 2), the vertices that differ from
+    the one before, of static shapes in world coordinates, of others about the centre of mass; BODY (moving bodies +
+    1,), SHAPE, LINK (k,), VERTEX (v, 4), whose rows in use come first; ORDER (k + N + 2,), the index in SHAPES of every
+    row of SHAPE, and scratch; TOTALS: counts of what was read. MEASURED: by `..impacts.new_scene.measure_scene`.
     """
 
     TOTALS: IntArray
@@ -73,6 +75,7 @@ class Reading(NamedTuple):
     SHAPES: Rows[ShapeValues]
     OWNER: IntArray
     POINT: FloatArray
+    PLACED: FloatArray
     STATES: FloatArray
     IDS: IntArray
     EXTRA: FloatArray

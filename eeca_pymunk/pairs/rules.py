@@ -4,6 +4,8 @@ collision handlers or joints have set for this step in RULE (see `..model.scene`
 
 from __future__ import annotations
 
+import math
+
 from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..geometry.gap import gap_round_off
@@ -56,3 +58,14 @@ def face_tolerance(A: Scene, a: int, b: int) -> float:
     if law(A, a, b)[0] < 1.0:
         tolerance = max(tolerance, ROCKING * smaller(A, a, b))
     return tolerance
+
+
+@nonallocating
+def checksum(RULE: FloatArray) -> float:
+    """A number that other laws of pairs change: the sum of their values, weighted by their places."""
+    total, weight, golden = 0.0, 0.0, 0.5 * (math.sqrt(5.0) - 1.0)
+    for r in range(RULE.shape[0]):
+        for c in range(RULE.shape[1]):
+            weight += golden if weight < 1.0 else golden - 1.0  # between 0 and 1.62, nowhere the same
+            total += weight * (RULE[r, c] + 1.0)
+    return total

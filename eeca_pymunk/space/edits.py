@@ -98,6 +98,8 @@ class Edited(NamedTuple):
 
 def edited_since(time: int) -> Edited | None:
     """What was edited since `clock` was `time`; None if there were more edits than `_KEPT`."""
+    if _clock == time:
+        return Edited(set(), set(), True)
     if _clock - time > len(_edited):
         return None
     reshaped, others, values = set[Any](), set[Any](), True

@@ -11,6 +11,7 @@ of the step (`private.locked`). The order of the others is
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import cached_property
 from typing import Any
@@ -18,7 +19,7 @@ from typing import Any
 import pymunk
 
 from ..arrays import FloatArray
-from .bodies import ANGLE, POSITION, Bodies
+from .bodies import Bodies
 from .joints import JointRows
 from .private import functions as private_functions
 from .private import joints as private_joints
@@ -97,25 +98,31 @@ class Hooks:
         """Gravity and damping of the space; the properties are slow."""
         return self.space.gravity, self.space.damping
 
-    def positions(self, state: FloatArray, end: FloatArray, dt: float) -> None:
+    def positions(self, state: FloatArray, end: FloatArray, dt: float) -> bool:
         """Call the position functions of the bodies at `state` (N, 9), each with the mean velocity that leads to `end`
-        (N, 9) within dt, and write the resulting poses to `end`."""
-        displacements = self.bodies.centers(end) - self.bodies.centers(state)
-        items = self._moved
+        (N, 9) within dt, and write the resulting poses to `end`; returns whether these are finite."""
+        items, finite = self._moved, True
         # A rehearsal leaves corrections of overlaps that this step did not have; `update_position` would apply them.
         private_shapes.forget_corrections(private.pointers(items))
         for row, body in zip(self.bodies.position_hooks, items, strict=True):
             function = private.position_function(body)
             assert function is not None
-            turn = end[row, ANGLE] - state[row, ANGLE]
-            body.velocity, body.angular_velocity = tuple(displacements[row] / dt), float(turn / dt)
-            if (*body.position, body.angle) != tuple(state[row, :3]):
+            x, y, angle = state[row, :3].tolist()
+            to_x, to_y, to_angle = end[row, :3].tolist()
+            way_x, way_y = to_x - x, to_y - y
+            kx, ky = body.center_of_gravity
+            if kx != 0.0 or ky != 0.0:
+                c, s = math.cos(to_angle) - math.cos(angle), math.sin(to_angle) - math.sin(angle)
+                way_x, way_y = way_x + (c * kx - s * ky), way_y + (s * kx + c * ky)
+            body.velocity, body.angular_velocity = (way_x / dt, way_y / dt), (to_angle - angle) / dt
+            if (*body.position, body.angle) != (x, y, angle):
                 # A rehearsal of collisions has moved the body as pymunk does.
-                body.angle = float(state[row, ANGLE])
-                body.position = tuple(state[row, POSITION])
+                body.angle, body.position = angle, (x, y)
             with private.locked(self.space), private_joints.TimeStep(self.space, dt):
                 function(body, dt)
-            end[row, POSITION], end[row, ANGLE] = body.position, body.angle
+            end[row, :3] = pose = (*body.position, body.angle)
+            finite = finite and math.isfinite(sum(pose))
+        return finite
 
     @cached_property
     def silent(self) -> private_functions.WithoutFunctions:

@@ -29,7 +29,7 @@ from .outlines import local_outline
 from .private import shapes as private_shapes
 
 _WORD = (1 << 64) - 1  # of a filter's numbers the lowest 64 bits are packed, which suffice for equality and `&`
-_VALUES = struct.Struct("2q3Q5dq")  # a `ShapeValues`
+_VALUES = struct.Struct("2q3Q5d2q")  # a `ShapeValues`
 _POINT = 16  # bytes of a row of POINT
 
 
@@ -68,7 +68,7 @@ def read(shape: pymunk.Shape, ground: pymunk.Body | None = None) -> ShapeRecord:
         to_world, to_ground = body.local_to_world, ground.world_to_local
         outline = [tuple(to_ground(to_world((v[0], v[1])))) for v in outline]
         body = ground
-    packed = _VALUES.pack(0, len(outline), *words, *numbers, 0)
+    packed = _VALUES.pack(0, len(outline), *words, *numbers, 0, 0)
     points = array("d", chain.from_iterable(outline)).tobytes()
     return ShapeRecord(body, outline, numbers, words, ground is not None, packed, points)
 
@@ -76,7 +76,7 @@ def read(shape: pymunk.Shape, ground: pymunk.Body | None = None) -> ShapeRecord:
 def read_surface(shape: pymunk.Shape, record: ShapeRecord) -> ShapeRecord:
     """The record of a shape whose body and vertices are still those of `record`."""
     numbers, words = _surface(shape)
-    packed = _VALUES.pack(0, len(record.vertices), *words, *numbers, 0)
+    packed = _VALUES.pack(0, len(record.vertices), *words, *numbers, 0, 0)
     return ShapeRecord(record.body, record.vertices, numbers, words, record.outside, packed, record.points)
 
 
@@ -123,11 +123,12 @@ def shape_counts(bodies: Bodies, records: ShapeRecords) -> dict[Any, int]:
 @cache
 def _arrays() -> Plan[Reading]:
     return Plan(
-        Reading, ("TOTALS", "BODY", "SHAPE", "LINK", "VERTEX", "ORDER", "SHAPES", "OWNER", "POINT", "MEASURED"), 6,
+        Reading,
+        ("TOTALS", "BODY", "SHAPE", "LINK", "VERTEX", "ORDER", "SHAPES", "OWNER", "POINT", "PLACED", "MEASURED"), 6,
         ("BODIES", "STATES", "IDS", "EXTRA", "ENDS", "HOOKED"), {},
         {
-            "VERTEX": (COUNT, 4), "POINT": (COUNT, 2), "STATES": (2, COUNT, STATE_COLUMNS), "IDS": (4, COUNT),
-            "EXTRA": (COUNT, EXTRA_COLUMNS), "HOOKED": (HOOKED_TABLES, COUNT, STATE_COLUMNS),
+            "VERTEX": (COUNT, 4), "POINT": (COUNT, 2), "PLACED": (COUNT, 2), "STATES": (2, COUNT, STATE_COLUMNS),
+            "IDS": (4, COUNT), "EXTRA": (COUNT, EXTRA_COLUMNS), "HOOKED": (HOOKED_TABLES, COUNT, STATE_COLUMNS),
         },
     )  # fmt: skip
 
@@ -151,16 +152,14 @@ class Packed:
         solid = [shape for shape, record in records.items() if record is not None]
         known = [record for record in records.values() if record is not None]
         k, N = len(solid), len(bodies)
-        # What `write_again` starts from: of each shape its place in SHAPES, in bytes; SHAPES and POINT as they were
-        # before the kernel `write_rows` has overwritten them.
-        self._unwritten: tuple[dict[pymunk.Shape, int], bytearray, bytes] | None = None
+        self._place: dict[pymunk.Shape, int] = dict(zip(solid, range(k), strict=True))  # in SHAPES
         row, points = bodies.row, b"".join([record.points for record in known])
         owner = [row[record.body] for record in known]
         moving, v = N - bodies.VALUES["kind"].tolist().count(STATIC), len(points) // _POINT
         self._layout = layout = Layout(_arrays()) if past is None else past._layout
         counts = {
             "TOTALS": TOTALS, "MEASURED": 1, "BODY": moving + 1, "SHAPE": k, "LINK": k, "VERTEX": v, "ORDER": k + N + 2,
-            "BODIES": N, "SHAPES": k, "OWNER": k, "POINT": v, "STATES": N, "IDS": N, "EXTRA": N,
+            "BODIES": N, "SHAPES": k, "OWNER": k, "POINT": v, "PLACED": v, "STATES": N, "IDS": N, "EXTRA": N,
             "ENDS": len(states.ENDS), "HOOKED": N,
         }  # fmt: skip
         self.table = layout.lay(
@@ -188,36 +187,19 @@ class Packed:
         found: list[int] = self._layout.integers("MEASURED").tolist()
         return found
 
-    def note_edited(self, records: Mapping[pymunk.Shape, ShapeRecord]) -> None:
-        """Let later calls of `write_again` write these records."""
-        if self._unwritten is not None:
-            place, packed, _ = self._unwritten
-            for shape, record in records.items():
-                packed[place[shape] : place[shape] + _VALUES.size] = record.packed
+    def write_edited(self, records: Mapping[pymunk.Shape, ShapeRecord]) -> None:
+        """Write the values of edited shapes, for `write_again`."""
+        for shape, record in records.items():
+            self._layout.write("SHAPES", record.packed, self._place[shape] * _VALUES.size)
 
-    def write_again(self, records: ShapeRecords, edited: Mapping[pymunk.Shape, ShapeRecord], moved: bool) -> bool:
-        """Write the rows again, in place, after changes of numbers, filters and masses, and, if `moved`, of poses of
-        static bodies.
-
-        Args:
-            records: of all shapes.  edited: those of them that have changed.
+    def write_again(self, moved: bool) -> bool:
+        """Write the rows again, in place, after changes of numbers, filters and masses (`write_edited`), and, if
+        `moved`, of poses of static bodies.
 
         Returns:
             False, with invalid rows, if shapes have another number of vertices than before.
         """
-        vertices = self.LINK["vertices"].tobytes() if moved else b""
-        if self._unwritten is None:
-            known = {shape: record for shape, record in records.items() if record is not None}
-            place = {shape: _VALUES.size * k for k, shape in enumerate(known)}
-            packed = bytearray().join([record.packed for record in known.values()])
-            self._unwritten = place, packed, b"".join([record.points for record in known.values()])
-        self.note_edited(edited)
-        _, packed, points = self._unwritten
-        layout = self._layout
-        layout.write("SHAPES", packed)
-        layout.write("POINT", points)
-        if moved:
-            layout.array("VERTEX").fill(0.0)
+        layout, vertices = self._layout, self.LINK["vertices"].tobytes() if moved else b""
         layout.write("BODY", bytes(self.BODY.nbytes))
         self._write()
         # Two vertices of a static shape may become one in world coordinates, by round-off.

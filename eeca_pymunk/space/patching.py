@@ -23,6 +23,7 @@ import pymunk
 from ..impacts.edits import MASS, OUTLINE, Changes, Edits
 from ..layout import BODY_ROW, READ, WRITTEN
 from ..model.step import MOVED_STATIC, OTHER_BODIES
+from ..model.values import CARRIED
 from .body_values import masses as masses_in
 from .edits import Edited, clock, edited_since
 from .kept import changes_of
@@ -90,7 +91,7 @@ def patch_values(world: World) -> Edits | None:
         if old is not None and new.numbers != old.numbers:
             surfaces[places[shape]] = new.numbers[1:]
     world.records.update(records)
-    world.packed.note_edited(records)
+    world.packed.write_edited(records)
     bodies.set_masses(masses)
     mobilities = {int(world.IDS[BODY_ROW, i]): masses_in(values)[2:] for i, values in masses.items()}
     world.read_at, world.objects_read = now, world.objects_read + len(records) + len(masses)
@@ -144,7 +145,8 @@ def patch_rows(world: World, surfaces: bool) -> Changes | None:
             changes += changes_of(places[shape], new, old)
     bodies.set_masses(masses)
     world.records.update(records)
-    if not world.packed.write_again(world.records, records, moved):
+    world.packed.write_edited(records)
+    if not world.packed.write_again(moved):
         world.void = True
         return None
     world.read_at, world.objects_read = now, world.objects_read + len(records) + len(masses)
@@ -156,5 +158,8 @@ def patch_rows(world: World, surfaces: bool) -> Changes | None:
 
 def _moved_shapes(world: World) -> Changes:
     """The changes of the shapes of static bodies that were moved."""
-    moved = world.bodies.static & (world.STATES[READ, :, :3] != world.STATES[WRITTEN, :, :3]).any(axis=1)
-    return [(OUTLINE, row) for row in moved[world.owner].nonzero()[0].tolist()]
+    static = world.bodies.static
+    now, then = (world.STATES[k, static, :3].tolist() for k in (READ, WRITTEN))
+    moved = {i for i, a, b in zip(static.nonzero()[0].tolist(), now, then, strict=True) if a != b}
+    first = world.packed.totals[CARRIED]  # the rows before have the shapes of others
+    return [(OUTLINE, row) for row, i in enumerate(world.owner.tolist()) if row >= first and i in moved]

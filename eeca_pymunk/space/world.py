@@ -59,8 +59,7 @@ class World(BodyStates):
         sleeps: whether bodies could sleep when it was read.  read_at: `edits.clock` when shapes and bodies were read.
         patches: number of patches so far.  packed: the arrays of the rows, and the kernel that writes them.
         objects_read: number of bodies, shapes and constraints read from pymunk for this world; others were known.
-        memory: of the scene of its event loop.
-        void: whether the rows are invalid, after a patch that has failed.
+        memory: of the scene of its event loop.  void: whether a patch has failed and left invalid rows.
         parted: pairs of rows of SHAPE that do not collide, by `collide_bodies` of a joint of their bodies.
     """
 
@@ -194,8 +193,7 @@ class World(BodyStates):
         return edits
 
     def patch_rows(self, surfaces: bool) -> Changes | None:
-        """`patching.patch_rows`, then the settings of the space if these have changed, and the present states into
-        BODY."""
+        """`patching.patch_rows`, then the settings of the space if these have changed, and the present states."""
         changes = patch_rows(self, surfaces or self.joints is not None)
         if changes is not None:
             self._count_patch(True)
