@@ -158,8 +158,6 @@ def patch_rows(world: World, surfaces: bool) -> Changes | None:
 
 def _moved_shapes(world: World) -> Changes:
     """The changes of the shapes of static bodies that were moved."""
-    static = world.bodies.static
-    now, then = (world.STATES[k, static, :3].tolist() for k in (READ, WRITTEN))
-    moved = {i for i, a, b in zip(static.nonzero()[0].tolist(), now, then, strict=True) if a != b}
+    moved = set((world.STATES[READ, :, :3] != world.STATES[WRITTEN, :, :3]).any(axis=1).nonzero()[0].tolist())
     first = world.packed.totals[CARRIED]  # the rows before have the shapes of others
     return [(OUTLINE, row) for row, i in enumerate(world.owner.tolist()) if row >= first and i in moved]
