@@ -112,24 +112,29 @@ def matrix_jointed(
         bodies = max(bodies, C.BODY[w] + 1)
     for w in range(D.AT[D.USED[0]]):
         bodies = max(bodies, D.BODY[w] + 1)
-    V = np.zeros((bodies, 3))
+    V, MOVED = np.zeros((bodies, 3)), np.full(bodies, -1, np.int64)  # the last column that moves each body
     for j in range(N):
         c = at[j]
         BODY, first, last = (D.BODY, D.AT[c], D.AT[c + 1]) if kind[j] == 2 else (C.BODY, C.AT[c], C.AT[c + 1])
         for w in range(first, last):
+            q = BODY[w]
             for k in range(3):
                 if kind[j] == 2:
-                    V[BODY[w], k] = D.N[w, k]
+                    V[q, k] = D.N[w, k]
                 else:
-                    V[BODY[w], k] = C.T[w, k] if kind[j] == 1 else C.N[w, k] + slip[c] * C.T[w, k]
+                    V[q, k] = C.T[w, k] if kind[j] == 1 else C.N[w, k] + slip[c] * C.T[w, k]
+            if V[q, 0] != 0.0 or V[q, 1] != 0.0 or V[q, 2] != 0.0:
+                MOVED[q] = j
         for i in range(N):
             z = at[i]
             if kind[i] == 2:
                 W[i, j] = bounded_rate(D, z, V)
-            elif kind[i] == 0:
-                W[i, j] = normal_rate(ROWS[z], V)
+                continue
+            row = ROWS[z]
+            if MOVED[row.a] != j and MOVED[row.b] != j:
+                W[i, j] = 0.0
             else:
-                W[i, j] = slip_rate(ROWS[z], V)
+                W[i, j] = normal_rate(row, V) if kind[i] == 0 else slip_rate(row, V)
         for w in range(first, last):
             for k in range(3):
                 V[BODY[w], k] = 0.0

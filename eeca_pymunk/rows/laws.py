@@ -18,6 +18,7 @@ from .columns import as_columns, breach
 from .conjugate import sweep_conjugate
 from .coulomb import slip_freely
 from .homotopy import follow_homotopy
+from .polish import divide_friction
 from .sweeps import push, restore_impulses, sweep, velocities
 
 
@@ -52,6 +53,7 @@ def solve_columns(
             break
         FREE = V.copy()
         push(problem, L, -1.0, FREE)
+        divide_friction(problem.ROWS, L, problem.m)  # points that slip against each other have no common motion
         if not follow_homotopy(problem, L, V, FREE, False):
             L[:] = 0.0
             velocities(problem, L, FREE, V)

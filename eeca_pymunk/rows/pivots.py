@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import inlined, nonallocating
+from ..compiled import inlined, kernel, nonallocating
 from .coulomb import OPEN, SLIP, STICK
 
 ABSENT, INSIDE, BOUND = 0, 4, 5  # states beside OPEN, STICK, SLIP: none; of bounded rows inside of their bounds, at one
@@ -22,10 +22,14 @@ class Tableau(NamedTuple):
 
     MODE, SIGN (m + n,): states; sign of the friction that slips, or of the bound; else 0.  MU (m,): friction, as long
     as the homotopy lasts.  LOW, HIGH (n,): bounds.  REST (m,): tangential velocity of contacts that stick, not 0 where
-    energy limits friction (`coulomb.mode_of`). T (size, size + 2): an unknown is an impulse or a velocity less its
-    target; its state leaves one of both free, and fixes the other at 0. Row k has the free one of unknown k by changes
-    of all fixed ones, then at theta = 0, and per theta. Where a contact slips, beta stands for beta - s mu lam.
-    R (size + 2,): room for a row.
+    energy limits friction (`coulomb.mode_of`). T (size + 3, size): an unknown is an impulse or a velocity less its
+    target; its state leaves one of both free, and fixes the other at 0. Row k has all free ones by changes of the fixed
+    one of unknown k; row `size` their values at theta = 0, the next their changes per theta, the last is scratch. Where
+    a contact slips, beta stands for beta - s mu lam.
+
+    A pivot changes each row of T by itself, so a row is brought up to date when it is needed (`update`). BY (room, 3),
+    COLUMN (room, size), OF (room,): the pivots, each of unknown OF; see `take_pivot`.  MADE (1,): how many.
+    FROM (size,): how many of them row k has taken.
     """
 
     MODE: IntArray
@@ -35,7 +39,23 @@ class Tableau(NamedTuple):
     HIGH: FloatArray
     REST: FloatArray
     T: FloatArray
-    R: FloatArray
+    BY: FloatArray
+    COLUMN: FloatArray
+    OF: IntArray
+    MADE: IntArray
+    FROM: IntArray
+
+
+@kernel
+def make_tableau(m: int, n: int, pivots: int) -> Tableau:
+    """A tableau without states, in which there is room for so many pivots."""
+    count, size = m + n, 2 * m + n
+    N, Z = np.zeros(count + pivots + 1 + size, np.int64), np.zeros(3 * count)
+    OF, MADE, FROM = N[count : count + pivots], N[count + pivots : count + pivots + 1], N[count + pivots + 1 :]
+    return Tableau(
+        N[:count], Z[:count], Z[count : count + m], Z[count + m : 2 * count], Z[2 * count : 2 * count + n],
+        Z[2 * count + n :], np.empty((size + 3, size)), np.empty((pivots, 3)), np.empty((pivots, size)), OF, MADE, FROM,
+    )  # fmt: skip
 
 
 @inlined
@@ -45,22 +65,73 @@ def unknown_of(m: int, c: int) -> int:
 
 
 @nonallocating
-def pivot(tableau: Tableau, k: int) -> None:
-    """Exchange the free and the fixed quantity of unknown k."""
-    T, R = tableau.T, tableau.R
-    size, width = T.shape
-    by = -1.0 / T[k, k]
-    T[k, k] = -1.0
-    for j in range(width):
-        # A copy of the row cannot overlap the others, which are then vectorised.
-        R[j] = T[k, j] * by
-        T[k, j] = R[j]
+def take_pivot(tableau: Tableau, p: int, j: int) -> None:
+    """Apply pivot number p to row j of T.
+
+    BY[p]: -1 / the entry of the pivot; before it, and after it, how much of the normal entry is added to the tangential
+    one, as beta - s mu lam becomes beta or beta becomes it.
+    """
+    T, BY, COLUMN, k = tableau.T, tableau.BY, tableau.COLUMN, tableau.OF[p]
+    if BY[p, 1] != 0.0:
+        T[j, k] += BY[p, 1] * T[j, k - 1]
+    amount = T[j, k] * BY[p, 0]
+    T[j, k] = amount
+    if amount != 0.0:
+        add_multiple(T[j], COLUMN[p], amount)
+    if BY[p, 2] != 0.0:
+        T[j, k] += BY[p, 2] * T[j, k - 1]
+
+
+@nonallocating
+def add_multiple(row: FloatArray, other: FloatArray, amount: float) -> None:
+    """row += amount other."""
+    for i in range(len(row)):
+        row[i] += amount * other[i]
+
+
+@nonallocating
+def update(tableau: Tableau, k: int) -> None:
+    """Bring row k of T up to date."""
+    for p in range(tableau.FROM[k], tableau.MADE[0]):
+        take_pivot(tableau, p, k)
+    tableau.FROM[k] = tableau.MADE[0]
+
+
+@nonallocating
+def own_rate(tableau: Tableau, k: int, slope: float) -> float:
+    """Change of the free quantity of unknown k by its fixed one, if the next fixed one changes by `slope` with it."""
+    update(tableau, k)
+    if slope == 0.0:
+        return float(tableau.T[k, k])
+    update(tableau, k + 1)
+    return float(tableau.T[k, k] + slope * tableau.T[k + 1, k])
+
+
+@nonallocating
+def pivot(tableau: Tableau, k: int, before: float, after: float) -> None:
+    """Exchange the free and the fixed quantity of unknown k. before, after: see `take_pivot`."""
+    T, BY, COLUMN, p = tableau.T, tableau.BY, tableau.COLUMN, tableau.MADE[0]
+    size = T.shape[1]
+    update(tableau, k)
+    if before != 0.0:
+        T[k, k] += before * T[k, k - 1]
+    BY[p, 0], BY[p, 1], BY[p, 2], tableau.OF[p] = -1.0 / T[k, k], before, after, k
     for i in range(size):
-        factor = T[i, k]
-        if i != k and factor != 0.0:
-            T[i, k] = 0.0
-            for j in range(width):
-                T[i, j] += factor * R[j]
+        COLUMN[p, i], T[k, i] = T[k, i], 0.0
+    COLUMN[p, k], T[k, k] = 0.0, -1.0  # the row begins anew, with this pivot
+    tableau.FROM[k], tableau.MADE[0] = p, p + 1
+    take_pivot(tableau, p, size)
+    take_pivot(tableau, p, size + 1)
+
+
+@nonallocating
+def add_friction(tableau: Tableau, n: int, slope: float) -> None:
+    """Let the fixed beta of the contact with normal unknown n change by `slope` with its fixed lam."""
+    if slope != 0.0:
+        if tableau.FROM[n] != tableau.FROM[n + 1]:
+            update(tableau, n)
+            update(tableau, n + 1)
+        add_multiple(tableau.T[n], tableau.T[n + 1], slope)
 
 
 @nonallocating
@@ -72,20 +143,15 @@ def slope_of(tableau: Tableau, c: int) -> float:
 @nonallocating
 def slip(tableau: Tableau, c: int, sign: float) -> None:
     """Let contact c, which is open, slip with friction of that sign: lam becomes free, and beta follows it."""
-    T, n = tableau.T, 2 * c
     tableau.MODE[c], tableau.SIGN[c] = SLIP, sign
-    for i in range(len(T)):
-        T[i, n] += slope_of(tableau, c) * T[i, n + 1]
-    pivot(tableau, n)
+    add_friction(tableau, 2 * c, slope_of(tableau, c))
+    pivot(tableau, 2 * c, 0.0, 0.0)
 
 
 @nonallocating
 def stick(tableau: Tableau, c: int) -> None:
     """Let contact c, which slips, stick: beta becomes free."""
-    T, n = tableau.T, 2 * c
-    pivot(tableau, n + 1)
-    for j in range(T.shape[1]):
-        T[n + 1, j] += slope_of(tableau, c) * T[n, j]
+    pivot(tableau, 2 * c + 1, 0.0, slope_of(tableau, c))
     tableau.MODE[c], tableau.SIGN[c] = STICK, 0.0
 
 
@@ -93,34 +159,31 @@ def stick(tableau: Tableau, c: int) -> None:
 def change(tableau: Tableau, m: int, c: int, which: int, theta: float) -> int:
     """Let c make its change of state number `which` (`margin`) at theta; returns the number of the change back."""
     T, state, sign = tableau.T, tableau.MODE[c], tableau.SIGN[c]
-    k, size = unknown_of(m, c), len(tableau.T)
+    k, size = unknown_of(m, c), tableau.T.shape[1]
     if state == OPEN:
-        slides = T[k + 1, size] + theta * T[k + 1, size + 1]
+        slides = T[size, k + 1] + theta * T[size + 1, k + 1]
         slip(tableau, c, 0.0 if tableau.MU[c] <= 0.0 else -1.0 if slides > 0.0 else 1.0)
         return 0
     if state == STICK:
         tableau.MODE[c], tableau.SIGN[c] = SLIP, 1.0 if which == 0 else -1.0
-        for j in range(size + 2):
-            T[k + 1, j] -= slope_of(tableau, c) * T[k, j]
-        pivot(tableau, k + 1)
+        pivot(tableau, k + 1, -slope_of(tableau, c), 0.0)
         return 1
     if state == SLIP and which == 1:
         stick(tableau, c)
         return 0 if sign > 0.0 else 1
     if state == SLIP:
-        pivot(tableau, k)
-        for i in range(size):
-            T[i, k] -= slope_of(tableau, c) * T[i, k + 1]
+        pivot(tableau, k, 0.0, 0.0)
+        add_friction(tableau, k, -slope_of(tableau, c))
         tableau.MODE[c], tableau.SIGN[c] = OPEN, 0.0
         return 0
     if state == INSIDE:
         tableau.MODE[c], tableau.SIGN[c] = BOUND, -1.0 if which == 0 else 1.0
-        T[k, size] -= bound_of(tableau, m, c)
-        pivot(tableau, k)
+        T[size, k] -= bound_of(tableau, m, c)
+        pivot(tableau, k, 0.0, 0.0)
         return 0
     bound = bound_of(tableau, m, c)
-    pivot(tableau, k)
-    T[k, size] += bound
+    pivot(tableau, k, 0.0, 0.0)
+    T[size, k] += bound
     tableau.MODE[c], tableau.SIGN[c] = INSIDE, 0.0
     return 1 if sign > 0.0 else 0
 
@@ -133,17 +196,17 @@ def margin(tableau: Tableau, m: int, c: int, which: int, z: int) -> float:
     open 0: u_n; slip 0: lam, 1: -sign u_t; stick 0, 1: mu lam -+ beta; inside 0, 1: its distance from the lower and
     upper bound; at a bound 0: -sign u.
     """
-    T, state, sign, column = tableau.T, tableau.MODE[c], tableau.SIGN[c], len(tableau.T) + z
+    T, state, sign, column = tableau.T, tableau.MODE[c], tableau.SIGN[c], tableau.T.shape[1] + z
     k = unknown_of(m, c)
     if state == STICK:
-        return float(tableau.MU[c] * T[k, column] + (T[k + 1, column] if which == 1 else -T[k + 1, column]))
+        return float(tableau.MU[c] * T[column, k] + (T[column, k + 1] if which == 1 else -T[column, k + 1]))
     if state == INSIDE:
         bound = 0.0 if z == 1 else tableau.LOW[c - m] if which == 0 else tableau.HIGH[c - m]
-        return float(T[k, column] - bound if which == 0 else bound - T[k, column])
+        return float(T[column, k] - bound if which == 0 else bound - T[column, k])
     if state == SLIP and which == 1 and sign != 0.0:
-        return float(-sign * T[k + 1, column])
+        return float(-sign * T[column, k + 1])
     if which == 0 and state != ABSENT:
-        return float(-sign * T[k, column] if state == BOUND else T[k, column])
+        return float(-sign * T[column, k] if state == BOUND else T[column, k])
     return np.inf
 
 

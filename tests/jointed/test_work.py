@@ -17,7 +17,7 @@ from eeca_pymunk.islands.local import number_bodies
 from eeca_pymunk.jointed import meet, press, solve
 from eeca_pymunk.model.parameters import joints as parameters
 from eeca_pymunk.newton import boxes, effort, response, systems
-from eeca_pymunk.rows import columns, dense, homotopy
+from eeca_pymunk.rows import columns, dense, homotopy, homotopy_start
 from eeca_pymunk.rows.coulomb import lawful
 
 STEP = 0.01
@@ -125,9 +125,12 @@ SLIPS: list[Part] = [(columns, "lawful", lambda *given: lawful(*given)[2])]
 DISCS: list[Part] = [(columns, "sweep_bounded", lambda *_: 1)]
 HOMOTOPIES: list[Part] = [(homotopy, "start_homotopy", lambda *_: 1)]
 MATRICES: list[Part] = [
-    (module, "matrix_jointed", lambda problem, slip, at, kind, N, W: N * N) for module in (homotopy, dense)
+    (module, "matrix_jointed", lambda problem, slip, at, kind, N, W: N * N) for module in (homotopy_start, dense)
 ]
-CHANGES: list[Part] = [(homotopy, name, lambda tableau, *_: len(tableau.T)) for name in ("slip", "change")]
+CHANGES: list[Part] = [
+    (module, name, lambda tableau, *_: tableau.T.shape[1])
+    for module, name in ((homotopy_start, "slip"), (homotopy, "change"))
+]
 ITERATIONS: list[Part] = [(press, "advance", lambda A, J, interval, *_: interval.m + 2)]
 INTERVALS: list[Part] = [(solve, "pairs_within", lambda *_: 3)]  # one pair, and two more
 
@@ -160,9 +163,9 @@ def counted(function: Callable[..., Any], amount: Callable[..., float], done: li
         (ON_FLOOR, columns, "SWEEP_WORK", SWEEPS),
         (ON_FLOOR, columns, "SWEEP_ENTRY_WORK", SWEEPS),
         (ON_FLOOR, columns, "SLIP_WORK", SLIPS),
-        (ON_FLOOR, homotopy, "HOMOTOPY_WORK", HOMOTOPIES),
+        (ON_FLOOR, homotopy_start, "HOMOTOPY_WORK", HOMOTOPIES),
         (ON_FLOOR, dense, "MATRIX_WORK", MATRICES),
-        (ON_FLOOR, homotopy, "CHANGE_WORK", CHANGES),
+        (ON_FLOOR, homotopy_start, "CHANGE_WORK", CHANGES),
         (ON_FLOOR, parameters, "CONTACT_WORK", ITERATIONS),
         (ON_FLOOR, solve, "INTERVAL_WORK", INTERVALS),
         (IMPACT, effort, "ROW_WORK", ROWS),

@@ -9,9 +9,12 @@ import pytest
 
 from eeca_pymunk.compiled.records import zeros
 from eeca_pymunk.model.contacts import BOUNDED_ROW, ROW, Bounded, Columns, JointedProblem
+from eeca_pymunk.model.parameters.joints import HOMOTOPY_WORK, MATRIX_WORK
 from eeca_pymunk.rows.bounded import room_for_rows, weigh_rows
 from eeca_pymunk.rows.build import normal_rate, place_row, tangent_rate
 from eeca_pymunk.rows.homotopy import follow_homotopy
+from eeca_pymunk.rows.homotopy_start import work_of_change
+from eeca_pymunk.rows.laws import solve_columns
 from eeca_pymunk.rows.sweeps import push, sweep, velocities
 
 Array = np.ndarray
@@ -193,3 +196,46 @@ def test_paths_through_contacts_that_nothing_moves_end_nowhere() -> None:
     with np.errstate(all="ignore"):
         assert not follow_homotopy(problem, L, free.copy(), free, True)
     assert not L.any()
+
+
+def jammed_stack(mu: float, seed: int, boxes: int = 8) -> tuple[JointedProblem, Array, Array]:
+    """Unit boxes in a stack, random impulses (m, 2) and the free velocities (k, 3) that these stop. The friction of
+    the two points of a face is inside the cone, or acts against each other on its edges; the states of such faces may
+    have a matrix without inverse."""
+    rng = np.random.default_rng(seed)
+    pairs = [(i - 1 if i > 0 else boxes, i) for i in range(boxes) for _ in range(2)]
+    points = np.array([(x, float(i)) for i in range(boxes) for x in (-0.5, 0.5)])
+    places = np.array([(0.0, i + 0.5) for i in range(boxes)] + [(0.0, 0.0)])
+    problem = problem_of(pairs, points, np.tile((0.0, 1.0), (2 * boxes, 1)), places, mu)
+    L = np.column_stack((rng.uniform(0.5, 1.0, 2 * boxes), np.zeros(2 * boxes)))
+    for i in range(boxes):
+        part = rng.choice((-1.0, 1.0)) * np.array((1.0, -1.0)) if rng.random() < 0.5 else rng.uniform(-0.9, 0.9, 2)
+        L[2 * i : 2 * i + 2, 1] = mu * L[2 * i : 2 * i + 2, 0] * part
+    free = np.zeros((boxes + 1, 3))
+    push(problem, L, -1.0, free)
+    return problem, L, free
+
+
+@pytest.mark.parametrize("mu", [0.25, 0.3, 1 / 3, 0.5, 1.0])
+def test_stacks_whose_faces_jam_start_at_their_impulses(mu: float) -> None:
+    """Impulses that stop all boxes are the solution: the homotopy ends where it begins, whatever the order of its
+    pivots."""
+    for seed in range(20):
+        problem, L, free = jammed_stack(mu, seed)
+        V = np.zeros_like(free)
+        assert follow_homotopy(problem, L, V, free, False)
+        assert np.abs(V).max() <= 1e-4  # where the matrix has no inverse; sweeps follow
+        assert np.abs(L).max() <= 1.0
+
+
+def test_friction_of_a_face_against_itself_does_not_delay_a_stack() -> None:
+    """From impulses that miss by little, one homotopy stops all boxes: it takes the work of its start alone."""
+    for seed in range(20):
+        problem, L, free = jammed_stack(0.5, seed)
+        free[:-1] += 1e-6 * np.random.default_rng(seed).normal(size=free[:-1].shape)
+        V = np.empty_like(free)
+        velocities(problem, L, free, V)
+        assert solve_columns(problem, L, V, 1e-12, 0, 1, np.inf) <= 1e-12
+        assert np.abs(V).max() <= 1e-12
+        start = HOMOTOPY_WORK + MATRIX_WORK * len(L) * 2 * len(L) * 2 + len(L) * work_of_change(2 * len(L))
+        assert problem.C.WORK[0] <= 1.01 * start

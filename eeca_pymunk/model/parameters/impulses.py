@@ -77,4 +77,6 @@ BLOCK_BODIES = heuristic(16, "bodies", "Bodies of a large island on which a hit 
 HOMOTOPY_CHANGES = work(1, "changes of state for each contact",
     "Length of a homotopy to the solution of a contact problem.")
 HOMOTOPY_CHANGES_ANEW = work(4, "changes of state for each contact", "This length of one that begins without impulses.")
+RESTORED_FIRST = round_off(1e-3, "of what an impulse changes by itself",
+    "Pivot of an impulse below which it waits for others where a homotopy begins.")
 HOMOTOPY_REFINEMENTS = work(2, "number", "Refinements of the solution at the end of a homotopy.")
