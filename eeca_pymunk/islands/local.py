@@ -77,9 +77,9 @@ def local_island(A: Scene, MINE: IntArray, found: IntArray, t: float) -> Island:
             FIXED[fixed] = j
             fixed += 1
     k = n + fixed
-    WHO = np.empty(k, np.int64)
-    POSE, V, ACC = np.empty((k, 3)), np.empty((k, 3)), np.zeros((k, 3))
-    IMS, IIS, SIZES, FELT = np.empty(k), np.empty(k), np.empty(k), np.empty(k)
+    WHO, STATES, SIZES_OF = np.empty(k, np.int64), np.zeros((3 * k, 3)), np.empty(4 * k)
+    POSE, V, ACC = STATES[:k], STATES[k : 2 * k], STATES[2 * k :]
+    IMS, IIS, SIZES, FELT = SIZES_OF[:k], SIZES_OF[k : 2 * k], SIZES_OF[2 * k : 3 * k], SIZES_OF[3 * k :]
     for q in range(k):
         i = MINE[q] if q < n else FIXED[q - n]
         WHO[q] = i

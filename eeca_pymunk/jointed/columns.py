@@ -22,7 +22,8 @@ from .groups import Groups, least_mobility
 @kernel
 def make_columns(groups: Groups, ROWS: Rows[Row], m: int) -> Columns:
     """Room for the columns of m contacts, zero."""
-    AT, BODY = np.zeros(m + 1, np.int64), np.empty(0, np.int64)
+    NUMBERS = np.zeros(2 * m + 1, np.int64)
+    AT, LEFT_OUT, BODY = NUMBERS[: m + 1], NUMBERS[m + 1 :], NUMBERS[:0]
     for fill in range(2):  # first AT, then BODY
         if fill == 1:
             BODY = np.empty(AT[m], np.int64)
@@ -38,7 +39,8 @@ def make_columns(groups: Groups, ROWS: Rows[Row], m: int) -> Columns:
                     at += 1
             if fill == 0:
                 AT[i + 1] = at
-    return Columns(AT, BODY, np.zeros((AT[m], 3)), np.zeros((AT[m], 3)), np.zeros(m, np.int64), np.zeros(1))
+    BOTH = np.zeros((2 * AT[m], 3))
+    return Columns(AT, BODY, BOTH[: AT[m]], BOTH[AT[m] :], LEFT_OUT, np.zeros(1))
 
 
 @nonallocating

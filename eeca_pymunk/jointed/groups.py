@@ -31,9 +31,11 @@ class Groups(NamedTuple):
 def find_groups(WHO: IntArray, IM: FloatArray, J: Joints) -> Groups:
     """Find the groups of bodies WHO (k,), rows of BODY."""
     k, OF, LEAST = len(WHO), J.OF, np.full(len(WHO), STRUT_BETWEEN)
-    GROUP, NEXT = np.full(k, -1, np.int64), np.full(k, -1, np.int64)
-    FIRST, COMPONENT, BODY = np.zeros(k + 1, np.int64), np.empty(k, np.int64), np.empty(k, np.int64)
-    JOINTED, groups, jointed = np.empty(k, np.int64), 0, 0
+    groups, jointed, NUMBERS = 0, 0, np.zeros(6 * k + 1, np.int64)  # one array: an allocation takes as long as a body
+    GROUP, NEXT, COMPONENT = NUMBERS[:k], NUMBERS[k : 2 * k], NUMBERS[2 * k : 3 * k]
+    BODY, JOINTED, FIRST = NUMBERS[3 * k : 4 * k], NUMBERS[4 * k : 5 * k], NUMBERS[5 * k :]
+    for q in range(k):
+        GROUP[q] = -1
     for q in range(k):
         if IM[q] == 0.0 or GROUP[q] >= 0:
             continue

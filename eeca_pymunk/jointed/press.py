@@ -131,9 +131,8 @@ def solve_contacts(
     J.PROGRESS.near = 0.0 if exactly or slow < pull * h else joints.JOINTS_NEAR
     # off: difference between the velocities of contacts and components, best: its smallest value since contacts last
     # gained energy, reached: of all; worst: residual of the laws; bent: error of the arms.
-    EFFECT = np.zeros((len(isle.IM), 3))
-    PREVIOUS = np.empty((len(isle.IM), 3))
-    FORESEEN, UNKNOWN = np.empty((len(isle.IM), 3)), np.empty((0, 3))
+    VELOCITIES, k = np.empty((2 * len(isle.IM), 3)), len(isle.IM)
+    PREVIOUS, FORESEEN, UNKNOWN = VELOCITIES[:k], VELOCITIES[k:], VELOCITIES[:0]
     converged, best, worst, LEAST, USED, agreed = False, np.inf, 0.0, L.copy(), L.copy(), False
     better, bent, reached, B = 0, 0.0, np.inf, make_bounded(J, groups, m <= joints.COLUMN_CONTACTS)
     NOW = np.empty(len(B.OF))

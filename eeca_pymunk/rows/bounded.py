@@ -84,9 +84,11 @@ def on_half_disc(
 @kernel
 def room_for_rows(n: int, entries: int) -> Bounded:
     """Empty bounded rows: n rows, whose columns have so many entries together."""
+    # Few arrays: each allocation takes as long as a row.
+    NUMBERS, PAIRS = np.zeros(n + 2 + entries, np.int64), np.zeros((2 * n, 2), np.int64)
     return Bounded(
-        np.zeros(1, np.int64), np.zeros(n + 1, np.int64), np.zeros(entries, np.int64), np.zeros((entries, 3)),
-        np.zeros((n, 2), np.int64), np.zeros((n, 6)), zeros(n, BOUNDED_ROW), np.zeros((n, 2), np.int64),
+        NUMBERS[:1], NUMBERS[1 : n + 2], NUMBERS[n + 2 :], np.zeros((entries, 3)), PAIRS[:n], np.zeros((n, 6)),
+        zeros(n, BOUNDED_ROW), PAIRS[n:],
     )  # fmt: skip
 
 
