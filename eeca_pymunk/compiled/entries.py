@@ -81,7 +81,7 @@ ENTRIES = {
     "rehearsing:record_changes": "{Reading} i8",
     "impacts.new_scene:measure_scene": "{Reading}",
     "impacts.new_scene:begin_scene": "{Scene} i8 i8 i8 i8 i8",
-    "impacts.taking_over:take_over": "{Scene} {Scene} i8[1] i8[1] i8[2]",
+    "impacts.taking_over:take_over": "{Scene} {Scene} i8[1] i8[1] i8[1] i8[2]",
     "impacts.edits:renew": "{Scene} i8[2]",
     "impacts.edits:edit_surface": "{Scene} i8 f8 f8 f8 f8",
     "impacts.edits:edit_filter": "{Scene} i8 i8 i8 i8",

@@ -220,7 +220,7 @@ class EventLoop(Remembering):
     def go_on_from(self, before: EventLoop, kept: Kept) -> None:
         """Before the first step: go on with the results of the loop before, for the rows that are the same."""
         changes: IntArray = np.array(kept.changes, np.int64).reshape(-1, 2)
-        take_over(before.table, self.table, kept.bodies, kept.shapes, changes)
+        take_over(before.table, self.table, kept.bodies, kept.shapes, kept.outlines, changes)
 
     def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
         """Set the law of pairs of shapes a < b: elasticity (below 0: they pass through each other), friction and

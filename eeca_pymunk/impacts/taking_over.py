@@ -33,11 +33,13 @@ class Kept(NamedTuple):
         bodies: (n,) of each row of BODY the row in the next scene, -1 for a body that has gone.
         shapes: (k,) of each row of SHAPE the row in the next scene, -1 for one that has gone, has another outline or
             place on its body, or is of a static body that was moved.
+        outlines: as shapes; also those of bodies that have fallen asleep or woken, and so are on the ground or were.
         changes: others, with rows of the next scene.
     """
 
     bodies: IntArray
     shapes: IntArray
+    outlines: IntArray
     changes: Changes
 
 
@@ -45,12 +47,14 @@ def kept_in_place(n: int, k: int, changes: Changes) -> Kept:
     """Of n bodies and k shapes that have the same rows in the next scene, with these changes."""
     shapes: IntArray = np.arange(k)
     shapes[[row for kind, row in changes if kind == OUTLINE]] = -1
-    return Kept(np.arange(n), shapes, changes)
+    return Kept(np.arange(n), shapes, shapes, changes)
 
 
 @nonallocating
 def take_bodies(P: Scene, A: Scene, BODIES: IntArray) -> None:
-    """Take over what belongs to single bodies. Their next events are to be predicted again."""
+    """Take over what belongs to single bodies. The next events of all are to be predicted again."""
+    for j in range(A.BODY.shape[0] - 1):
+        A.BODY[j].due = -1.0
     for i in range(P.BODY.shape[0] - 1):
         j = BODIES[i]
         if j < 0:
@@ -62,7 +66,6 @@ def take_bodies(P: Scene, A: Scene, BODIES: IntArray) -> None:
         A.RESTING[j].rest_due = 0.0
         for c in range(3):
             A.BEGAN[j, c], A.PULL[j, c] = P.BEGAN[i, c], P.PULL[i, c]
-        A.BODY[j].due = -1.0
 
 
 @nonallocating
@@ -138,12 +141,14 @@ def take_forces(P: Scene, A: Scene, SHAPES: IntArray) -> None:
 
 
 @kernel
-def take_over(BEFORE: Table, PRESENT: Table, BODIES: IntArray, SHAPES: IntArray, CHANGES: IntArray) -> None:
+def take_over(
+    BEFORE: Table, PRESENT: Table, BODIES: IntArray, SHAPES: IntArray, OUTLINES: IntArray, CHANGES: IntArray
+) -> None:  # fmt: skip
     """Let a scene that has taken no step go on from the one before.
 
     Args:
         BEFORE, PRESENT: `table_of` the scenes; of bodies and shapes BEFORE has only the numbers.
-        BODIES, SHAPES: see `Kept`.  CHANGES: (c, 2) kind and row of its changes.
+        BODIES, SHAPES, OUTLINES: see `Kept`.  CHANGES: (c, 2) kind and row of its changes.
     """
     P, A = scene_of(BEFORE), scene_of(PRESENT)
     A.PAR.stamp, A.PAR.last, A.PAR.rules, A.COUNT.quiet = P.PAR.stamp, P.PAR.last, P.PAR.rules, P.COUNT.quiet
@@ -154,8 +159,8 @@ def take_over(BEFORE: Table, PRESENT: Table, BODIES: IntArray, SHAPES: IntArray,
     take_forces(P, A, SHAPES)
     STATUS = np.full(A.SHAPE.shape[0], OUTLINE)
     for s in range(SHAPES.shape[0]):
-        if SHAPES[s] >= 0:
-            STATUS[SHAPES[s]] = SAME
+        if OUTLINES[s] >= 0:
+            STATUS[OUTLINES[s]] = SAME if SHAPES[s] >= 0 else FILTER
     for c in range(CHANGES.shape[0]):
         if CHANGES[c, 0] == FILTER:
             STATUS[CHANGES[c, 1]] = FILTER
@@ -163,4 +168,4 @@ def take_over(BEFORE: Table, PRESENT: Table, BODIES: IntArray, SHAPES: IntArray,
     disturb_changed(A, CHANGES)
     flag_pairs(A)
     if A.SIDE.shape[0] > 0 and P.SIDE.shape[0] > 0:
-        keep_sides(A, P.SIDE, SHAPES)
+        keep_sides(A, P.SIDE, OUTLINES)

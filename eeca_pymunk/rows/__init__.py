@@ -8,9 +8,9 @@ of the problem. Users: impacts at one instant (`blocks.py`, without friction to 
 the closed law of one contact in `coulomb.py`, accelerated by `conjugate.py`) with a direct solve on the active contacts
 (`direct.py`: `dense.py` for few contacts, else `polish.py` on the sparse factor of `cholesky.py`), or up to some dozen
 contacts with homotopies (`laws.py`, `homotopy.py`, `homotopy_start.py`, `pivots.py`); where neither has a sensible
-solution, without friction or by few sweeps (`gentle.py`). `equilibrium.py` finds contact forces that balance (on the edges of the cones,
-`cones.py`); `energy.py` computes losses, and scales impulses that would give energy; `lifting.py` moves bodies out of
-each other. Open `build.py` first.
+solution, without friction or by few sweeps (`gentle.py`). `equilibrium.py` finds contact forces that balance (on the
+edges of the cones, `cones.py`); `energy.py` computes losses, and scales impulses that would give energy; `lifting.py`
+moves bodies out of each other. Open `build.py` first.
 
 Symbols: u_n, u_t are the normal and tangential velocity of a contact, u- before its impulses and u+ after; e its
 elasticity, mu its friction, b its target; lam, beta its impulses along n and t; j, G, T rows of velocities along n and

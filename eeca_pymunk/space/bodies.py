@@ -145,15 +145,15 @@ class Bodies:
         return columns(self.VALUES, "centre_x", "centre_y")
 
     def same_in(self, before: Bodies) -> list[tuple[int, int, bool]]:
-        """Rows, here and in an earlier reading, of the bodies that are not static in both and have the same kind and
-        centre of mass; and whether their mass and moment are the same."""
+        """Rows, here and in an earlier reading, of the bodies that are not static here and have the same kind and
+        centre of mass; and whether they were awake there with the same mass and moment."""
         old, kinds, slept = before.row, self.VALUES["kind"].tolist(), before.asleep.tolist()
         at = [(i, old[body]) for body, i in self.row.items() if body in old and kinds[i] != STATIC]
-        new, known = self._values, before._values
+        new, known, values = self._values, before._values, body_values
         return [
-            (i, j, new[i] is known[j] or body_values.masses(new[i]) == body_values.masses(known[j]))
+            (i, j, not slept[j] and (new[i] is known[j] or values.masses(new[i]) == values.masses(known[j])))
             for i, j in at
-            if not slept[j] and (new[i] is known[j] or body_values.centre(new[i]) == body_values.centre(known[j]))
+            if new[i] is known[j] or values.centre(new[i]) == values.centre(known[j])
         ]
 
     @cached_property

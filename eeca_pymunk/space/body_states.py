@@ -199,8 +199,8 @@ class BodyStates:
 
     def recall(self, before: BodyStates) -> None:
         """Copy STATES[WRITTEN] from the world before, of bodies whose kind and centre of gravity are the same: the next
-        step counts them as unedited unless their state differs from it. Of those with another mass or moment only poses
-        are copied, so that their velocities count as edited."""
+        step counts them as unedited unless their state differs from it. Of those with another mass or moment, or that
+        have woken, only poses are copied, so that their velocities count as edited."""
         self.same_as_before = self.bodies.same_in(before.bodies)
         for columns, whole in ((layout.STATE_COLUMNS, True), (3, False)):
             same = [(i, j) for i, j, unedited in self.same_as_before if unedited == whole]

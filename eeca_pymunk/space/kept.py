@@ -35,35 +35,34 @@ def changes_of(row: int, new: ShapeRecord, old: ShapeRecord) -> Changes:
 
 def kept_rows(world: World, past: World) -> Kept:
     """What a world that was just read has kept of the one before, `past`."""
-    row, old_row = world.IDS[BODY_ROW], past.IDS[BODY_ROW]
+    row, old_row = world.IDS[BODY_ROW].tolist(), past.IDS[BODY_ROW].tolist()
     bodies: IntArray = np.full(len(past.BODY), -1, np.int64)
     changes: Changes = []
     for i, j, unedited in world.same_as_before:
-        bodies[old_row[j]] = row[i]
-        if not unedited:
-            changes.append((MASS, row[i]))
+        if old_row[j] >= 0:
+            bodies[old_row[j]] = row[i]
+            if not unedited:
+                changes.append((MASS, row[i]))
     bodies[-1] = len(world.BODY) - 1  # the ground
     places, records, before = world.places, world.records, past.records
     now, then, items, old_items = world.STATES[READ], past.STATES[WRITTEN], world.bodies.items, past.bodies.items
     owner, old_owner = world.owner.tolist(), past.owner.tolist()
-    shapes = [-1] * len(past.shapes)
+    shapes, outlines = [-1] * len(past.shapes), [-1] * len(past.shapes)
     unmoved: dict[int, bool] = {}  # of static bodies
     for s, shape in enumerate(past.shapes):
         place = places.get(shape, -1)
-        if place < 0 or not same_outline(records[shape], before[shape]):
+        if place < 0 or not same_outline(new := records[shape], old := before[shape]):
             continue
         i, j = owner[place], old_owner[s]
         if items[i] is not old_items[j]:
             continue
-        if old_row[j] >= 0:
-            same = bodies[old_row[j]] == row[i]
-        else:
-            if i not in unmoved:
-                unmoved[i] = bool(row[i] < 0 and (now[i, :3] == then[j, :3]).all())
-            same = unmoved[i]
-        if same:
+        if row[i] < 0 and i not in unmoved:
+            unmoved[i] = bool((now[i, :3] == then[j, :3]).all())
+        if row[i] < 0 and not unmoved[i]:
+            continue
+        outlines[s] = place
+        if bodies[old_row[j]] == row[i] if min(row[i], old_row[j]) >= 0 else row[i] == old_row[j]:
             shapes[s] = place
-            new, old = records[shape], before[shape]
             if new is not old and new is not None and old is not None:
                 changes += changes_of(place, new, old)
-    return Kept(bodies, np.array(shapes, np.int64), changes)
+    return Kept(bodies, np.array(shapes, np.int64), np.array(outlines, np.int64), changes)

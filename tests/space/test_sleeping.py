@@ -383,6 +383,31 @@ def test_a_step_that_wakes_sleepers_knows_the_sides_of_thin_shapes() -> None:
     assert abs(rod.position.y) <= 1.6e-4 + 1e-12
 
 
+def test_a_rod_that_wakes_knows_on_which_side_of_its_floor_it_is() -> None:
+    """A rod without width, 1.6e-4 of its length below a floor without width, sleeps there."""
+    space = pymunk.Space()
+    space.gravity, space.sleep_time_threshold = (0.0, -10.0), 5.0
+    ground(space).unsafe_set_radius(0.0)
+    rods = []
+    for x in (0.0, 5.0):  # one stays awake, so that the scene has thin shapes that move
+        rods.append(pymunk.Body(1.0, 0.1))
+        rods[-1].position = x, 0.0
+        space.add(rods[-1], pymunk.Segment(rods[-1], (-0.5, 0.0), (0.5, 0.0), 0.0))
+    stepper = ep.EECA(space)
+    for _ in range(4):
+        rods[0].position -= (0.0, 4e-5)
+        stepper.step(DT)
+    rods[0].sleep()
+    for _ in range(3):
+        rods[1].velocity = 1.0, 0.0
+        stepper.step(DT)
+    assert rods[0].is_sleeping
+    rods[0].activate()
+    for _ in range(20):
+        stepper.step(DT)
+    assert abs(rods[0].position.y) <= 1.6e-4 + 1e-12
+
+
 def test_whom_pymunk_wakes_where_all_sleep_gets_no_velocity_from_it() -> None:
     """A box that the program puts to sleep 1 mm deep in a kinematic plate, by itself."""
     space = pymunk.Space()
