@@ -40,6 +40,15 @@ MUTATIONS = (
     # Edits.
     Mutation("edits: surfaces wake what touches them", "impacts/edits.py", "A.MEMBER[touching.root].rest = CHANGED",
              "A.MEMBER[touching.root].rest = AT_REST", "space/test_edited_values.py", "slides_when_friction_falls"),
+    Mutation("taking over: a lost contact wakes nothing", "impacts/taking_over.py",
+             "        if first >= 0:\n            disturb(A, first)\n        for s in (a, b):\n            if s >= 0:",
+             "        for s in (a, b):\n            if False:", "space/test_kept_results.py", "fall_where_their_floor"),
+    Mutation("taking over: forces are lost", "impacts/taking_over.py", "if same_pair(SHAPES, a, b):\n            force",
+             "if False:\n            force", "space/test_kept_results.py", "changes_nothing[wall-False-False-0]"),
+    Mutation("edits: contacts that filters forbid remain", "impacts/edits.py", "and may_collide(A, a, b)",
+             "and True", "space/test_kept_results.py", "fall_where_their_floor"),
+    Mutation("rest: what a kinematic body lies in stays", "islands/building.py", "wake_penetrated(A)", "pass",
+             "space/test_kept_results.py", "lifts_it"),
     # Flight and times of impact.
     Mutation("flight: a half is missing", "geometry/flight.py", "half = 0.5 * s", "half = s",
              "geometry/test_gap.py", "parabola"),
