@@ -7,7 +7,8 @@ and the compliance of the joints over (h/7)^2:
     ORDER_4 = -1: 5 parts, 0           WHOLE_STEP = 0: 1 part, 0     1, 2, 3: 2, 4, 7 parts, 0
     ELASTIC_RUNG = 4: 1 part, 1e-9     5 to 9: 7 parts, 1e-9, 1e-8, 1e-7, 1e-6, 1e-4
 
-The work of all rungs together is bounded. Elastic joints keep at least the same compliance in later steps, until they
+Joints that contradict one another (`contradiction`) become elastic at once: all rungs before would fail alike. The work
+of all rungs together is bounded. Elastic joints keep at least the same compliance in later steps, until they
 are closed.
 """
 
@@ -20,6 +21,7 @@ from ..model.parameters import joints
 from ..newton.effort import work_of_iteration
 from ..newton.motion import go_back
 from ..newton.solve import drop_impulses
+from .contradiction import contradicts
 from .correct import NOW, SAVED, kinetic_of_component
 from .foresight import PARTS, forget_parts, predict_part, recalls, remember_part
 from .ledger import clear_ledger
@@ -28,6 +30,7 @@ from .lock import lock_energy, supports_rest
 
 SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
 ORDER_4, WHOLE_STEP, ELASTIC_RUNG, RUNGS = -1, 0, 4, 10
+TAKEN, FAILED, CONTRADICTED = 0, 1, 2  # what becomes of a rung
 
 
 @nonallocating
@@ -73,8 +76,9 @@ def compliance_on(rung: int, h: float, yields: bool, before: float) -> float:
 
 
 @nonallocating
-def take_parts(W: Workspace, h: float, length: float, rung: int, parts: int, give: float, cold: bool) -> bool:
-    """Take the step h in the parts of a rung; False if one of them fails. Energies are added to PART_LEDGER.
+def take_parts(W: Workspace, h: float, length: float, rung: int, parts: int, give: float, cold: bool) -> int:
+    """Take the step h in the parts of a rung: TAKEN, FAILED if one of them fails, or CONTRADICTED if exact joints
+    contradict one another at its start. Energies are added to PART_LEDGER.
 
     Args:
         length: size of the component.  give: compliance of joints over the square of a part.
@@ -93,10 +97,10 @@ def take_parts(W: Workspace, h: float, length: float, rung: int, parts: int, giv
         if rung == ORDER_4 and recalls(W, h):
             predict_part(W, p, piece, cold)
         if not step_with_limits(W, False, piece, length, cold, give, rung == ORDER_4, W.J.PART_LEDGER):
-            return False
+            return CONTRADICTED if p == 0 and rung < ELASTIC_RUNG and contradicts(W, piece) else FAILED
         if rung == ORDER_4:
             remember_part(W, piece)
-    return True
+    return TAKEN
 
 
 @nonallocating
@@ -162,8 +166,8 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
         )
         compliance = compliance_on(rung, h, yields, first.compliance)
         clear_ledger(W.J.PART_LEDGER)
-        done = take_parts(W, h, length, rung, parts, compliance / (h / parts) ** 2, cold)
-        if done and (rung >= ELASTIC_RUNG or repaid(W, own)):
+        outcome = take_parts(W, h, length, rung, parts, compliance / (h / parts) ** 2, cold)
+        if outcome == TAKEN and (rung >= ELASTIC_RUNG or repaid(W, own)):
             first.compliance = compliance
             return EXACT if rung <= WHOLE_STEP else HALVED if rung < ELASTIC_RUNG else ELASTIC
         # A rung that began with predicted values, or with impulses of redundant rows, is tried again without these.
@@ -171,7 +175,7 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
         restore_start(W)
         forget_parts(W)
         tight = loops and rung == WHOLE_STEP and not again and progress.most_epsilon == joints.REDUNDANT_MOST
-        rung, cold = rung if again or tight else rung + 1, loops
+        rung, cold = ELASTIC_RUNG if outcome == CONTRADICTED else rung if again or tight else rung + 1, loops
         # Compliance makes rows independent by itself.
         progress.most_epsilon = joints.REDUNDANT_EPSILON if tight or rung >= ELASTIC_RUNG else joints.REDUNDANT_MOST
     return LINEAR

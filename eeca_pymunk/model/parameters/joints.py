@@ -62,6 +62,8 @@ JOINT_APART = accuracy(1e-10, "of the component", "Error of a joint above which 
 ELASTIC_PARTS = work(7, "number", "Parts of a step of elastic joints.")
 HASTE = work(0.25, "of what a component may take", "Work of its step after which limits are located roughly.")
 COMPONENT_BUDGET = work(0.5, "of what is left", "Work of one step of a component, at most.")
+BALANCED = round_off(1e-6, "of the errors of joints, as forces",
+    "Force on bodies by which the errors of joints balance: these contradict one another, and become elastic at once.")
 NEARLY_HELD = accuracy(1e-08, "of the component, or rad",
     "Error of elastic joints, by their own formulas, up to which the step counts as converged.")
 REPAID = accuracy(1e-3, "of the kinetic energy",
