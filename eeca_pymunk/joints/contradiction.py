@@ -3,12 +3,12 @@
 The rows that act ask g(q1) = target of the poses q1 at the end of a part. Neither these functions nor the targets
 depend on its length h, which decides only the impulses that lead there. So where no poses fit, all lengths fail.
 
-Newton's method, with a term on the diagonal for redundant rows, then ends where the errors r = g - target are least:
-G^T s^2 r = 0, with the slopes G of the rows and their scales s. Elastic joints would be in equilibrium there.
-If G depended on no poses, as that of joints of angles, and r is not 0, this would be proof that no poses fit: the
-multiples r s^2 of the rows cancel on the left of G (q1 - q0) = -r0, but not on the right. Otherwise it is the proof for
-poses nearby. These suffice if the errors r0 at the start were as large: then they do not arise from the motion, which
-is less in shorter parts, as that of a linkage through its dead point is.
+Newton's method, with a term on the diagonal for redundant rows, then ends where the errors r = g - target, scaled, are
+least: G^T s^2 r = 0, with the slopes G of the rows and their scales s. Elastic joints would be in equilibrium there. If
+r is not 0, this is a proof where G is constant, as for joints of angles: rows times r s^2 add up to 0 on the left of
+G (q1 - q0) = -r0 for all q1, but not on the right. Of other joints it says that no poses nearby fit. If also the errors
+at the start were as large, they do not arise from the motion, which is less in shorter parts (a linkage that is driven
+beyond its reach): what shorter parts have to close is the same.
 """
 
 from __future__ import annotations

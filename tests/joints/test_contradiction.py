@@ -1,0 +1,88 @@
+"""Joints that contradict one another become elastic at once; steps that are too long for their motion are divided."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pymunk
+import pytest
+
+import eeca_pymunk as ep
+from eeca_pymunk.jointed.alone import begin_alone
+from eeca_pymunk.joints import ladder
+from eeca_pymunk.joints.ladder import ELASTIC_RUNG, ORDER_4, WHOLE_STEP
+from eeca_pymunk.model.joint_steps import ELASTIC, HALVED
+from eeca_pymunk.model.joints import EDITED
+
+STEP = 1 / 60
+
+
+def rungs_of(monkeypatch: pytest.MonkeyPatch, A: Any, J: Any, h: float) -> tuple[list[int], int]:
+    """The rungs that a step h of the first component tries, and its status."""
+    tried: list[int] = []
+
+    def take_parts(W: Any, h: float, length: float, rung: int, *more: Any) -> int:
+        tried.append(rung)
+        return int(taken(W, h, length, rung, *more))
+
+    taken = ladder.take_parts
+    monkeypatch.setattr(ladder, "take_parts", take_parts)
+    begin_alone(A, J, A.STATE[0].island, 0.0, h, True)
+    return tried, int(J.STEPPED[0].status)
+
+
+def two_bodies(*joints: Any) -> tuple[Any, Any]:
+    """Scene and joints of two bodies on a pivot between them and on other joints, at the start of a step."""
+    space = pymunk.Space()
+    a, b = pymunk.Body(1.0, 0.1), pymunk.Body(1.0, 0.1)
+    a.position, b.position = (0.0, 1.0), (1.0, 1.0)
+    space.add(a, b, pymunk.PivotJoint(a, b, (0.5, 1.0)), *[joint(a, b) for joint in joints])
+    stepper = ep.EECA(space)
+    stepper.step(1e-9)
+    assert stepper.event_loop is not None
+    A, J = stepper.event_loop.scene, stepper.event_loop.joints
+    A.PAR.dt = A.PAR.planned = STEP
+    A.BODY[0].since, J.PROGRESS.effort, J.PROGRESS.budget = 0.0, 0.0, 1e12
+    return A, J
+
+
+def limit(a: pymunk.Body, b: pymunk.Body) -> pymunk.Constraint:
+    return pymunk.RotaryLimitJoint(a, b, -0.1, 0.0)
+
+
+def gear(a: pymunk.Body, b: pymunk.Body) -> pymunk.Constraint:
+    return pymunk.GearJoint(a, b, 0.0, 1.0)
+
+
+@pytest.mark.parametrize("other", [limit, gear])
+@pytest.mark.parametrize("off", [0.6, 1e-3])
+def test_joints_that_contradict_one_another_become_elastic_at_once(
+    monkeypatch: pytest.MonkeyPatch, other: Any, off: float
+) -> None:
+    """A gear that turns to an angle beyond a limit, which it meets at once, or that differs from another gear's: of the
+    exact rungs one fails by that."""
+    A, J = two_bodies(other, gear)
+    J.JOINT[2].phase, J.JOINT[2].touched = off, EDITED
+    tried, status = rungs_of(monkeypatch, A, J, STEP)
+    assert status >= ELASTIC
+    # Order 4 is given up before the limit, which it must not meet.
+    assert [rung for rung in tried if rung < ELASTIC_RUNG] == ([ORDER_4, WHOLE_STEP] if other is limit else [ORDER_4])
+
+
+@pytest.mark.parametrize(("spins", "h", "last"), [((20.0, -30.0), 0.07, 1), ((10.0, 20.0), 0.05, 2)])
+def test_a_step_too_long_for_its_motion_is_divided(
+    monkeypatch: pytest.MonkeyPatch, spins: tuple[float, float], h: float, last: int
+) -> None:
+    """A linkage of four bars does not turn as far as its velocities would in the step: no iterate fits its joints, but
+    they contradict nothing."""
+    ground = pymunk.Body(body_type=pymunk.Body.STATIC)
+    A, J = two_bodies(
+        lambda a, b: pymunk.PivotJoint(ground, a, (-0.5, 1.0)),
+        lambda a, b: pymunk.PinJoint(ground, b, (3.0, 1.5), (0.5, 0.0)),
+    )
+    for i in range(2):
+        A.BODY[i].spin = spins[i]
+    A.BODY[0].vy, A.BODY[1].vy = 0.5 * spins[0], spins[0] + 0.5 * spins[1]
+    tried, status = rungs_of(monkeypatch, A, J, h)
+    assert status == HALVED
+    assert tried == [ORDER_4, WHOLE_STEP, WHOLE_STEP, 1, 2][: 3 + last]
