@@ -363,11 +363,13 @@ def test_what_joints_have_led_beyond_a_wall_the_wall_keeps_outside() -> None:
 
 
 @pytest.mark.skipif(not prepare().entries, reason="kernels as plain Python")
-def test_elastic_bodies_that_rock_do_not_sink_where_their_intervals_are_cut() -> None:
+@pytest.mark.parametrize("seed", [13600140, 13600195])
+def test_elastic_bodies_that_rock_do_not_sink_where_their_intervals_are_cut(seed: int) -> None:
     """A rod that rocks on the floor rises in an interval as if it came back at its end only, and under a body that hits
-    it there, the energy of that height was taken by letting all of its island sink, again and again, through a wall."""
+    it there, the energy of that height was taken by letting all of its island sink, again and again, through a wall.
+    Without a bound of that height these scenes sink by .06 and .11 of their lengths."""
     deepest = 0.0
-    scene = Varied(13600011)
+    scene = Varied(seed)
     for k in range(40):
         scene.dt = scene.span(k)
         scene.drive(k)

@@ -55,7 +55,8 @@ def far(space: pymunk.Space, kind: str, k: int) -> list[pymunk.Body | pymunk.Sha
 @pytest.mark.parametrize(("disks", "joints"), [(False, False), (True, False), (False, True)])
 @pytest.mark.parametrize("kind", ["wall", "disk", "box", "kinematic"])
 def test_what_comes_and_goes_far_away_changes_nothing(seed: int, disks: bool, joints: bool, kind: str) -> None:
-    """Up to round-off: rows have other numbers, so that sums have another order."""
+    """Up to round-off, which impacts amplify, most those of jointed bodies: rows have other numbers, so that sums have
+    another order."""
 
     def path(busy: bool) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
         space, mine = bodies(seed, disks, joints)
@@ -71,7 +72,7 @@ def test_what_comes_and_goes_far_away_changes_nothing(seed: int, disks: bool, jo
         assert stepper.reads == (1 + 8 if busy else 1)
         return np.array(found)
 
-    assert abs(path(True) - path(False)).max() < 1e-10
+    assert abs(path(True) - path(False)).max() < (1e-8 if joints else 1e-10)
 
 
 def remove_floor(space: pymunk.Space, floor: pymunk.Shape) -> None:
