@@ -373,7 +373,7 @@ def test_elastic_bodies_that_rock_do_not_sink_where_their_intervals_are_cut(seed
     for k in range(40):
         scene.dt = scene.span(k)
         scene.drive(k)
-        deepest = min(deepest, *scene.stepper.step(scene.dt).contacts.gap)
+        deepest = min(deepest, scene.stepper.step(scene.dt).contacts.gap.min(initial=0.0))
     assert deepest >= -0.05 * scene.length
 
 
