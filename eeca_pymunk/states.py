@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from .runs import RunningStepper
 
-_MARK = 0x65656361_00000002
+_MARK = 0x65656361_00000003
 
 
 def get_state(stepper: RunningStepper) -> IntArray:
@@ -124,7 +124,7 @@ def _remember(stepper: RunningStepper, world: World, parts: _Parts, at: IntArray
     left = np.empty_like(world.STATES[WRITTEN])
     left[at] = parts.take(np.float64, left.shape)
     world.EXTRA[at] = parts.take(np.float64, world.EXTRA.shape)
-    loop.recall(parts.take)
+    same_lists = loop.recall(parts.take)
     if joints is not None:
         joint = parts.take(joints.joint.dtype, joints.joint.shape)
         for name in OF_STEPS:
@@ -149,6 +149,8 @@ def _remember(stepper: RunningStepper, world: World, parts: _Parts, at: IntArray
         # pymunk has rounded the positions of such bodies when they were written: they count as unedited.
         world.gather()
         world.accept_rounding()
+    if not same_lists:
+        stepper.refresh()
 
 
 class _Parts:

@@ -4,6 +4,7 @@ the islands at rest that they concern are solved again."""
 from __future__ import annotations
 
 import math
+import zlib
 from collections.abc import Mapping
 from typing import NamedTuple, TypeAlias
 
@@ -28,7 +29,6 @@ from ..pairs.lists import far_apart, may_collide
 # another filter, or another outline or place, by which results of earlier steps are lost.
 SAME, MASS, SURFACE, FILTER, OUTLINE = -1, 0, 1, 2, 3
 
-
 Changes: TypeAlias = list[tuple[int, int]]  # kind, and row of BODY or SHAPE
 
 
@@ -38,7 +38,7 @@ class Edits(NamedTuple):
     Attributes:
         surfaces: by row of SHAPE: elasticity, friction, surface velocity (2; length/time).
         masses: by row of BODY: 1/mass, 1/moment.
-        filters: by row of SHAPE: group, categories, mask. The scene is to be renewed (`taking_over`).
+        filters: by row of SHAPE: group, categories, mask. The scene is to be renewed.
     """
 
     surfaces: Mapping[int, tuple[float, ...]]
@@ -191,6 +191,12 @@ def write_edits(table: Table, edits: Edits) -> None:
 def values_of(scene: Scene) -> tuple[FloatArray, FloatArray]:
     """(k, 4) and (n, 2) the values of all shapes and bodies that `Edits` may have."""
     return columns(scene.SHAPE, *SURFACE_FIELDS), columns(scene.BODY, *MOBILITY)
+
+
+def lists_key(scene: Scene) -> IntArray:
+    """(1,) a number that changes with filters, radii and places of static shapes, on which near lists depend."""
+    parts = columns(scene.LINK, "group", "categories", "mask"), scene.SHAPE["rounding"], scene.BOX
+    return np.array([zlib.crc32(b"".join([part.tobytes() for part in parts]))], np.int64)
 
 
 def edits_since(scene: Scene, *then: FloatArray) -> Edits:

@@ -18,7 +18,7 @@ from ..model.shapes import Side
 from ..model.step import Count, Step
 from ..pairs.setup import refilled
 from ..report import Outcome
-from .edits import edits_since, values_of, write_edits
+from .edits import edits_since, lists_key, values_of, write_edits
 from .memory import GROWN_ARRAYS, OF_SCENE, gathered, recalled, remembered
 from .scene_memory import SceneMemory
 
@@ -149,16 +149,19 @@ class Remembering:
 
     def remembered(self) -> list[AnyArray]:
         """All arrays that determine the next step, apart from the states exchanged with pymunk."""
-        return [*remembered(self.scene), *values_of(self.scene)]
+        return [*remembered(self.scene), *values_of(self.scene), lists_key(self.scene)]
 
-    def recall(self, take: Callable[[Any, tuple[int, ...]], AnyArray]) -> None:
+    def recall(self, take: Callable[[Any, tuple[int, ...]], AnyArray]) -> bool:
         """Set the arrays of `remembered`; `take` returns the next one, for a dtype and a shape. Values of shapes and
-        bodies remain the present ones, and count as edited where they differ."""
+        bodies remain the present ones, and count as edited where they differ. False if another scene is needed, since
+        filters, radii or places of static shapes are others."""
         self.scene = recalled(self.scene, take)
         write_edits(
             self.table, edits_since(self.scene, *(take(then.dtype, then.shape) for then in values_of(self.scene)))
         )
         self.__dict__.pop("fresh", None)
+        now = lists_key(self.scene)
+        return bool((now == take(now.dtype, now.shape)).all())
 
     def _gather(self) -> IntArray:
         """Put what steps change, apart from poses and velocities, into one piece of memory; returns it as integers."""

@@ -8,7 +8,7 @@ and the compliance of the joints over (h/7)^2:
     ELASTIC_RUNG = 4: 1 part, 1e-9     5 to 9: 7 parts, 1e-9, 1e-8, 1e-7, 1e-6, 1e-4
 
 Joints that contradict one another (`contradiction`) become elastic at once: all rungs before would fail alike. The work
-of all rungs together is bounded. Elastic joints keep at least the same compliance in later steps, until they are closed.
+of all rungs together is bounded. Elastic joints keep at least the same compliance in later steps until they are closed.
 """
 
 from __future__ import annotations

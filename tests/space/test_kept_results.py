@@ -102,6 +102,29 @@ def test_boxes_at_rest_fall_where_their_floor_goes(
         assert tuple(shape.body.velocity) == pytest.approx((0.0, -6 * DT * G), abs=1e-12)
 
 
+@pytest.mark.parametrize("edit", ["filter", "radius", "place"])
+def test_a_state_of_rest_that_is_set_back_feels_that_its_floor_has_gone(edit: str) -> None:
+    space = pymunk.Space()
+    space.gravity = (0.0, -G)
+    body, base = box(space, 0.0, 1.0)[0], pymunk.Body(body_type=pymunk.Body.STATIC)
+    floor = pymunk.Segment(base, (-5, 0), (5, 0), 0.5)
+    space.add(base, floor)
+    stepper = ep.EECA(space)
+    for _ in range(20):
+        stepper.step(DT)
+    state = stepper.get_state()
+    if edit == "filter":
+        floor.filter = pymunk.ShapeFilter(mask=0)
+    elif edit == "radius":
+        floor.unsafe_set_radius(0.1)
+    else:
+        base.position = 0.0, -3.0
+    stepper.set_state(state)
+    for _ in range(6):
+        stepper.step(DT)
+    assert tuple(body.velocity) == pytest.approx((0.0, -6 * DT * G), abs=1e-12)
+
+
 @pytest.mark.parametrize("joints", [False, True])
 @pytest.mark.parametrize("removed", [0, 1, 2, 3])
 def test_a_stack_at_rest_that_loses_a_box(removed: int, joints: bool) -> None:
