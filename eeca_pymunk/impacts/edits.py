@@ -38,7 +38,7 @@ class Edits(NamedTuple):
     Attributes:
         surfaces: by row of SHAPE: elasticity, friction, surface velocity (2; length/time).
         masses: by row of BODY: 1/mass, 1/moment.
-        filters: by row of SHAPE: group, categories, mask. The scene is to be renewed.
+        filters: by row of SHAPE: group, categories, mask. `renew` has to follow.
     """
 
     surfaces: Mapping[int, tuple[float, ...]]
@@ -189,7 +189,7 @@ def write_edits(table: Table, edits: Edits) -> None:
 
 
 def values_of(scene: Scene) -> tuple[FloatArray, FloatArray]:
-    """(k, 4) and (n, 2) the values of all shapes and bodies that `Edits` may have."""
+    """(k, 4) and (n, 2) the surfaces of all shapes and the mobilities of all bodies, as in `Edits`."""
     return columns(scene.SHAPE, *SURFACE_FIELDS), columns(scene.BODY, *MOBILITY)
 
 

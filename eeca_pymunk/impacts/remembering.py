@@ -14,7 +14,6 @@ from ..model.bodies import POSE, VELOCITY, Body
 from ..model.contacts import Impulse
 from ..model.joints import OF_JOINTS, Joint, Joints, joints_of
 from ..model.scene import Scene, scene_of
-from ..model.shapes import Side
 from ..model.step import Count, Step
 from ..pairs.setup import refilled
 from ..report import Outcome
@@ -71,11 +70,6 @@ class Remembering:
         self.table, self._bound = replaced(self.table, Scene, name, array), UNBOUND
         if laid:
             self._laid = self.table
-
-    @property
-    def sides(self) -> Rows[Side]:
-        """SIDE of the scene, whose other arrays need not be made for it."""
-        return self._memory.sides() if self.table is self.__dict__.get("_laid") else self.scene.SIDE
 
     @property
     def joints(self) -> Joints:

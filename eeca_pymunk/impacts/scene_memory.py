@@ -18,7 +18,7 @@ from ..joints.workspace import JointMemory
 from ..model.bodies import Body
 from ..model.joints import Joint, Pinned
 from ..model.scene import Scene
-from ..model.shapes import Link, Shape, Side
+from ..model.shapes import Link, Shape
 from ..pairs.setup import NO_GRID, filled, pool_sizes
 from .memory import OF_SCENE
 from .new_scene import begin_scene
@@ -116,10 +116,6 @@ class SceneMemory:
         """PAR as numbers, COUNT and LOG as integers, of the last scene."""
         layout = self._layout
         return layout.floats("PAR"), layout.integers("COUNT"), layout.integers("LOG")
-
-    def sides(self) -> Rows[Side]:
-        """SIDE of the last scene."""
-        return self._layout.array("SIDE")
 
     def own(self) -> IntArray:
         """The memory of the arrays of the last scene that `OF_SCENE` names, as integers."""

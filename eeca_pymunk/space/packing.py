@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 from array import array
 from collections.abc import Collection, Mapping
-from functools import cache
+from functools import cache, cached_property
 from itertools import chain
 from math import isfinite
 from typing import Any, NamedTuple, TypeAlias
@@ -152,7 +152,7 @@ class Packed:
         solid = [shape for shape, record in records.items() if record is not None]
         known = [record for record in records.values() if record is not None]
         k, N = len(solid), len(bodies)
-        self._place: dict[pymunk.Shape, int] = dict(zip(solid, range(k), strict=True))  # in SHAPES
+        self._solid = solid
         row, points = bodies.row, b"".join([record.points for record in known])
         owner = [row[record.body] for record in known]
         moving, v = N - bodies.VALUES["kind"].tolist().count(STATIC), len(points) // _POINT
@@ -186,6 +186,11 @@ class Packed:
         measure()
         found: list[int] = self._layout.integers("MEASURED").tolist()
         return found
+
+    @cached_property
+    def _place(self) -> dict[pymunk.Shape, int]:
+        """The place of each shape in SHAPES."""
+        return {shape: k for k, shape in enumerate(self._solid)}
 
     def write_edited(self, records: Mapping[pymunk.Shape, ShapeRecord]) -> None:
         """Write the values of edited shapes, for `write_again`."""
