@@ -20,7 +20,8 @@ STATE_COLUMNS = 9
 READ_ID, KNOWN_ID = 0, 1  # pymunk's ids of the bodies: as read now, as read when the rows were made
 BODY_ROW = 2  # row of BODY, -1 for static bodies
 FLAGS = 3  # 0 for most bodies, or the bits below; EXTRA has their values
-STEERED, ECCENTRIC = 1, 2  # a velocity function has set the acceleration; the centre of mass is not the origin
+# A velocity function has set the acceleration; the centre of mass is not the origin; a static body was moved.
+STEERED, ECCENTRIC, MOVED = 1, 2, 4
 # `Body.due` at the start of a step. PLACED: the body counts as placed by the program, but the sides of its shapes are
 # kept. SHIFTED - w: it was moved by w times its extent; sides of shapes that are thinner than that are forgotten.
 PLACED, SHIFTED = -2.0, -3.0

@@ -119,11 +119,16 @@ def read_states(
 
 @kernel
 def accept_static(table: Table) -> None:
-    """Let static bodies count as not moved: STATES[WRITTEN] is what was read of them."""
+    """Let static bodies count as not moved: STATES[WRITTEN] is what was read of them. IDS[FLAGS] of those that had
+    moved is MOVED."""
     R = reading_of(table)
     for i in range(R.IDS.shape[1]):
-        for c in range(layout.STATE_COLUMNS if R.IDS[layout.BODY_ROW, i] < 0 else 0):
-            R.STATES[layout.WRITTEN, i, c] = R.STATES[layout.READ, i, c]
+        if R.IDS[layout.BODY_ROW, i] < 0:
+            R.IDS[layout.FLAGS, i] = 0
+            for c in range(layout.STATE_COLUMNS):
+                if c < 3 and R.STATES[layout.WRITTEN, i, c] != R.STATES[layout.READ, i, c]:
+                    R.IDS[layout.FLAGS, i] = layout.MOVED
+                R.STATES[layout.WRITTEN, i, c] = R.STATES[layout.READ, i, c]
 
 
 @kernel

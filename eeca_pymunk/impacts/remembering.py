@@ -24,7 +24,7 @@ from .scene_memory import SceneMemory
 _STEP, _COUNT = Step.TYPE.names or (), Count.TYPE.names or ()
 _BOOK = slice(_STEP.index("restitution"), _STEP.index("after") + 1)
 _LOCK, _STAMP = _STEP.index("lock"), _STEP.index("stamp")
-_UNMET, _SOLVES, _BLOCKS, _LOGGED = map(_COUNT.index, ("unmet", "solves", "blocks", "logged"))
+_UNMET, _SOLVES, _BLOCKS, _LOGGED, _LOSSY = map(_COUNT.index, ("unmet", "solves", "blocks", "logged", "lossy"))
 _IMPULSE = Impulse.TYPE.itemsize // 8
 UNBOUND: tuple[Table, Callable[..., int]] = None, int
 # Attributes that no copy has.
@@ -149,7 +149,9 @@ class Remembering:
         """Set the arrays of `remembered`; `take` returns the next one, for a dtype and a shape. Values of shapes and
         bodies remain the present ones, and count as edited where they differ. False if another scene is needed, since
         filters, radii or places of static shapes are others."""
+        lossy = self._count[_LOSSY]
         self.scene = recalled(self.scene, take)
+        self._count[_LOSSY] = lossy
         write_edits(
             self.table, edits_since(self.scene, *(take(then.dtype, then.shape) for then in values_of(self.scene)))
         )

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
+from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -213,8 +215,7 @@ class EventLoop(Remembering):
         if len(changes) > len(self._changes):
             self._changes = np.zeros((2 * len(changes), 2), np.int64)
         self._changes.fill(SAME)
-        for row, change in enumerate(changes):
-            self._changes[row] = change
+        self._changes.data.cast("B").cast("q")[: 2 * len(changes)] = array("q", chain.from_iterable(changes))
         return bool(renew(self.table, self._changes))
 
     def go_on_from(self, before: EventLoop, kept: Kept) -> None:

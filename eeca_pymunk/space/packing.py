@@ -171,6 +171,7 @@ class Packed:
         self.bound = layout.bound
         self._write, read = layout.bound(write_rows, read_space)
         self.status = read(bodies.arranged)
+        self._measured: list[int] | None = None
         self.totals: list[int] = layout.integers("TOTALS").tolist()
         self.BODY: Rows[Body] = layout.array("BODY")
         self.SHAPE: Rows[Shape] = layout.array("SHAPE")
@@ -181,11 +182,17 @@ class Packed:
         self.owner: IntArray = np.array([owner[i] for i in order], np.int64)
 
     def measured(self) -> list[int]:
-        """The `Measures` of the present rows."""
-        (measure,) = self.bound(measure_scene)
-        measure()
-        found: list[int] = self._layout.integers("MEASURED").tolist()
-        return found
+        """The `Measures` of the present rows; places of static bodies do not matter."""
+        if self._measured is None:
+            (measure,) = self.bound(measure_scene)
+            measure()
+            self._measured = self._layout.integers("MEASURED").tolist()
+        return self._measured
+
+    @cached_property
+    def _counted(self) -> bytes:
+        """The numbers of vertices of the rows, which must not change."""
+        return self.LINK["vertices"].tobytes()
 
     @cached_property
     def _place(self) -> dict[pymunk.Shape, int]:
@@ -194,6 +201,8 @@ class Packed:
 
     def write_edited(self, records: Mapping[pymunk.Shape, ShapeRecord]) -> None:
         """Write the values of edited shapes, for `write_again`."""
+        if records:
+            self._measured = None
         for shape, record in records.items():
             self._layout.write("SHAPES", record.packed, self._place[shape] * _VALUES.size)
 
@@ -204,8 +213,8 @@ class Packed:
         Returns:
             False, with invalid rows, if shapes have another number of vertices than before.
         """
-        layout, vertices = self._layout, self.LINK["vertices"].tobytes() if moved else b""
-        layout.write("BODY", bytes(self.BODY.nbytes))
+        counted = self._counted if moved else b""
+        self._layout.write("BODY", bytes(self.BODY.nbytes))
         self._write()
         # Two vertices of a static shape may become one in world coordinates, by round-off.
-        return not moved or self.LINK["vertices"].tobytes() == vertices
+        return not moved or self.LINK["vertices"].tobytes() == counted

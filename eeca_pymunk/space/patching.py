@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 import pymunk
 
 from ..impacts.edits import MASS, OUTLINE, Changes, Edits
-from ..layout import BODY_ROW, READ, WRITTEN
+from ..layout import BODY_ROW, FLAGS, MOVED
 from ..model.step import MOVED_STATIC, OTHER_BODIES
 from ..model.values import CARRIED
 from .body_values import masses as masses_in
@@ -66,8 +66,10 @@ def patch_values(world: World) -> Edits | None:
     now, edited, bodies, jointed = clock(), _edited(world), world.bodies, world.joints is not None
     if edited is None or not edited.values:
         return None
+    places = world.places
     records: dict[pymunk.Shape, ShapeRecord] = {}
     masses: dict[int, bytes] = {}
+    surfaces, filters = {}, {}
     for thing in edited.things:
         if (record := world.records.get(thing)) is not None:
             if record.outside or thing in edited.reshaped:
@@ -75,6 +77,10 @@ def patch_values(world: World) -> Edits | None:
             records[thing] = new = read_surface(thing, record)
             if not _is_kept(new, record, jointed):
                 return None
+            if new.filter != record.filter:
+                filters[places[thing]] = tuple([_signed(word) for word in new.filter])
+            if new.numbers != record.numbers:
+                surfaces[places[thing]] = new.numbers[1:]
         elif thing in world.records:  # a sensor
             return None
         elif thing in bodies.row:
@@ -83,13 +89,6 @@ def patch_values(world: World) -> Edits | None:
                 return None
             if values is not None:
                 masses[bodies.row[thing]] = values
-    places = world.places
-    surfaces, filters = {}, {}
-    for shape, new in records.items():
-        if (old := world.records[shape]) is not None and new.filter != old.filter:
-            filters[places[shape]] = tuple([_signed(word) for word in new.filter])
-        if old is not None and new.numbers != old.numbers:
-            surfaces[places[shape]] = new.numbers[1:]
     world.records.update(records)
     world.packed.write_edited(records)
     bodies.set_masses(masses)
@@ -139,7 +138,7 @@ def patch_rows(world: World, surfaces: bool) -> Changes | None:
     if status != 0:
         bodies.check_finite(world.state)
     places = world.places
-    changes = [(MASS, int(world.IDS[BODY_ROW, i])) for i in masses] + (_moved_shapes(world) if moved else [])
+    changes = [(MASS, int(world.IDS[BODY_ROW, i])) for i in masses]
     for shape, new in records.items():
         if (old := world.records[shape]) is not None:
             changes += changes_of(places[shape], new, old)
@@ -150,14 +149,16 @@ def patch_rows(world: World, surfaces: bool) -> Changes | None:
         world.void = True
         return None
     world.read_at, world.objects_read = now, world.objects_read + len(records) + len(masses)
-    world.accept_static()
+    if moved:
+        world.accept_static()
+        changes += _moved_shapes(world)
     if joints is not None:
         joints.refresh()
     return changes
 
 
 def _moved_shapes(world: World) -> Changes:
-    """The changes of the shapes of static bodies that were moved."""
-    moved = set((world.STATES[READ, :, :3] != world.STATES[WRITTEN, :, :3]).any(axis=1).nonzero()[0].tolist())
-    first = world.packed.totals[CARRIED]  # the rows before have the shapes of others
-    return [(OUTLINE, row) for row, i in enumerate(world.owner.tolist()) if row >= first and i in moved]
+    """The changes of the shapes of static bodies that were moved, after `accept_static`."""
+    moved = {i for i, flag in enumerate(world.IDS[FLAGS].tolist()) if flag == MOVED}
+    first, owner = world.packed.totals[CARRIED], world.owner.tolist()  # the rows before have the shapes of others
+    return [(OUTLINE, row) for row in range(first, len(owner)) if owner[row] in moved]

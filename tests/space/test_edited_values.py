@@ -148,6 +148,24 @@ def test_a_state_of_rest_that_is_set_back_bears_the_weight_of_now() -> None:
     assert report.impulse[on_floor].sum() == pytest.approx(7.0 * G * DT, rel=1e-9)
 
 
+@pytest.mark.parametrize(("then", "now"), [(1.0, 0.5), (0.5, 1.0)])
+def test_whether_shapes_have_losses_is_not_a_matter_of_states(then: float, now: float) -> None:
+    """Without losses, gravity and forces no contact can last: such spaces are not searched for those that do."""
+    space = pymunk.Space()
+    body = pymunk.Body(1.0, 1.0)
+    shape = pymunk.Circle(body, 0.5)
+    space.add(body, shape)
+    shape.elasticity = then
+    stepper = ep.EECA(space)
+    state = stepper.get_state()
+    shape.elasticity = now
+    stepper.set_state(state)
+    stepper.step(DT)
+    loop = stepper.event_loop
+    assert loop is not None
+    assert loop.scene.COUNT.lossy == (now < 1.0)
+
+
 @pytest.mark.parametrize("joints", [False, True])
 def test_boxes_on_boxes_at_rest_follow_an_edit_below(joints: bool) -> None:
     """The lowest box and what it bears slide as one: friction between boxes holds."""
