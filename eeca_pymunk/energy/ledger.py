@@ -15,10 +15,11 @@ from dataclasses import astuple, dataclass, field, fields
 import numpy as np
 
 from ..arrays import FloatArray
+from ..model.step import Step
 
-# Entries of a book: restitution, friction, external, damping, change of the energy in springs (part of the energy
-# after), energy before and after.
-BOOK_DAMPING, BOOK_AFTER = 3, 6
+_STEP = Step.TYPE.names or ()
+BOOK = slice(_STEP.index("restitution"), _STEP.index("after") + 1)  # the fields of Step that are the book
+BOOK_DAMPING, BOOK_AFTER = (_STEP[BOOK].index(name) for name in ("damped", "after"))
 
 
 @dataclass(frozen=True)

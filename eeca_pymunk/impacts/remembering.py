@@ -10,6 +10,7 @@ import numpy as np
 from ..arrays import AnyArray, FloatArray, IntArray
 from ..compiled import Table, replaced, table_of
 from ..compiled.records import Rows, as_integers, numbers, put
+from ..energy.ledger import BOOK
 from ..model.bodies import POSE, VELOCITY, Body
 from ..model.contacts import Impulse
 from ..model.joints import OF_JOINTS, Joint, Joints, joints_of
@@ -22,7 +23,6 @@ from .memory import GROWN_ARRAYS, OF_SCENE, gathered, recalled, remembered
 from .scene_memory import SceneMemory
 
 _STEP, _COUNT = Step.TYPE.names or (), Count.TYPE.names or ()
-_BOOK = slice(_STEP.index("restitution"), _STEP.index("after") + 1)
 _LOCK, _STAMP = _STEP.index("lock"), _STEP.index("stamp")
 _UNMET, _SOLVES, _BLOCKS, _LOGGED, _LOSSY = map(_COUNT.index, ("unmet", "solves", "blocks", "logged", "lossy"))
 _IMPULSE = Impulse.TYPE.itemsize // 8
@@ -84,7 +84,7 @@ class Remembering:
     def outcome(self) -> Outcome:
         """Of the last step; iterations are solves of islands and simultaneous impacts."""
         par, count = self._par, self._count
-        book: list[float] = par[_BOOK].tolist()  # type: ignore[assignment]
+        book: list[float] = par[BOOK].tolist()  # type: ignore[assignment]
         return book, par[_LOCK], count[_UNMET] == 0, count[_SOLVES] + count[_BLOCKS]
 
     @property

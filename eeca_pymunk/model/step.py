@@ -17,7 +17,7 @@ class Step(Record):
     half_damping: float  # factor by which the damping of half a step multiplies velocities
     lock: float  # scale of the energy lock that was farthest from 1
     last: float  # length of the step before
-    # The ledger of the step: energies, in the order of `..energy.ledger`.
+    # The book of the step, from which `..energy.ledger` makes its ledger: energies.
     restitution: float  # loss
     frictional: float  # loss
     external: float  # work of forces, kinematic bodies and moving surfaces
