@@ -133,13 +133,13 @@ def accept_static(table: Table) -> None:
 
 @kernel
 def write_states(
-    STATES: FloatArray, IDS: IntArray, EXTRA: FloatArray, BODY: Rows[Body], ENDS: FloatArray, dt: float,
-    half_damping: float, status: int,
+    STATES: FloatArray, IDS: IntArray, EXTRA: FloatArray, BODY: Rows[Body], ENDS: FloatArray, half_damping: float,
+    status: int,
 ) -> int:  # fmt: skip
-    """Write the ends of BODY's paths to STATES[WRITTEN], and to ENDS for pymunk.
+    """Write BODY, at the end of the step, to STATES[WRITTEN], and to ENDS for pymunk.
 
     Args:
-        dt: time.  half_damping: see `read_states`.  status: the bits of the step so far.
+        half_damping: see `read_states`.  status: the bits of the step so far.
 
     Returns:
         `status` with the bits of `put_ends`; OVERFLOW, with STATES written, if a number is not finite.
@@ -149,14 +149,10 @@ def write_states(
         row = IDS[layout.BODY_ROW, i]
         if row < 0:
             continue
-        s = dt - BODY[row].since
         special = IDS[layout.FLAGS, i]
         damped = half_damping if BODY[row].inv_mass > 0.0 and not special & layout.STEERED else 1.0
-        ax, ay, twist = BODY[row].ax, BODY[row].ay, BODY[row].angular
-        vx, vy, spin = BODY[row].vx, BODY[row].vy, BODY[row].spin
-        x, y = BODY[row].x + s * (vx + 0.5 * s * ax), BODY[row].y + s * (vy + 0.5 * s * ay)
-        angle = BODY[row].angle + s * (spin + 0.5 * s * twist)
-        vx, vy, spin = damped * (vx + s * ax), damped * (vy + s * ay), damped * (spin + s * twist)
+        x, y, angle = BODY[row].x, BODY[row].y, BODY[row].angle
+        vx, vy, spin = damped * BODY[row].vx, damped * BODY[row].vy, damped * BODY[row].spin
         if special & layout.ECCENTRIC:
             dx, dy = to_centre(EXTRA, i, angle)
             x, y = x - dx, y - dy

@@ -11,6 +11,7 @@ import pytest
 from eeca_pymunk import layout as at
 from eeca_pymunk import transfer
 from eeca_pymunk.arrays import FloatArray
+from eeca_pymunk.geometry.flight import move_to
 from eeca_pymunk.space.world import World
 from scenes.scene import add_disk
 
@@ -42,7 +43,9 @@ def flown(world: World, dt: float, left: float) -> int:
     status = transfer.read_states(world.STATES, world.IDS, world.EXTRA, world.BODY, gx, gy, left)
     if status < 0:
         return status
-    return transfer.write_states(world.STATES, world.IDS, world.EXTRA, world.BODY, world.ENDS, dt, left, status)
+    for i in range(len(world.BODY)):
+        move_to(world.BODY, i, dt)
+    return transfer.write_states(world.STATES, world.IDS, world.EXTRA, world.BODY, world.ENDS, left, status)
 
 
 def fly(world: World, dt: float = DT, left: float = 1.0) -> int:

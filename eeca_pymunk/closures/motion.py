@@ -19,7 +19,7 @@ from ..geometry.corners import core_room
 from ..geometry.gap import gaps
 from ..model.parameters.detection import GAP_ROUND_OFF
 from ..model.scene import Scene, scene_with
-from ..model.step import EVENTS, OVERFLOW
+from ..model.step import EVENTS
 from ..model.values import reading_of
 from ..pairs.candidates import candidates
 from ..pairs.setup import near_lists, with_more_room
@@ -190,10 +190,9 @@ class Disks:
         start = Start(
             dt, columns(BODY, "x", "y"), columns(BODY, "vx", "vy"), columns(BODY, "ax", "ay"), BODY["inv_mass"].copy()
         )  # fmt: skip
-        if not np.isfinite(start.free_displacement).all():
-            write_states(STATES, IDS, EXTRA, BODY, ENDS, dt, half_damping, status)
-            return OVERFLOW
-        self.motion = motion = self.move(self, start)
+        finite = np.isfinite(start.free_displacement).all()
+        motion = self.move(self, start) if finite else DiskMotion(start.velocity, start.free_displacement)
+        self.motion = motion
         put(BODY, columns(BODY, "x", "y") + motion.displacement, "x", "y")
         put(BODY, motion.velocity, "vx", "vy")
         BODY["angle"] += dt * (BODY["spin"] + 0.5 * dt * BODY["angular"])
@@ -201,7 +200,7 @@ class Disks:
         BODY["since"] = dt
         if motion.details is not None:
             status |= EVENTS
-        return write_states(STATES, IDS, EXTRA, BODY, ENDS, dt, half_damping, status)
+        return write_states(STATES, IDS, EXTRA, BODY, ENDS, half_damping, status)
 
     def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
         """Set the elasticity of pairs of shapes (a < b) for the following steps, negative if they do not collide."""

@@ -64,7 +64,7 @@ ENTRIES = {
     "pairs.margins:fill_lists": "{Scene} f8[1] f8 i8 bool",
     "pairs.candidates:candidates": "{Scene} f8[1] i8[2] f8[2]",
     "transfer:read_states": "f8[3] i8[2] f8[2] Body[1] f8 f8 f8",
-    "transfer:write_states": "f8[3] i8[2] f8[2] Body[1] f8[1] f8 f8 i8",
+    "transfer:write_states": "f8[3] i8[2] f8[2] Body[1] f8[1] f8 i8",
     "transfer:accept_static": "{Reading}",
     "transfer:write_ends": "{Reading} i8",
     "transfer:write_stopped_ends": "{Reading} i8",

@@ -49,7 +49,7 @@ def finish(A: Scene, J: Joints, R: Reading, status: int) -> int:
         load_welds(A, J, R)
     if A.COUNT.logged > 0 or A.COUNT.unmet > 0:
         status |= EVENTS
-    return write_states(R.STATES, R.IDS, R.EXTRA, A.BODY, R.ENDS, A.PAR.dt, A.PAR.half_damping, status)
+    return write_states(R.STATES, R.IDS, R.EXTRA, A.BODY, R.ENDS, A.PAR.half_damping, status)
 
 
 @kernel

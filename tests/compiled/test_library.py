@@ -32,7 +32,7 @@ def made(folder: Path, text: str) -> Path:
 def given() -> list[Any]:
     """Arguments of `write_states`, of three bodies at rest."""
     return [
-        np.zeros((2, 3, 9)), np.zeros((4, 3), np.int64), np.zeros((3, 5)), rows(Body, 1), np.zeros(54), 0.0, 1.0, 0
+        np.zeros((2, 3, 9)), np.zeros((4, 3), np.int64), np.zeros((3, 5)), rows(Body, 1), np.zeros(54), 1.0, 0
     ]  # fmt: skip
 
 
@@ -112,8 +112,8 @@ def test_entries_refuse_arrays_that_they_would_misread(change: dict[int, np.ndar
         arguments[place] = value
     with pytest.raises(TypeError, match=told):
         entry(*arguments)
-    with pytest.raises(TypeError, match="transfer:write_states takes 8 arguments, not 7"):
-        entry(*arguments[:7])
+    with pytest.raises(TypeError, match="transfer:write_states takes 7 arguments, not 6"):
+        entry(*arguments[:6])
 
 
 @loaded
