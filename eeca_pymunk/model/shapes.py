@@ -84,6 +84,7 @@ class Grid(Record):
     pool_end: int  # first free place of POOL
     moving: int  # shapes [0, moving) move and have lists, the others are static
     renewals: int  # number of near lists that were renewed
+    halvings: int  # how often the margins that were chosen first have been halved
     columns: int  # of the grid of static shapes; 0 if all of them are tested without a grid
     rows: int
     left: float  # x and y of its corner

@@ -50,40 +50,38 @@ def begin_lists(table: Table) -> int:
 
 
 @nonallocating
-def fill_lists(table: Table, BOUND: FloatArray, neighbours: float, halved: int, listed: bool) -> int:
-    """Choose margins, and make all lists.
+def fill_lists(table: Table, BOUND: FloatArray, neighbours: float) -> bool:
+    """Choose margins, unless there are some, and make all lists.
 
     Args:
         BOUND: (m,) bounding radii of the shapes that move, in ascending order.
         neighbours: mean length of lists for which margins are chosen.
-        halved: how often margins have been halved.  listed: whether there are lists for the present ones.
 
     Returns:
-        LISTS_MADE; or, if the pool is full, how often margins have been halved: make the lists in a larger one, and
-        call again.
+        False if the pool is full: call again with a larger one.
     """
     A = scene_of(table)
-    if halved == 0 and not listed:
+    if A.GRID.cell == 0.0:
         if A.GRID.columns > 0:
             wall_grid(A.BOX, A.GRID, A.CSR)
         choose_margins(A, middle(BOUND), neighbours)
     while True:
         set_cell(A)
-        if not listed and not make_lists(A, 0.0):
-            return halved
-        listed, entries = False, 0
+        if not make_lists(A, 0.0):
+            return False
+        entries = 0
         for s in range(A.GRID.moving):
             entries += A.LIST[s].number
         # Margins do not fall with the bounding radius, so the shapes of median radius have the median margin.
         small, large = margin_at(A, BOUND, (A.GRID.moving - 1) // 2), margin_at(A, BOUND, A.GRID.moving // 2)
         if entries <= MOST_NEIGHBOURS * A.GRID.moving or 0.5 * (small + large) <= MARGIN_LEAST * middle(BOUND):
-            return LISTS_MADE
+            return True
         for s in range(A.GRID.moving):
             A.MARK[s].margin *= 0.5
             A.MARK[s].usual = A.MARK[s].margin
-        halved += 1
-        if halved == MARGIN_HALVINGS:
-            return LISTS_MADE
+        A.GRID.halvings += 1
+        if A.GRID.halvings == MARGIN_HALVINGS:
+            return True
 
 
 @nonallocating

@@ -55,20 +55,19 @@ def filled(table: Table, SHAPE: Rows[Shape], moving: int, found: int, CSR: IntAr
     """The table of a scene with these shapes, the first ones of which move, and with arrays NEAR as in a new one, with
     its first lists. found: the result of `begin_lists`.  CSR: that of the table, to be written if it fits."""
     if found < 0:
-        return table if found == LISTS_MADE else _with_more_room(table)
+        return table if found == LISTS_MADE else table_of(with_more_room(scene_of(table), 0.0, table), table)
     if found > 0 and (CSR is NO_GRID or len(CSR) != found):
         table = replaced(table, Scene, "CSR", np.zeros(found, np.int64))
     bounds = np.sort(SHAPE["bound"][:moving])
-    halved = fill_lists(table, bounds, NEIGHBOURS, 0, False)
-    while halved != LISTS_MADE:
-        table = _with_more_room(table)
-        halved = fill_lists(table, bounds, NEIGHBOURS, halved, True)
+    while not fill_lists(table, bounds, NEIGHBOURS):
+        table = table_of(_with_larger_pool(scene_of(table)), table)
     return table
 
 
-def _with_more_room(table: Table) -> Table:
-    """The table of a new scene, with a larger pool."""
-    return table_of(with_more_room(scene_of(table), 0.0, table), table)
+def _with_larger_pool(scene: Scene) -> Scene:
+    """The scene with an empty pool, at least twice as long."""
+    room = more_room(len(scene.POOL))
+    return scene._replace(POOL=np.zeros(room, np.int32), FLAG=np.zeros(room, np.uint8))
 
 
 def with_more_room(scene: Scene, t: float, like: Table | None = None) -> Scene:
@@ -76,8 +75,7 @@ def with_more_room(scene: Scene, t: float, like: Table | None = None) -> Scene:
     it was, if there is one."""
     built = False
     while not built:
-        room = more_room(len(scene.POOL))
-        scene = scene._replace(POOL=np.zeros(room, np.int32), FLAG=np.zeros(room, np.uint8))
+        scene = _with_larger_pool(scene)
         built = build(table_of(scene, like), t)
     return scene
 
