@@ -169,7 +169,7 @@ class StepReport:
 
     @property
     def unmet(self) -> tuple[Unmet, ...]:
-        """Budgets and tolerances that were not met, and for which bodies; the first 32. Empty if `converged`."""
+        """Budgets and tolerances that were not met, and for which bodies; the first ones of many. Empty if `converged`."""
         unmet = self._unmet
         if not isinstance(unmet, tuple):
             self._unmet = unmet = unmet()

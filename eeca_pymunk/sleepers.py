@@ -28,8 +28,8 @@ def rests(
         |v|, |spin| SIZE <= slow + round-off     and     |x - x0| <= slow dt + round-off,
 
     without forces; `slow` and its reason are in `space/sleeping.py`. DYNAMIC (N,): 1 for dynamic bodies. SIZE (N,):
-    length, 0 for bodies without shapes. RESTED (N,): time. READY (N,): 1 for bodies that have been at rest for the time
-    `need`, and may sleep.
+    length, 0 for bodies without shapes, of which |spin| itself is compared. RESTED (N,): time. READY (N,): 1 for bodies
+    that have been at rest for the time `need`, and may sleep.
 
     Returns:
         1 if any body may sleep, else 0.

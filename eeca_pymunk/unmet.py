@@ -26,8 +26,8 @@ class Unmet(NamedTuple):
         "hits": number of impacts on an island. Further ones are ignored until the next step and may penetrate.
         "impact": residual velocity of a simultaneous impact, length/time.
         "solves": work of the events of the step, in looks (see the glossary). The step ends early.
-        "contacts": residual velocity of the persistent contacts of an island of up to 40 contacts, length/time; nan if
-            bodies are jointed.
+        "contacts": residual velocity of the persistent contacts of an island of up to `COLUMN_CONTACTS` contacts,
+            length/time; nan if bodies are jointed.
         "joints": status of the solve of jointed bodies.
     """
 
