@@ -32,8 +32,8 @@ def measure_scene(reading: Table) -> None:
 
 @kernel
 def begin_scene(table: Table, limit: int, disks: int, together: int, budget: int, lossy: int) -> int:
-    """Write to the arrays of a new scene, which contain zeros, what is not 0 in it: of bodies, of CORNER, of KEYS, the
-    number of moving shapes, and these fields of COUNT. Returns what `begin_lists` does."""
+    """Write to the arrays of a new scene, which contain zeros, what is not 0 in it: of bodies, of CORNER, of KEYS, and
+    these fields of COUNT. Returns what `begin_lists` does."""
     A = scene_of(table)
     A.COUNT.limit, A.COUNT.disks, A.COUNT.together = limit, disks, together
     A.COUNT.budget, A.COUNT.lossy = budget, lossy
@@ -47,7 +47,6 @@ def begin_scene(table: Table, limit: int, disks: int, together: int, budget: int
     for s in range(A.LINK.shape[0]):
         if A.LINK[s].owner < ground:
             A.STATE[A.LINK[s].owner].shapes += 1
-            A.GRID.moving += 1
     first = 0
     for i in range(A.BODY.shape[0]):
         A.STATE[i].first_shape = first

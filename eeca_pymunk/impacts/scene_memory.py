@@ -92,7 +92,7 @@ class SceneMemory:
     def scene(self, laid: Laid, PINNED: Rows[Pinned], limit: int, together: bool, budget: int) -> Table:
         """The table of a scene that has taken no step; the arrays given are kept, not copied. The numbers are fields of
         COUNT."""
-        BODY, SHAPE, LINK, VERTEX, disks, (moving, corners, self.thin, lossy) = laid
+        BODY, SHAPE, LINK, VERTEX, disks, (moving, vertices, self.thin, lossy) = laid
         n, k = len(BODY), len(LINK)
         room = _CONTACTS
         while room < max(min(_OF_A_BODY * n, _MANY) if lossy else 0, self.contacts):
@@ -103,7 +103,7 @@ class SceneMemory:
             "BODY": n, "STATE": n, "MEMBER": n, "RESTING": n, "PLACE": n, "PULL": n, "BEGAN": n, "BLOCK": n,
             "HEAP_TIME": 8 * n + 64, "HEAP_BODY": 8 * n + 64, "LOG": max(4 * n + 64, self.log), "PINNED": len(PINNED),
             "SHAPE": k, "LINK": k, "MARK": moving, "CELL": moving, "LIST": moving, "BOX": k - moving,
-            "POOL": pool, "FLAG": pool, "HEAD": heads, "VERTEX": len(VERTEX), "CORE": corners,
+            "POOL": pool, "FLAG": pool, "HEAD": heads, "VERTEX": len(VERTEX), "CORE": vertices,
             "SIDE": side_rows(self.thin, k), "CORNER": 4 * k if self.thin else 0,
             "KEYS": 4 * room, "FORCES": 4 * room, "PUSHED_BY": room, "PUSHED": room, "MISSED": _MISSED,
         }  # fmt: skip

@@ -36,6 +36,7 @@ def begin_lists(table: Table) -> int:
         grid.
     """
     A = scene_of(table)
+    A.GRID.moving = A.LIST.shape[0]
     for w in range(A.BOX.shape[0]):
         box_wall(A, w)
     if A.GRID.moving <= ALL_PAIRS and A.BOX.shape[0] <= ALL_WALLS:

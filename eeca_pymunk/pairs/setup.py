@@ -31,7 +31,6 @@ def near_lists(scene: Scene, moving: int, like: Table | None = None) -> Scene:
         ((moving,), Mark.TYPE), ((moving,), Cell.TYPE), ((moving,), List.TYPE), ((pool,), np.int32),
         ((pool,), np.uint8), ((heads,), np.int64), ((1,), Grid.TYPE), ((walls, 4), np.float64),
     )  # fmt: skip
-    GRID[0].moving = moving
     scene = scene._replace(**dict(zip(NEAR, (MARK, CELL, LIST, POOL, FLAG, HEAD, GRID[0], BOX, NO_GRID), strict=True)))
     table = table_of(scene, like)
     return scene_of(filled(table, scene.SHAPE, moving, begin_lists(table)))
@@ -47,7 +46,6 @@ def refilled(table: Table) -> Table:
         if name != "CSR":
             array = np.asarray(getattr(scene, name))
             np.ndarray(array.nbytes, np.uint8, array).fill(0)
-    scene.GRID.moving = moving
     return filled(table, scene.SHAPE, moving, begin_lists(table), scene.CSR)
 
 
