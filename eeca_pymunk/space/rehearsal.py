@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from .sync import Sync
     from .world import World
 
-_MEMORY = 4  # steps for which pymunk may keep arbiters of pairs that have touched; silence is not tested before
+_BETWEEN_TESTS = 4  # steps from one test whether no handler would be called to the next
 _SILENT = -1
 _NO_PAIRS: tuple[Rows[HandledShape], IntArray] = rows(HandledShape, 0), np.zeros((0, 2), np.int64)
 
@@ -81,8 +81,8 @@ class Rehearsal:
         self.world.forget_changes()
 
     def is_silent(self) -> bool:
-        """Whether no decision applies, and the last `_MEMORY` steps, all of them EECA's, were silent and left out."""
-        silent = self.left_out >= _MEMORY and self._untested == _SILENT
+        """Whether no decision applies, and the last `_BETWEEN_TESTS` steps, all of EECA, were silent and left out."""
+        silent = self.left_out >= _BETWEEN_TESTS and self._untested == _SILENT
         return silent and self._sync is not None and self._sync.is_ours()
 
     def is_silent_again(self, dt: float, half_damping: float, sync: Sync) -> bool:
@@ -149,7 +149,7 @@ class Rehearsal:
             self._step_without_calls(dt, sync)
             return 0
         else:
-            self._untested = _MEMORY
+            self._untested = _BETWEEN_TESTS
         self.left_out = 0
         world.scatter(TURNS)
         self._wrap()
