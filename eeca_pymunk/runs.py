@@ -203,7 +203,7 @@ class RunningStepper(PackedStepper):
             world.STATES[WRITTEN, moves, :6] = world.STATES[READ, moves, :6]
         if RUN.done == 0:
             return
-        bits = int(RUN.all_bits)
+        bits = int(RUN.bits)
         world.write_ends(bits)
         self.time = float(RUN.time)
         if bits & FORCES:

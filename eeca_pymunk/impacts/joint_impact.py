@@ -34,8 +34,8 @@ from ..rows.gentle import excessive, sweep_gently
 from ..rows.inplace import copy
 from ..rows.sweeps import velocities
 from .joint_answers import activate_limits, add_joint_impulses, answer_impact, begin_impact
-from .resolution import finish_block, lacks_room, list_ended, rejoin
-from .simultaneous import Block, energy_owed, gather_block, make_block
+from .resolution import finish_block, lacks_room, list_ended, unite_block
+from .simultaneous import Block, gather_block, make_block, take_owed_energy
 
 
 @nonallocating
@@ -67,7 +67,7 @@ def list_apart(A: Scene, i: int, j: int) -> int:
 
 
 @kernel
-def settle_energy(
+def account_impact(
     A: Scene, block: Block, n: int, L: FloatArray, BEFORE: FloatArray, FREE: FloatArray, driven: bool, owed: float,
     exact: bool, OUT: Rows[Solved],
 ) -> None:  # fmt: skip
@@ -125,7 +125,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     if lacks_room(A, n, m):
         return list_ended(A, n)
     lasts = persists_from(A, a, b, t)
-    owed, _ = energy_owed(A, n)
+    owed, _ = take_owed_energy(A, n)
     block = make_block(A, n, m, PAIRS, pair_of(A, a, b), lasts, t)
     ROWS, V = block.ROWS, block.V
     rows = len(ROWS)
@@ -172,13 +172,13 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
         fits = closes(ROWS, BEFORE, V, rows)
     if fits:
         velocities(problem, L, FITTED, V)
-    settle_energy(A, block, n, L, BEFORE, FITTED if fits else BEFORE, driven, owed, exact, OUT)
+    account_impact(A, block, n, L, BEFORE, FITTED if fits else BEFORE, driven, owed, exact, OUT)
     add_joint_impulses(A, J, block, groups, L, BEFORE if fits else 0.0 * BEFORE, t)
     lost = OUT[0].restitution + OUT[0].friction - owed
     finish_block(A, block, n, m, L, OUT, status, t)
     spend(A, n, m, 0.0)  # besides what its solutions take
     count_operations(J, C)
-    n = rejoin(A, a, b, t, n, lasts, lost)
+    n = unite_block(A, a, b, t, n, lasts, lost)
     n = list_ended(A, n)
     for q in range(n):
         A.RESTING[A.BLOCK[q]].longest *= RESOLUTION  # they move otherwise now, perhaps for long

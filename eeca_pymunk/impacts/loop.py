@@ -77,7 +77,7 @@ def run_events(A: Scene, may_persist: bool, most: float) -> int:
         look_ahead(A, i)
         s, o = STATE[i].own, STATE[i].other
         if o == RENEW or COUNT.work > most:
-            A.PAR.now, COUNT.struck = t, i
+            A.PAR.now, COUNT.event_body = t, i
             return BLOCK_DUE
         if o == LEAVE:
             if i < disks and STATE[i].island < 0:
@@ -110,7 +110,7 @@ def run_events(A: Scene, may_persist: bool, most: float) -> int:
                 single = alone(A, body, other, t)
             body, other = (j, i) if o < disks else (-1, -1)
         if not single:
-            A.PAR.now, COUNT.struck = t, i
+            A.PAR.now, COUNT.event_body = t, i
             return BLOCK_DUE
         # The result is the same to the bit, whichever of the two predicted the impact.
         a, b = (o, i) if o < i else (i, o)
@@ -139,7 +139,7 @@ def end_of_interval(A: Scene, J: Joints, i: int, t: float) -> int:
 
 
 @kernel
-def follow(A: Scene, J: Joints, may_persist: bool) -> int:
+def process_events(A: Scene, J: Joints, may_persist: bool) -> int:
     """Process all events of the step, with simultaneous impacts and islands. After a status other than DONE: provide
     more memory, and call again. may_persist: as in `run_events`."""
     COUNT, STATE = A.COUNT, A.STATE
@@ -150,7 +150,7 @@ def follow(A: Scene, J: Joints, may_persist: bool) -> int:
             status = run_events(A, may_persist, most_looks(A, J))
         if status != BLOCK_DUE:
             return status
-        t, i = A.PAR.now, COUNT.struck
+        t, i = A.PAR.now, COUNT.event_body
         s, o = STATE[i].own, STATE[i].other
         if COUNT.work > most_looks(A, J):
             return cut_short(A, J, i, t)

@@ -23,7 +23,7 @@ from ..model.contacts import SOLVED, Problem, Solved
 from ..model.scene import Scene
 from ..model.step import IMPACT
 from ..rows.blocks import CONVERGED, solve_block
-from .simultaneous import Block, energy_owed, gather_block, make_block
+from .simultaneous import Block, gather_block, make_block, take_owed_energy
 
 
 @nonallocating
@@ -111,7 +111,7 @@ def strike(A: Scene, a: int, b: int, t: float, lasts: bool) -> int:
         return -1
     if lacks_room(A, n, m):
         return list_ended(A, n)
-    owed, piled = energy_owed(A, n)
+    owed, piled = take_owed_energy(A, n)
     block = make_block(A, n, m, PAIRS, pair_of(A, a, b), lasts, t)
     rows = len(block.ROWS)
     L, OUT = np.zeros((rows, 2)), zeros(1, SOLVED)
@@ -120,11 +120,11 @@ def strike(A: Scene, a: int, b: int, t: float, lasts: bool) -> int:
     lost = OUT[0].restitution + OUT[0].friction - owed
     finish_block(A, block, n, m, L, OUT, status, t)
     spend(A, n, m, looks_of(rows, OUT[0]))
-    return rejoin(A, a, b, t, n, lasts, lost)
+    return unite_block(A, a, b, t, n, lasts, lost)
 
 
 @kernel
-def rejoin(A: Scene, a: int, b: int, t: float, n: int, lasts: bool, lost: float) -> int:
+def unite_block(A: Scene, a: int, b: int, t: float, n: int, lasts: bool, lost: float) -> int:
     """After the impact of the n bodies in A.BLOCK: unite their islands, and with them the bodies of shapes a and b if
     their contact persists (`lasts`). lost: energy lost in the impact. Returns the number of bodies in A.BLOCK: those of
     the block and of that island."""

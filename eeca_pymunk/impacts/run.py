@@ -111,7 +111,7 @@ def after_step(A: Scene, F: RunArrays, R: Reading) -> int:
         for c in range(6):
             F.SUMS[RUN.frame, c] = T[c]
         RUN.frame += 1
-    RUN.all_bits |= RUN.bits
+    RUN.bits |= A.COUNT.bits
     RUN.stage = BETWEEN
     return 0
 
@@ -144,17 +144,17 @@ def run(TABLE: Table, JOINTS: Table, ARRAYS: Table, READING: Table) -> int:
         while RUN.done < RUN.until:
             if RUN.stage == BETWEEN:
                 before_step(A, F, R)
-                RUN.bits = start(A, J, R, RUN.dt, RUN.gravity_x, RUN.gravity_y, RUN.half_damping)
-                if RUN.bits < 0:
-                    return RUN.bits
-                RUN.stage = WITHIN
-            if RUN.stage == WITHIN:
-                status = resume(A, J, R, RUN.bits)
+                status = start(A, J, R, RUN.dt, RUN.gravity_x, RUN.gravity_y, RUN.half_damping)
                 if status < 0:
                     return status
-                RUN.bits, RUN.stage = status, AFTER
+                RUN.stage = WITHIN
+            if RUN.stage == WITHIN:
+                status = resume(A, J, R)
+                if status < 0:
+                    return status
+                RUN.stage = AFTER
             status = after_step(A, F, R)
             if status < 0:
                 return status
         if not next_rollout(F):
-            return RUN.all_bits
+            return RUN.bits

@@ -17,23 +17,21 @@ from ..compiled.records import R, Rows, columns, from_bytes, rows
 from ..contacts.memory import copy_recent
 from ..islands.accounting import flag_pairs
 from ..joints.pinned import NO_PINNED, hold, pinned_bodies
-from ..layout import READ
 from ..model.bodies import CHECK, MOBILITY, Body
 from ..model.contacts import Force, Impulse
 from ..model.joints import Joint, Pinned
 from ..model.parameters.events import MANY_BODIES, STEP_LOOKS, STEP_LOOKS_BODY
 from ..model.shapes import Link, Shape
-from ..model.step import FORCES, IMPACTS_FULL, LOG_FULL, PUSHES_FULL, Missed, needs_memory
-from ..model.values import reading_of
+from ..model.step import IMPACTS_FULL, LOG_FULL, PUSHES_FULL, Missed, needs_memory
 from ..pairs.setup import with_more_room
 from ..report import Details, of_events
+from . import step as stages
 from .edits import SAME, Changes, renew
 from .new_scene import tie_components
 from .remembering import UNBOUND, Remembering
 from .run import run
 from .run_buffers import RunBuffers
 from .scene_memory import NO_LINKAGE, RULE_COLUMNS, Laid, Linkage, SceneMemory
-from .step import step
 from .taking_over import Kept, take_over
 
 if TYPE_CHECKING:
@@ -146,12 +144,12 @@ class EventLoop(Remembering):
         """Take a step, see `step.step`; a negative result is a code of `model/step.py`."""
         known, call = self._bound
         if known is not reading:
-            call = self._bind_to(reading)
-        status = call(dt, gx, gy, half_damping, -1)
+            call = stages.step.bind(self.table, self.ties, reading)
+            self._bound = reading, call
+        status = call(dt, gx, gy, half_damping)
         while needs_memory(status):
             self._grow(result_of("step", status))
-            bits = FORCES if reading_of(reading).STATES[READ, :, 6:].any() else 0
-            status = self._bind_to(reading)(dt, gx, gy, half_damping, bits)
+            status = stages.resume_step.bind(self.table, self.ties, reading)()
         return status
 
     def follow(self, buffers: RunBuffers, reading: Table) -> int:
@@ -167,11 +165,6 @@ class EventLoop(Remembering):
                 buffers.call = None
             else:
                 return status
-
-    def _bind_to(self, reading: Table) -> Callable[..., int]:
-        """The step as machine code, bound to this reading and to the arrays of the scene."""
-        self._bound = reading, step.bind(self.table, self.ties, reading)
-        return self._bound[1]
 
     def _grow(self, wish: int) -> None:
         """Provide the memory that a step needs, `wish` being its status; the step can then be resumed."""

@@ -114,7 +114,7 @@ def gather_block(A: Scene, a: int, b: int, t: float) -> tuple[int, int, IntArray
 
 
 @nonallocating
-def energy_owed(A: Scene, n: int) -> tuple[float, bool]:
+def take_owed_energy(A: Scene, n: int) -> tuple[float, bool]:
     """Energy owed by the islands of the n bodies in A.BLOCK, as shortened intervals have given it: their block has to
     lose it, and they owe it no longer. Also whether there are any islands."""
     owed, piled = 0.0, False

@@ -17,7 +17,7 @@ from ..transfer import read_states, write_states
 from .begin import begin
 from .close import close
 from .intervals import start_islands
-from .loop import follow
+from .loop import process_events
 from .midstep import act_together
 
 
@@ -36,11 +36,12 @@ def start(A: Scene, J: Joints, R: Reading, dt: float, gx: float, gy: float, half
         # The kinetic energy that `put_pinned` has taken from held bodies is a loss of this step.
         A.PAR.before += lost
         A.PAR.restitution += lost
+    A.COUNT.bits = status
     return status
 
 
 @kernel
-def finish(A: Scene, J: Joints, R: Reading, status: int) -> int:
+def finish(A: Scene, J: Joints, R: Reading) -> int:
     """Close the step, and write the states at its end; returns the bits of the step, or a negative code."""
     account_joints(A, J)
     settle(A)
@@ -48,8 +49,9 @@ def finish(A: Scene, J: Joints, R: Reading, status: int) -> int:
     if len(A.PINNED) > 0:
         load_welds(A, J, R)
     if A.COUNT.logged > 0 or A.COUNT.unmet > 0:
-        status |= EVENTS
-    return write_states(R.STATES, R.IDS, R.EXTRA, A.BODY, R.ENDS, A.PAR.half_damping, status)
+        A.COUNT.bits |= EVENTS
+    A.COUNT.bits = write_states(R.STATES, R.IDS, R.EXTRA, A.BODY, R.ENDS, A.PAR.half_damping, A.COUNT.bits)
+    return A.COUNT.bits
 
 
 @kernel
@@ -70,7 +72,7 @@ def act(A: Scene, J: Joints) -> int:
         predict_due(A)
         COUNT.work = 0  # the start of a step does not count
     if COUNT.phase == 1:
-        status = follow(A, J, COUNT.lossy > 0 or A.PAR.pulled > 0.0)
+        status = process_events(A, J, COUNT.lossy > 0 or A.PAR.pulled > 0.0)
         if status != DONE:
             return status
         COUNT.phase = 2
@@ -78,33 +80,32 @@ def act(A: Scene, J: Joints) -> int:
 
 
 @kernel
-def resume(A: Scene, J: Joints, R: Reading, status: int) -> int:
-    """The rest of a step, whose bits so far are `status`. Returns the bits of the step, a negative code, or a code for
-    more memory."""
+def resume(A: Scene, J: Joints, R: Reading) -> int:
+    """The rest of a step that has begun; results as of `step`."""
     met = act(A, J)
     if met == DONE and A.COUNT.logged + A.COUNT.pushes > A.LOG.shape[0]:
         met = LOG_FULL
-    return met if met != DONE else finish(A, J, R, status)
+    return met if met != DONE else finish(A, J, R)
 
 
 @kernel
-def step(
-    TABLE: Table, JOINTS: Table, READING: Table, dt: float, gx: float, gy: float, half_damping: float, bits: int
-) -> int:
+def step(TABLE: Table, JOINTS: Table, READING: Table, dt: float, gx: float, gy: float, half_damping: float) -> int:
     """Take one step, from the states read from pymunk to those to be written, see `transfer.py`.
 
     Args:
         TABLE: `table_of` a Scene.  JOINTS: that of its Joints.  READING: that of the Reading with its BODY.
         dt: time, > 0.  gx, gy: gravity, length/time².  half_damping: factor by which half the step's damping multiplies
             velocities.
-        bits: negative for a new step; the bits so far of one that continues after more memory was provided.
 
     Returns:
-        the status, see `model/step.py`.
+        the status, see `model/step.py`: after a code for more memory, provide it, and call `resume_step`.
     """
     A, J, R = scene_of(TABLE), joints_of(JOINTS), reading_of(READING)
-    if bits < 0:
-        bits = start(A, J, R, dt, gx, gy, half_damping)
-        if bits < 0:
-            return bits
-    return resume(A, J, R, bits)
+    status = start(A, J, R, dt, gx, gy, half_damping)
+    return resume(A, J, R) if status >= 0 else status
+
+
+@kernel
+def resume_step(TABLE: Table, JOINTS: Table, READING: Table) -> int:
+    """Go on with a step that needed more memory; arguments and results as of `step`."""
+    return resume(scene_of(TABLE), joints_of(JOINTS), reading_of(READING))

@@ -22,8 +22,7 @@ class Run(Record):
     until: int  # number of steps after which the loop returns
     done: int  # number of steps taken
     stage: int  # BETWEEN, WITHIN or AFTER
-    bits: int  # status bits (`..transfer`) of the step that is resumed WITHIN or AFTER
-    all_bits: int  # status bits of all steps so far
+    bits: int  # status bits of all steps so far
     every: int  # a frame is stored after so many steps; 0 for none
     frame: int  # row of FRAMES and SUMS that is written next
     impacts: int  # of all steps

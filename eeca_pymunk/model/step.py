@@ -41,11 +41,12 @@ class Count(Record):
     closing: int  # 1 if bodies that impulses do not move may move relative to each other, and squeeze others
     budget: int  # largest work of the events of a step no longer than `BUDGET_TIME`, in looks
     work: int  # work of the events so far, in looks: evaluations of a gap in the search for an impact
-    struck: int  # body of the event at which the event loop has stopped
+    event_body: int  # body of the event at which the event loop has stopped
     room: int  # rows of LOG that the impact needs which is to be repeated with more memory
     pushes: int  # rows of PUSHED in use: contacts of intervals
     solves: int  # number of intervals of islands in the step
     waiting: int  # number of bodies in BLOCK to be predicted after their islands have begun intervals
+    bits: int  # status of the step so far
     phase: int  # stage of the step at which it is resumed, see `impacts.step.act`
     direct: int  # number of direct solves
     remembered: int  # rows in use of the memory of forces

@@ -10,7 +10,7 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk.compiled.records import zeros
-from eeca_pymunk.impacts.joint_impact import settle_energy
+from eeca_pymunk.impacts.joint_impact import account_impact
 from eeca_pymunk.impacts.simultaneous import Block
 from eeca_pymunk.model.contacts import SOLVED, Row
 from scenes import build
@@ -29,7 +29,7 @@ def test_an_error_of_the_response_is_no_work_from_outside(error: float, elastic:
     after[0, 0] += (1.0 + error) * impulse / 2.0
     block = Block(before, after, np.array([0.5, 0.0]), np.zeros(2), rows, np.zeros((1, 2)))
     impulses = np.array([[impulse, 0.0]])
-    settle_energy(scene, block, 1, impulses, before, before, False, 0.0, elastic, out)
+    account_impact(scene, block, 1, impulses, before, before, False, 0.0, elastic, out)
     left = 0.5 * 2.0 * after[0, 0] ** 2
     assert scene.PAR.external == 0.0
     assert out[0].restitution == pytest.approx(9.0 - left, abs=1e-12)
@@ -80,6 +80,6 @@ def test_a_small_impact_on_what_moves_fast_is_not_round_off(turn: float) -> None
     before[0, :2], after[0, :2] = along - 1e-9 * normal, along + 1e-9 * normal
     block = Block(before, after, np.array([0.5, 0.0]), np.array([0.5, 0.0]), rows, np.zeros((1, 2)))
     impulses = np.array([[4e-9, 0.0]])
-    settle_energy(scene, block, 1, impulses, before, before.copy(), False, 0.0, True, out)
+    account_impact(scene, block, 1, impulses, before, before.copy(), False, 0.0, True, out)
     assert after[0, :2] @ normal == pytest.approx(1e-9, rel=1e-6)
     assert impulses[0, 0] == pytest.approx(4e-9, rel=1e-6)
