@@ -47,7 +47,8 @@ class Hooks:
         """Whether steps of pymunk would call no function of a body or constraint, and could change no velocity of a
         body outside the space."""
         joints = self.joints
-        return not self.any_body and (joints is None or not (joints.partners.outside or joints.calling or joints.own))
+        calls = joints is not None and (joints.partners.outside or joints.calling or joints.with_law)
+        return not (self.any_body or calls)
 
     def before(self, dt: float) -> None:
         """Call `pre_solve` of the constraints: of all if there is no rehearsal, else of those whose first body is

@@ -14,7 +14,7 @@ from .spring_functions import own_function
 _PUSHING = SPRING, ROTARY_SPRING, MOTOR
 # The attributes of a `Listing` that another one of the same constraints uses again.
 _LISTED = (
-    "pairs", "bodies", "ends", "row", "values", "calls", "ratchets", "forcing", "functions", "own", "before",
+    "pairs", "bodies", "ends", "row", "values", "calls", "ratchets", "forcing", "functions", "with_law", "before",
     "after", "calling",
 )  # fmt: skip
 
@@ -41,7 +41,7 @@ class Listing:
         pairs: the bodies of each.  bodies: all of these.  ends: (j, 2) places in `bodies`.
         values, calls: the values and the functions of each.
         fresh: rows of the constraints that `past` does not have.
-        functions: rows of springs that have a force or torque function of the program.  own: these springs.
+        functions: rows of springs that have a force or torque function of the program.  with_law: these springs.
         before, after, calling: constraints with a `pre_solve`, with a `post_solve`, with either.
         ratchets: rows of the ratchets.  forcing: rows of springs, motors and joints with a bounded force, which exert
             forces in a rest step of pymunk even if they are not violated.
@@ -75,7 +75,7 @@ class Listing:
         self.ratchets = [j for j, values in enumerate(self.values) if values.kind == RATCHET]
         self.forcing = [j for j, values in enumerate(self.values) if values.bounded or values.kind in _PUSHING]
         self.functions = [j for j, calls in enumerate(self.calls) if calls.own]
-        self.own = [self.items[j] for j in self.functions]
+        self.with_law = [self.items[j] for j in self.functions]
         self.before = [item for item, calls in zip(self.items, self.calls, strict=True) if calls.before is not None]
         self.after = [item for item, calls in zip(self.items, self.calls, strict=True) if calls.after is not None]
         self.calling = list(dict.fromkeys((*self.before, *self.after)))

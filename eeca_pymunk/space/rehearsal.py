@@ -170,7 +170,7 @@ class Rehearsal:
 
     def _step_without_calls(self, dt: float, sync: Sync) -> None:
         """The rehearsal of a silent step. Arbiters that were read will probably be read again."""
-        if not sync.were_read and self.left_out < private_shapes.REINDEXINGS:
+        if not sync.arbiters_read and self.left_out < private_shapes.REINDEXINGS:
             self.left_out += 1
             return
         self.left_out = 0

@@ -39,7 +39,7 @@ def rest_step(
     if awake is not None:
         pushing, calling = awake(pushing), awake(calling) if calling else calling
     outside = joints.partners.motions()
-    if not (calling or joints.own):  # most spaces; an `ExitStack` would cost more
+    if not (calling or joints.with_law):  # most spaces; an `ExitStack` would cost more
         max_forces = clear_max_forces(pushing)
         try:
             private_rest.rest(space, dt, asleep)
@@ -47,7 +47,7 @@ def rest_step(
             restore_max_forces(max_forces)
             restore_motions(outside)
         return
-    own, laws = joints.own, joints.laws()
+    own, laws = joints.with_law, joints.laws()
     if awake is not None:
         laws = [law for item, law in zip(own, laws, strict=True) if awake([item])]
         own = awake(own)

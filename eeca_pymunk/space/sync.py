@@ -9,9 +9,9 @@ when bodies have their velocities. After an EECA step pymunk is in one of these 
 
 | state | entered by | arbiters are | before they are read |
 |---|---|---|---|
-| `MADE` | a rest step, or a rehearsal | those of the step | nothing is done |
-| `NO_REST_STEP` | reindexing | older | a rest step is taken: `MADE` |
-| `NO_REHEARSAL` | a step whose rehearsal was left out | older | it is taken: `MADE` |
+| `ARBITERS_CURRENT` | a rest step, or a rehearsal | those of the step | nothing is done |
+| `NO_REST_STEP` | reindexing | older | a rest step is taken: `ARBITERS_CURRENT` |
+| `NO_REHEARSAL` | a step whose rehearsal was left out | older | it is taken: `ARBITERS_CURRENT` |
 
 A step of pymunk's own is found by its counter of steps (`Sync.is_ours`); the next EECA step ends with a rest step.
 """
@@ -38,7 +38,7 @@ from .rest_step import Awake, rest_step
 if TYPE_CHECKING:
     from .world import World
 
-MADE, NO_REST_STEP, NO_REHEARSAL = 0, 1, 2
+ARBITERS_CURRENT, NO_REST_STEP, NO_REHEARSAL = 0, 1, 2
 
 
 class Sync:
@@ -46,9 +46,9 @@ class Sync:
 
     Attributes:
         waits: function that returns whether post-step callbacks, additions or removals wait for the end of a step.
-        state: of pymunk after the last EECA step: `MADE`, `NO_REST_STEP` or `NO_REHEARSAL`.
+        state: of pymunk after the last EECA step: `ARBITERS_CURRENT`, `NO_REST_STEP` or `NO_REHEARSAL`.
         stamp: number of steps that pymunk had taken after the last EECA step, -1 before the first.
-        were_read: whether arbiters were read since they were made; the next step then makes them, to be read again.
+        arbiters_read: whether arbiters were read since they were made; the next step then makes them, to be read again.
         touches: a weak reference to the method that returns the pairs of the last step (`arbiters.py`).
     """
 
@@ -60,14 +60,14 @@ class Sync:
         self._stop_woken = private_sleep.stop_woken(sleepers)
         self._world, self._timestamp = world, private.timestamp(self.space)
         self.waits = partial(private.waits, self.space)
-        self.were_read, self.state, self.stamp = False, MADE, -1
+        self.arbiters_read, self.state, self.stamp = False, ARBITERS_CURRENT, -1
         self._shapes, self._reference = late_shapes(self.space), ref(self)
         show_contacts()
         # Number of pymunk's steps after the last rest step, and pymunk's dt. `_first`: no rest step in this reading;
         # new bodies and joints may have corrections and impulses.
         self._rested, self._dt, self._first = -1, 0.0, True
         if past is not None and not (self._asleep or past._asleep):
-            self._rested, self._dt, self.were_read = past._rested, past._dt, past.were_read
+            self._rested, self._dt, self.arbiters_read = past._rested, past._dt, past.arbiters_read
         self._past_stamp = past.stamp if past is not None and world.undecided else -1
 
     def reindexes(self) -> bool:
@@ -75,7 +75,7 @@ class Sync:
         step since the last rest step, nor if arbiters were read after the last step, other than for a picture, nor if
         reindexing costs more than a rest step."""
         shapes = self._shapes
-        if self.were_read or self._timestamp() != self._rested:
+        if self.arbiters_read or self._timestamp() != self._rested:
             return False
         return not (shapes.hashed and shapes.cost_more(self._world.moving_shapes))
 
@@ -95,14 +95,14 @@ class Sync:
     def renew(self, read: bool = True) -> None:
         """Make the arbiters of the last EECA step. `read`: whether the program reads them, so that the next step makes
         them too; what else needs them, see `make_arbiters`, costs more than making them."""
-        if self.state != MADE and self.space not in BUSY and self.is_ours():
+        if self.state != ARBITERS_CURRENT and self.space not in BUSY and self.is_ours():
             if self.state == NO_REHEARSAL:
                 self._world.rehearsal.take_left_out_step()
-                self.state, self.stamp = MADE, self._timestamp()
+                self.state, self.stamp = ARBITERS_CURRENT, self._timestamp()
             else:
                 with private_rest.stopped(self.space):
                     self.rest(self._dt)
-        self.were_read |= read
+        self.arbiters_read |= read
 
     def call_back(self) -> None:
         """Do waiting additions and removals, and call post-step callbacks."""
@@ -120,7 +120,7 @@ class Sync:
         if left_out:
             self.state = NO_REHEARSAL
         else:
-            self.state, self.were_read = MADE, False
+            self.state, self.arbiters_read = ARBITERS_CURRENT, False
             self._shapes.reindexings = private_shapes.REINDEXINGS
             private_shapes.forget_corrections(self._world.movers)
         self._be_late()
@@ -153,14 +153,14 @@ class Sync:
             self._stop_woken()  # gravity has accelerated the bodies that pymunk has woken
         self._rested, self._dt = self._timestamp(), dt
         self._shapes.late, self._shapes.read, self._shapes.reindexings = False, False, private_shapes.REINDEXINGS
-        self.state, self.stamp, self.were_read, self._first = MADE, self._rested, False, False
+        self.state, self.stamp, self.arbiters_read, self._first = ARBITERS_CURRENT, self._rested, False, False
         self._shapes.sync = self._reference
 
     def _awake(self) -> Awake:
         """See `rest_step`. Which joints have sleeping bodies is known from the start of the step, unless functions of
         the program may have woken bodies."""
         joints = self._world.joints
-        if joints is None or self._world.hooks.any_body or joints.calling or joints.own:
+        if joints is None or self._world.hooks.any_body or joints.calling or joints.with_law:
             return private_joints.awake
         return joints.awake
 

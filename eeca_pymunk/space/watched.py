@@ -66,8 +66,8 @@ def silent_joints(rehearsal: Rehearsal, joints: JointRows) -> Iterator[None]:
             stack.callback(private_joints.restore_motions, joints.partners.motions())
         if silenced:
             stack.enter_context(private_joints.silent(silenced))
-        if joints.own:
-            stack.enter_context(private_joints.with_laws(joints.own, joints.laws()))
+        if joints.with_law:
+            stack.enter_context(private_joints.with_laws(joints.with_law, joints.laws()))
         if joints.before:
             stack.enter_context(_watched_joints(rehearsal, [item for item in joints.before if item not in silenced]))
         yield
