@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Iterable, Sequence
 from operator import itemgetter
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Generic, TypeVar, get_origin, get_type_hints, overload
@@ -130,6 +131,12 @@ def from_bytes(kind: type[R], content: Sequence[bytes]) -> Rows[R]:
 def over(kind: type[R], memory: bytearray | memoryview) -> Rows[R]:
     """The records in this memory."""
     return np.frombuffer(memory, kind.TYPE)  # type: ignore[return-value]
+
+
+def packer(kind: type[Record], *unsigned: str) -> struct.Struct:
+    """Makes the bytes of a record of its numbers, of which the integers `unsigned` are from 0 to 2^64 - 1."""
+    codes = {np.dtype(np.float64): "d", np.dtype(np.int64): "q"}
+    return struct.Struct("".join("Q" if n in unsigned else codes[kind.TYPE[n]] for n in kind.TYPE.names or ()))
 
 
 def as_integers(of: Rows[Any]) -> IntArray:

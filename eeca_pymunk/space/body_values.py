@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import math
 import struct
+from typing import Any
 
 import pymunk
 
-from ..model.values import DYNAMIC, KINEMATIC, STATIC
+from ..compiled.records import packer
+from ..model.values import DYNAMIC, KINEMATIC, STATIC, BodyValues
 from .private import spaces as private
 
 _KIND = {pymunk.Body.DYNAMIC: DYNAMIC, pymunk.Body.KINEMATIC: KINEMATIC, pymunk.Body.STATIC: STATIC}
-_VALUES = struct.Struct("4q9d2q")  # a `BodyValues`
-# Mass, moment and their inverses; in the bytes they are [_FROM:_TO], the centre of gravity [_TO:_CENTRE], and the kind
+_VALUES = packer(BodyValues)
+_AT: Any = BodyValues.TYPE.fields
+# In the bytes mass, moment and their inverses are [_FROM:_TO], the centre of gravity [_TO:_CENTRE], and the kind
 # [:_KIND_END].
-_MASSES, _KIND_END, _FROM, _TO, _CENTRE = struct.Struct("4d"), 8, 32, 64, 80
+_KIND_END, _FROM, _TO, _CENTRE = (_AT[name][1] for name in ("place", "mass", "centre_x", "x"))
+_MASSES = struct.Struct("4d")
 FIXED = math.inf, math.inf, 0.0, 0.0  # those of static, kinematic and sleeping bodies
 
 

@@ -7,7 +7,6 @@ there are neither, a rehearsal would call no handler.
 from __future__ import annotations
 
 import math
-import struct
 from itertools import chain, product
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +14,7 @@ import numpy as np
 import pymunk
 
 from ..arrays import IntArray
-from ..compiled.records import Rows, from_bytes
+from ..compiled.records import Rows, from_bytes, packer
 from ..layout import BODY_ROW
 from ..model.shapes import HandledShape
 from .edits import type_changes
@@ -28,7 +27,7 @@ if TYPE_CHECKING:
     from .world import World
 
 _MOST = 1024  # pairs; with more of them a test of all in each step saves no time
-_HANDLED = struct.Struct("q12d")  # a `HandledShape`
+_HANDLED = packer(HandledShape)
 _WIDER = 0.01  # part of its size by which a box is wider than the shape, so that round-off hides no pair
 
 

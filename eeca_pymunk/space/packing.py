@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import struct
 from array import array
 from collections.abc import Collection, Mapping
 from functools import cache, cached_property
@@ -15,12 +14,12 @@ import pymunk
 
 from ..arrays import FloatArray, IntArray
 from ..compiled.layouts import COUNT, Layout, Plan
-from ..compiled.records import Rows
+from ..compiled.records import Rows, packer
 from ..impacts.new_scene import measure_scene
 from ..layout import EXTRA_COLUMNS, HOOKED_TABLES, STATE_COLUMNS
 from ..model.bodies import Body
 from ..model.shapes import Link, Shape
-from ..model.values import CORNERS, STATIC, TOTALS, Reading
+from ..model.values import CORNERS, STATIC, TOTALS, Reading, ShapeValues
 from ..world_rows import read_space, write_rows
 from .bodies import Bodies
 from .body_states import BodyStates
@@ -29,7 +28,7 @@ from .outlines import local_outline
 from .private import shapes as private_shapes
 
 _WORD = (1 << 64) - 1  # of a filter's numbers the lowest 64 bits are packed, which suffice for equality and `&`
-_VALUES = struct.Struct("2q3Q5d2q")  # a `ShapeValues`
+_VALUES = packer(ShapeValues, "group", "categories", "mask")
 _POINT = 16  # bytes of a row of POINT
 
 

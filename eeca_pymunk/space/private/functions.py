@@ -10,8 +10,8 @@ from pymunk._chipmunk_cffi import ffi, lib
 
 OF_LIBRARY = (
     "cpBodyGetVelocity", "cpBodySetVelocity", "cpBodyGetAngularVelocity", "cpBodySetAngularVelocity",
-    "cpBodySetVelocityUpdateFunc", "cpBodySetPositionUpdateFunc", "cpBodyUpdateVelocity", "ext_cpBodyVelocityFunc",
-    "ext_cpBodyPositionFunc",
+    "cpBodySetVelocityUpdateFunc", "cpBodySetPositionUpdateFunc", "cpBodyUpdateVelocity", "cpBodyUpdatePosition",
+    "ext_cpBodyVelocityFunc", "ext_cpBodyPositionFunc",
 )  # fmt: skip
 # Chipmunk's own velocity and position functions.
 _ACCELERATE, _MOVE = ffi.addressof(lib, "cpBodyUpdateVelocity"), ffi.addressof(lib, "cpBodyUpdatePosition")
