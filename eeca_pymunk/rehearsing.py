@@ -9,12 +9,10 @@ from . import layout, transfer
 from .arrays import FloatArray, IntArray
 from .compiled import Table, kernel, nonallocating
 from .compiled.records import Rows
+from .model.parameters.detection import REHEARSAL_NEAR, REHEARSAL_SHIFT
 from .model.shapes import HandledShape
 from .model.step import FORCES, MOVED_STATIC, NOT_FINITE, OTHER_BODIES, OVERFLOW, TURNS
 from .model.values import Reading, reading_of
-
-NEAR_WAYS = 2.0  # pairs are near if they may meet within so many times their ways of this step
-SUPPORT_SHIFT = 1e-7  # part of its height by which a body is moved towards its support in a rehearsal
 
 
 @nonallocating
@@ -128,7 +126,7 @@ def put_handled(R: Reading, HANDLED: Rows[HandledShape], dt: float) -> None:
             box.at_x = x + way_x + box.cos * box.x - box.sin * box.y
             box.at_y = y + way_y + box.sin * box.x + box.cos * box.y
             turn = abs(after - now[i, 2])
-            box.reach = box.rounding + NEAR_WAYS * (math.hypot(way_x, way_y) + box.extent * turn)
+            box.reach = box.rounding + REHEARSAL_NEAR * (math.hypot(way_x, way_y) + box.extent * turn)
 
 
 @nonallocating
@@ -165,8 +163,8 @@ def place_for_rehearsal(
     a is that of forces and gravity, v the velocity.
 
     Bodies at rest on each other have a gap of 0 up to round-off; pymunk, in whose steps they overlap, would begin and
-    end such contacts at random. Therefore each body is moved along gravity by SUPPORT_SHIFT times its height above the
-    lowest one.
+    end such contacts at random. Therefore each body is moved along gravity by REHEARSAL_SHIFT times its height above
+    the lowest one.
 
     Returns:
         1 if one of PAIRS is near at the end of free flight (`any_near`), else 0; a negative code of `copy_read`, or
@@ -202,7 +200,7 @@ def place_for_rehearsal(
             turned = angle + dt * (damped * spin + 0.5 * dt * twist)
             if not transfer.finite(px, py, turned, 0.0, 0.0, 0.0):
                 return OVERFLOW
-            way = SUPPORT_SHIFT * (deepest - (x * down_x + y * down_y)) if moves and pull > 0.0 else 0.0
+            way = REHEARSAL_SHIFT * (deepest - (x * down_x + y * down_y)) if moves and pull > 0.0 else 0.0
             x, y, angle = px - dt * vx + way * down_x, py - dt * vy + way * down_y, turned - dt * spin
             if special & layout.ECCENTRIC:
                 dx, dy = transfer.to_centre(EXTRA, i, angle)

@@ -6,7 +6,7 @@ group wake, and the step is repeated from its start with them awake: no body bou
 Bodies fall asleep by `body.sleep()`, or as a group of bodies that touch or are jointed, all of which have been at rest
 for `space.sleep_time_threshold`. A body counts as at rest if, at both ends of a step, no force of the program acts and
 
-    |v|, |spin| size <= REST_RATIO |g| dt     and     |x - x0| <= REST_RATIO |g| dt^2 + round-off,
+    |v|, |spin| size <= SLEEP_SPEED |g| dt     and     |x - x0| <= SLEEP_SPEED |g| dt^2 + round-off,
 
 where velocities may have the round-off of the fastest body, x0 is the position at the start, and size the extent of the
 body. Then the impulses of contacts and joints, which obey their laws, balance gravity to that accuracy: the body is in
@@ -29,6 +29,7 @@ from ..arrays import BoolArray, FloatArray, IntArray
 from ..compiled.records import over
 from ..layout import BODY_ROW
 from ..model.contacts import Impulse
+from ..model.parameters.rest import SLEEP_PATIENCE, SLEEP_RETRY, SLEEP_SHARE, SLEEP_SPEED
 from ..report import Contacts
 from ..sleepers import approaches, rests, touches_sleeper
 from .private import shapes as private_shapes
@@ -40,11 +41,7 @@ if TYPE_CHECKING:
     from .sync import Sync
     from .world import World
 
-REST_RATIO = 1e-6  # in the criterion above
-_AGAIN = 16  # steps from one search for groups that may fall asleep to the next
-# Groups fall asleep at once if they are at least 1/_SHARE of the bodies awake; else _PATIENCE steps after the last one.
-_SHARE, _PATIENCE = 8, 120
-AT_FIRST: IntArray = np.array([0, _PATIENCE])  # `timers` of a new Sleep
+AT_FIRST: IntArray = np.array([0, SLEEP_PATIENCE])  # `timers` of a new Sleep
 
 
 class Sleep:
@@ -224,7 +221,7 @@ class Sleep:
         """Update the times at rest after a step; returns whether any body may fall asleep."""
         # The sum of dt may be less than the threshold by round-off.
         need = self.space.sleep_time_threshold * (1.0 - 1e-9)
-        ready = self._rests(REST_RATIO * math.hypot(*self.world.gravity) * dt, dt, need)
+        ready = self._rests(SLEEP_SPEED * math.hypot(*self.world.gravity) * dt, dt, need)
         self._wait = max(self._wait - 1, 0)
         self._since += 1
         return self._wait == 0 and ready == 1
@@ -233,9 +230,9 @@ class Sleep:
         """Put groups to sleep all of whose bodies have been at rest for long enough, unless something would wake them
         in a step of length dt."""
         bodies, joints = self.world.bodies, self.world.joints
-        self._wait = _AGAIN
+        self._wait = SLEEP_RETRY
         # After bodies have fallen asleep the world is read again and contact forces are lost, so small groups wait.
-        enough = np.count_nonzero(bodies.dynamic) / _SHARE if self._since < _PATIENCE else 0.0
+        enough = np.count_nonzero(bodies.dynamic) / SLEEP_SHARE if self._since < SLEEP_PATIENCE else 0.0
         if np.count_nonzero(self._ready) < enough:
             return
         jointed = () if joints is None else joints.pairs.values()

@@ -1,4 +1,4 @@
-"""Rest: what is tested for static forces, when, and with how much work."""
+"""Rest: what is tested for static forces, when, and with how much work; when bodies fall asleep."""
 
 from __future__ import annotations
 
@@ -26,3 +26,8 @@ MOVING_SHARE = heuristic(0.1, "of the bodies",
     "Part of an island, or one body, that may move while the rest of it is at rest, as a disk on a plank.")
 PARTIAL_REST_FACTORS_STEP = work(8, "factorisations",
     "Factorisations of a freeze after which its island is not tested for partial rest in the step.")
+SLEEP_SPEED = accuracy(1e-06, "of |g| dt", "Speed of a body that counts as at rest and may fall asleep.")
+SLEEP_RETRY = work(16, "steps", "Steps from one search for groups that may fall asleep to the next.")
+SLEEP_SHARE = work(8, "parts of the bodies awake", "A group of one such part or more falls asleep at once.")
+SLEEP_PATIENCE = work(120, "steps",
+    "Steps after which smaller groups fall asleep: the space is then read again, and forces of contacts are lost.")
