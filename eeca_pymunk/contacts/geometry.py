@@ -13,12 +13,12 @@ angular momentum: there the points of the pair are displaced by the mean of the 
 
 from __future__ import annotations
 
-import numpy as np
-
 from ..arrays import FloatArray
 from ..compiled import kernel
+from ..compiled.records import empty
 from ..geometry.manifold import manifold
 from ..geometry.sides import note_side
+from ..model.contacts import CONTACT_POINT
 from ..model.islands import Island, IslandContacts
 from ..model.parameters.intervals import INTERVAL_WAY, MANIFOLD_ROUND_OFF, MIDPOINT_SAME
 from ..model.scene import Scene
@@ -44,7 +44,7 @@ def gather_contacts(
     """
     SHAPE, LINK = A.SHAPE, A.LINK
     POSE, PAIRS, ROWS = isle.POSE, isle.PAIRS, contacts.ROWS
-    NOW, THEN = np.empty((2, 5)), np.empty((2, 5))  # (n_x, n_y, p_x, p_y, g) of up to two points
+    NOW, THEN = empty(2, CONTACT_POINT), empty(2, CONTACT_POINT)
     m, half = 0, 0.5 * h
     for c in range(len(PAIRS)):
         s, r, a, b = PAIRS[c, 0], PAIRS[c, 1], PAIRS[c, 2], PAIRS[c, 3]
@@ -55,7 +55,7 @@ def gather_contacts(
         count = manifold(A, s, r, POSE, a, b, reach, MANIFOLD_ROUND_OFF * small, NOW)
         if count == 0:
             continue
-        note_side(A, s, r, NOW[0, 0], NOW[0, 1], True)
+        note_side(A, s, r, NOW[0].nx, NOW[0].ny, True)
         # How far points of both bodies move against each other in h/2; about: in the frame of a wall that turns.
         way = half * way_about(isle, a, b, 0.0)
         w = spin_of_wall(isle, a, b)
@@ -77,18 +77,17 @@ def gather_contacts(
                 x = 0.5 * (MIDDLE[a, 0] - POSE[a, 0] + MIDDLE[b, 0] - POSE[b, 0])
                 y = 0.5 * (MIDDLE[a, 1] - POSE[a, 1] + MIDDLE[b, 1] - POSE[b, 1])
             for z in range(count):
-                for q in range(5):
-                    THEN[z, q] = NOW[z, q]
-                THEN[z, 2] += x
-                THEN[z, 3] += y
+                THEN[z] = NOW[z]
+                THEN[z].px += x
+                THEN[z].py += y
         elasticity, friction, sx, sy = law(A, s, r)
         for z in range(count):
             i = m + z
             row = ROWS[i]
             row.a, row.b, row.key = a, b, key_of(A, s, r) + z
-            row.nx, row.ny, row.gap = THEN[z, 0], THEN[z, 1], NOW[z, 4]
+            row.nx, row.ny, row.gap = THEN[z].nx, THEN[z].ny, NOW[z].gap
             row.elasticity, row.friction, row.surface = elasticity, friction, 0.0
-            place_row(row, THEN[z, 2], THEN[z, 3], centre, isle.IM, isle.II)
+            place_row(row, THEN[z].px, THEN[z].py, centre, isle.IM, isle.II)
             row.surface = row.nx * sy - row.ny * sx
         if ahead and w != 0.0:
             edge = LINK[s if isle.IM[a] == 0.0 else r].vertices > 1

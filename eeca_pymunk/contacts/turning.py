@@ -20,7 +20,7 @@ import math
 from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..compiled.records import Rows
-from ..model.contacts import Row
+from ..model.contacts import ContactPoint, Row
 from ..model.islands import Island
 from ..rows.build import normal_rate
 
@@ -73,10 +73,12 @@ def carried_along(isle: Island, row: Row, w: float, h: float) -> tuple[float, fl
 
 
 @nonallocating
-def follow_rotation(isle: Island, ROWS: Rows[Row], first: int, count: int, NOW: FloatArray, w: float, h: float) -> None:
+def follow_rotation(
+    isle: Island, ROWS: Rows[Row], first: int, count: int, NOW: Rows[ContactPoint], w: float, h: float
+) -> None:
     """Set what the rotation of a wall changes in `count` rows from `first` on: `turned`, `surface`, `swung`, `unsure`.
 
-    NOW: (2, 5) normal, point and gap of each at the start of the interval.
+    NOW: (2,) their points at the start of the interval.
     w: the spin of the wall.  h: 0 if that is a disk, whose spin does not turn the tangent.
     """
     POSE, V, a, b = isle.POSE, isle.V, ROWS[first].a, ROWS[first].b
@@ -85,7 +87,7 @@ def follow_rotation(isle: Island, ROWS: Rows[Row], first: int, count: int, NOW: 
         swing, counted, unsure = carried_along(isle, ROWS[first], w, h)
     for z in range(count):
         row = ROWS[first + z]
-        u = gap_rate(POSE, V, a, b, NOW[z, 0], NOW[z, 1], NOW[z, 2], NOW[z, 3])
+        u = gap_rate(POSE, V, a, b, NOW[z].nx, NOW[z].ny, NOW[z].px, NOW[z].py)
         row.turned = max(u - normal_rate(row, V), 0.0)
         row.surface -= counted
         row.swung, row.unsure = 0.5 * swing, unsure

@@ -2,9 +2,8 @@
 
 The reference face is the edge along which the cores are farthest apart. The edge of the other core that is most opposed
 to it is clipped to its length, along the tangent; both ends of the remaining part are contacts, with heights above the
-reference as gaps. Rows are (n_x, n_y, p_x, p_y, g), normals from a to b, points halfway between the surfaces, in the
-order of p . t with t = (-n_y, n_x): the key "pair and index of the row" remains valid while the shapes stay on each
-other.
+reference as gaps. Rows are in the order of p . t with t = (-n_y, n_x): the key "pair and index of the row" remains
+valid while the shapes stay on each other.
 """
 
 from __future__ import annotations
@@ -13,6 +12,8 @@ import math
 
 from ..arrays import FloatArray
 from ..compiled import nonallocating
+from ..compiled.records import Rows
+from ..model.contacts import ContactPoint
 from ..model.parameters.detection import FACE_WIDTH
 from ..model.scene import Scene
 from .convex import place_vertices, prefers_second
@@ -23,7 +24,7 @@ from .sides import closest_on_side
 @nonallocating
 def clip(
     P: FloatArray, p: int, edge: int, Q: FloatArray, q: int, r_p: float, r_q: float, sign: float, reach: float,
-    OUT: FloatArray,
+    OUT: Rows[ContactPoint],
 ) -> int:  # fmt: skip
     """Write the contact points on an edge of P as reference face to OUT; returns their number. r_p, r_q: roundings.
     sign: 1 if the normal from a to b is P's, else -1."""
@@ -63,26 +64,26 @@ def clip(
         g = h - r_p - r_q
         if g <= reach:
             away = r_p + 0.5 * g
-            OUT[count, 0], OUT[count, 1] = sign * nx, sign * ny
-            OUT[count, 2], OUT[count, 3] = x + u * tx + away * nx, y + u * ty + away * ny
-            OUT[count, 4] = g
+            point = OUT[count]
+            point.nx, point.ny, point.gap = sign * nx, sign * ny, g
+            point.px, point.py = x + u * tx + away * nx, y + u * ty + away * ny
             count += 1
     return count
 
 
 @nonallocating
-def reverse(OUT: FloatArray, count: int) -> None:
+def reverse(OUT: Rows[ContactPoint], count: int) -> None:
     """Exchange the two shapes of `count` rows: reverse normals, and with them the order along the tangent."""
     for k in range(count):
-        OUT[k, 0], OUT[k, 1] = -OUT[k, 0], -OUT[k, 1]
-    if count == 2:
-        for c in range(5):
-            OUT[0, c], OUT[1, c] = OUT[1, c], OUT[0, c]
+        OUT[k].nx, OUT[k].ny = -OUT[k].nx, -OUT[k].ny
+    if count == 2:  # with the same normal
+        one, two = OUT[0], OUT[1]
+        one.px, one.py, one.gap, two.px, two.py, two.gap = two.px, two.py, two.gap, one.px, one.py, one.gap
 
 
 @nonallocating
 def ordered_manifold(
-    A: Scene, s: int, r: int, POSE: FloatArray, a: int, b: int, reach: float, tolerance: float, OUT: FloatArray
+    A: Scene, s: int, r: int, POSE: FloatArray, a: int, b: int, reach: float, tolerance: float, OUT: Rows[ContactPoint]
 ) -> int:
     """`manifold` of shapes in the order of their numbers."""
     LINK, P, Q = A.LINK, A.CORE[0], A.CORE[1]
@@ -90,7 +91,7 @@ def ordered_manifold(
     x_a, y_a, angle_a, x_b, y_b, angle_b = POSE[a, 0], POSE[a, 1], POSE[a, 2], POSE[b, 0], POSE[b, 1], POSE[b, 2]
     if LINK[s].vertices == 1 or LINK[r].vertices == 1:
         g, nx, ny, px, py = ordered_gap(A, s, x_a, y_a, angle_a, r, x_b, y_b, angle_b)
-        OUT[0, 0], OUT[0, 1], OUT[0, 2], OUT[0, 3], OUT[0, 4] = nx, ny, px, py, g
+        OUT[0].nx, OUT[0].ny, OUT[0].px, OUT[0].py, OUT[0].gap = nx, ny, px, py, g
         return 1 if g <= reach else 0
     p = place_vertices(A, s, x_a, y_a, angle_a, P)
     q = place_vertices(A, r, x_b, y_b, angle_b, Q)
@@ -100,8 +101,8 @@ def ordered_manifold(
         return 0
     if not near.flat and near.distance > max(faces.apart_p, faces.apart_q) + tolerance:  # two corners
         away = r_s + 0.5 * g
-        OUT[0, 0], OUT[0, 1], OUT[0, 4] = near.nx, near.ny, g
-        OUT[0, 2], OUT[0, 3] = near.x + away * near.nx, near.y + away * near.ny
+        OUT[0].nx, OUT[0].ny, OUT[0].gap = near.nx, near.ny, g
+        OUT[0].px, OUT[0].py = near.x + away * near.nx, near.y + away * near.ny
         return 1
     if prefers_second(P, p, Q, q, faces, tolerance):
         return clip(Q, q, faces.edge_q, P, p, r_r, r_s, -1.0, reach, OUT)
@@ -110,16 +111,16 @@ def ordered_manifold(
 
 @nonallocating
 def manifold(
-    A: Scene, s: int, r: int, POSE: FloatArray, a: int, b: int, reach: float, tolerance: float, OUT: FloatArray
+    A: Scene, s: int, r: int, POSE: FloatArray, a: int, b: int, reach: float, tolerance: float, OUT: Rows[ContactPoint]
 ) -> int:
-    """Write the points at which shapes s and r are no farther apart than `reach` (length) to OUT (2, 5); returns their
+    """Write the points at which shapes s and r are no farther apart than `reach` (length) to OUT (2,); returns their
     number, 0, 1 or 2.
 
     Args:
         POSE: (k, 3) x, y and angle; rows a and b are those of the bodies of s and r.
         tolerance: length, by which the shapes may be less far apart along the longer of two reference faces, and by
             which two corners must be farther apart than the faces beside them to be a contact of their own.
-        OUT: rows (n_x, n_y, p_x, p_y, g), normals from s to r, the gap along the reference face's normal.
+        OUT: normals from s to r, the gap along the reference face's normal.
     """
     if s <= r:
         return ordered_manifold(A, s, r, POSE, a, b, reach, tolerance, OUT)
@@ -164,7 +165,9 @@ def face_points(
 
 
 @nonallocating
-def face(A: Scene, s: int, r: int, POSE: FloatArray, a: int, b: int, tolerance: float, OUT: FloatArray) -> int:
+def face(
+    A: Scene, s: int, r: int, POSE: FloatArray, a: int, b: int, tolerance: float, OUT: Rows[ContactPoint]
+) -> int:
     """Write the contact of shapes s and r that meet to OUT, as `manifold` does: 2 rows, the ends of their common face,
     if both have an edge normal to n within `tolerance` (length), else 1. The gap is the same at both ends.
 
@@ -174,9 +177,9 @@ def face(A: Scene, s: int, r: int, POSE: FloatArray, a: int, b: int, tolerance: 
     if swapped:
         s, r, a, b = r, s, b, a
     g, nx, ny, px, py = ordered_gap(A, s, POSE[a, 0], POSE[a, 1], POSE[a, 2], r, POSE[b, 0], POSE[b, 1], POSE[b, 2])
-    count, OUT[0, 2], OUT[0, 3], OUT[1, 2], OUT[1, 3] = face_points(A, s, r, g, nx, ny, px, py, tolerance)
+    count, OUT[0].px, OUT[0].py, OUT[1].px, OUT[1].py = face_points(A, s, r, g, nx, ny, px, py, tolerance)
     for k in range(count):
-        OUT[k, 0], OUT[k, 1], OUT[k, 4] = nx, ny, g
+        OUT[k].nx, OUT[k].ny, OUT[k].gap = nx, ny, g
     if swapped:
         reverse(OUT, count)
     return count

@@ -21,7 +21,7 @@ from ..geometry.manifold import face
 from ..geometry.sides import note_side, pair_of, shapes_of_pair
 from ..islands.accounting import end_interval
 from ..islands.membership import budget_spent, fixed_support, in_large_island, remembered_force
-from ..model.contacts import ROW, Row
+from ..model.contacts import CONTACT_POINT, ROW, Row
 from ..model.parameters.impulses import BLOCK_BODIES
 from ..model.scene import Scene
 from ..pairs.rules import barred, face_tolerance, law
@@ -163,7 +163,7 @@ def make_block(A: Scene, n: int, m: int, PAIRS: IntArray, hit: int, lasts: bool,
         V[q, 0], V[q, 1], V[q, 2] = BODY[i].vx, BODY[i].vy, BODY[i].spin
         IMS[q], IIS[q] = BODY[i].inv_mass, BODY[i].inv_inertia
     ROWS, POINTS = empty(2 * m, ROW), np.empty((2 * m, 2))
-    found = np.empty((2, 5))
+    found = empty(2, CONTACT_POINT)
     rows, place = 0, n
     for z in range(m):
         sa, sb = shapes_of_pair(k, PAIRS[z])
@@ -183,18 +183,18 @@ def make_block(A: Scene, n: int, m: int, PAIRS: IntArray, hit: int, lasts: bool,
         load = remembered_force(A, sa, sb, A.PAR.stamp - 1.0)[1]
         count = face(A, sa, sb, POSE, p, q, face_tolerance(A, sa, sb), found)
         if count > 0:
-            note_side(A, sa, sb, found[0, 0], found[0, 1], True)
+            note_side(A, sa, sb, found[0].nx, found[0].ny, True)
         for c in range(count):
-            nx, ny = found[c, 0], found[c, 1]
-            row = ROWS[rows]
+            row, point = ROWS[rows], found[c]
+            nx, ny = point.nx, point.ny
             row.a, row.b, row.key = p, q, (PAIRS[z] << 1) + c
-            row.nx, row.ny, row.gap, row.elasticity, row.friction = nx, ny, found[c, 4], e, mu
+            row.nx, row.ny, row.gap, row.elasticity, row.friction = nx, ny, point.gap, e, mu
             row.surface = nx * sy - ny * sx
-            place_row(row, found[c, 2], found[c, 3], POSE, IMS, IIS)
+            place_row(row, point.px, point.py, POSE, IMS, IIS)
             u = normal_rate(row, V)
             if e < 1.0 and hardly_bounces(e, u, load * A.PAR.dt / row.k_n):
                 # The contact persists: its bounce would end within a time dt.
                 row.elasticity = 0.0
-            POINTS[rows, 0], POINTS[rows, 1] = found[c, 2], found[c, 3]
+            POINTS[rows, 0], POINTS[rows, 1] = point.px, point.py
             rows += 1
     return Block(POSE, V, IMS, IIS, ROWS[:rows], POINTS[:rows])

@@ -25,6 +25,16 @@ class Impulse(Record):
     duration: float  # time over which a constant force acted, centred at `when`; 0 for an impact
 
 
+class ContactPoint(Record):
+    """A contact point of two shapes, see `..geometry.manifold`."""
+
+    nx: float  # unit normal from one shape to the other
+    ny: float
+    px: float  # point halfway between their surfaces: length
+    py: float
+    gap: float  # length
+
+
 class Pair(Record):
     """The shapes of a contact of an island's present interval, a row of PUSHED_BY; row c of PUSHED has its impulses."""
 
@@ -206,4 +216,4 @@ class Edge(Record):
     ds: float  # Newton step of s
 
 
-ROW, SOLVED, EDGE = kind_of(Row), kind_of(Solved), kind_of(Edge)
+ROW, SOLVED, EDGE, CONTACT_POINT = kind_of(Row), kind_of(Solved), kind_of(Edge), kind_of(ContactPoint)

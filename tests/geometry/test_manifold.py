@@ -11,6 +11,7 @@ from eeca_pymunk.compiled.records import columns
 from eeca_pymunk.geometry.gap import gap
 from eeca_pymunk.geometry.manifold import face, manifold
 from eeca_pymunk.model.bodies import POSE
+from eeca_pymunk.model.contacts import ContactPoint
 from tests.packed import Thing, World, box, disk, hull
 
 UNITS = [1e-3, 1.0, 1e3]
@@ -18,13 +19,15 @@ UNITS = [1e-3, 1.0, 1e3]
 
 def rows(world: World, a: int, b: int, reach: float, tolerance: float = 1e-9) -> np.ndarray:
     """The rows of `manifold`, bodies where their paths start; shape numbers are body numbers."""
-    out = np.zeros((2, 5))
-    return out[: manifold(world.scene, a, b, columns(world.body, *POSE), a, b, reach, tolerance, out)]
+    out = np.zeros(2, ContactPoint.TYPE)
+    count = manifold(world.scene, a, b, columns(world.body, *POSE), a, b, reach, tolerance, out)
+    return out.view(float).reshape(2, 5)[:count]
 
 
 def common(world: World, a: int, b: int, tolerance: float) -> np.ndarray:
-    out = np.zeros((2, 5))
-    return out[: face(world.scene, a, b, columns(world.body, *POSE), a, b, tolerance, out)]
+    out = np.zeros(2, ContactPoint.TYPE)
+    count = face(world.scene, a, b, columns(world.body, *POSE), a, b, tolerance, out)
+    return out.view(float).reshape(2, 5)[:count]
 
 
 @pytest.mark.parametrize("unit", UNITS)
