@@ -12,6 +12,7 @@ from ..model.joint_steps import LINEAR_STEP, STEP
 from ..model.joints import BOUNDED, CONDENSED, DUAL, Coupling, Workspace
 from ..model.parameters.joints import (
     CONDENSED_PASSES,
+    ELASTIC_ROUND_OFF,
     JOINT_ROUND_OFF,
     JOINT_ROUND_OFF_KEPT,
     JOINT_TOLERANCE,
@@ -19,6 +20,7 @@ from ..model.parameters.joints import (
     NEWTON_ITERATIONS,
     NEWTON_PROGRESS,
     REDUNDANT_EPSILON,
+    SPACING,
 )
 from .boxes import bound_impulses, boxed_rows, rows_of, unit_impulse
 from .dual import STRIDE, refresh
@@ -78,6 +80,25 @@ def iterate(W: Workspace, what: int, system: int, passes: int, boxes: int, h: fl
 
 
 @nonallocating
+def round_off_of_impulses(W: Workspace, h: float, length: float) -> float:
+    """The round-off that the impulses of all joints leave in the balance of momentum, as `systems.balance` measures it:
+    the way in h that the sum of their magnitudes would move a body, times the spacing of numbers; the largest one."""
+    local, hinge, link, worst = W.J.LOCAL, W.J.HINGE, W.link, 0.0
+    for i in range(W.bodies):
+        for c in range(local[i].freedoms):
+            total = 0.0
+            one = local[i].first
+            while one >= 0:
+                k, end = one >> 1, one & 1
+                for r in range(link[k].rows):
+                    total += abs(hinge[k].lam[r] * hinge[k].rows[r, 3 * end + c])
+                one = link[k].following[end]
+            way = total * local[i].mobility[c] * abs(h)
+            worst = max(worst, way / length if c < 2 else way)
+    return SPACING * worst
+
+
+@nonallocating
 def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bool:
     """Solve the implicit step h of a component of size `length` from the present `lam` and `lead`, for v1 and `lam`.
 
@@ -90,6 +111,9 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
     | kept | yes, yes | of an earlier iteration or part of the step | kept; new if `slow`: errors fall too little |
     | new | yes, no | computed now (`fresh`) | kept; full if `slow` |
     | full | no, no | computed now, of `component.system` | full |
+
+    Impulses of elastic joints that contradict one another are as large as they are stiff, and cancel but for round-off:
+    at this error the solve ends, and it fails if that is more than ELASTIC_ROUND_OFF, as joints have to be softer.
 
     It begins kept if the component has factors, full if bounded rows are in the matrix, which change it in each
     iteration, else new. Entering full, redundant rows begin again without impulses.
@@ -112,6 +136,11 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
         worst = linearise(W, STEP, h, length, give, False, system, built)
         floor = JOINT_ROUND_OFF_KEPT if lasting else NEWTON_FLOOR if stalls > 1 else JOINT_ROUND_OFF
         at_floor = iteration > since + 1 and 0.5 * best < worst < floor
+        if give > 0.0 and iteration > 1:
+            left = round_off_of_impulses(W, h, length)
+            if worst <= left and left > ELASTIC_ROUND_OFF:
+                return False
+            at_floor = at_floor or worst <= left
         if iteration > 0 and (worst <= max(JOINT_TOLERANCE, progress.near) or at_floor):
             # A wide matrix is expensive to factor: the parts of a step share one while errors fall with it.
             component.factored = 1 if ready and system == CONDENSED and boxes == 0 else 0
@@ -140,7 +169,9 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
         if fresh:
             if not built:
                 linearise(W, STEP, h, length, give, False, system, True)
-            epsilon = max(REDUNDANT_EPSILON, min(progress.most_epsilon, worst)) if loops else 0.0
+            # Compliance makes rows independent; a term beside it would divide errors only by 1 + give/epsilon.
+            added = loops and not give > 0.0
+            epsilon = max(REDUNDANT_EPSILON, min(progress.most_epsilon, worst)) if added else 0.0
             system = factorise(W, STEP, h, length, give, system, epsilon)
             if system < 0:
                 return False

@@ -9,10 +9,11 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk.jointed.alone import begin_alone
-from eeca_pymunk.joints import ladder
+from eeca_pymunk.joints import ladder, limits
 from eeca_pymunk.joints.ladder import ELASTIC_RUNG, ORDER_4, WHOLE_STEP
 from eeca_pymunk.model.joint_steps import ELASTIC, HALVED
 from eeca_pymunk.model.joints import EDITED
+from eeca_pymunk.newton import solve as solve_of_newton
 
 STEP = 1 / 60
 
@@ -67,6 +68,39 @@ def test_joints_that_contradict_one_another_become_elastic_at_once(
     assert status >= ELASTIC
     # Order 4 is given up before the limit, which it must not meet.
     assert [rung for rung in tried if rung < ELASTIC_RUNG] == ([ORDER_4, WHOLE_STEP] if other is limit else [ORDER_4])
+
+
+@pytest.mark.parametrize("off", [0.6, 1e-3, 1e-6])
+def test_elastic_joints_that_contradict_one_another_are_solved_to_round_off(
+    monkeypatch: pytest.MonkeyPatch, off: float
+) -> None:
+    """A linear problem but for the arc that bodies turn: Newton's method ends after a few iterations, at the round-off
+    of impulses that cancel, and momentum holds to a small part of the size."""
+    A, J = two_bodies(gear, gear)
+    J.JOINT[2].phase, J.JOINT[2].touched = off, EDITED
+    A.BODY[0].spin, A.BODY[1].vx = 1.0, 0.5
+    solutions: list[int] = []
+
+    def solve(W: Any, h: float, length: float, loops: bool, give: float) -> bool:
+        before = len(iterations)
+        done = bool(solved(W, h, length, loops, give))
+        if give > 0.0:
+            solutions.append(len(iterations) - before)
+        return done
+
+    def iterate(*arguments: Any) -> None:
+        iterations.append(0)
+        iterated(*arguments)
+
+    iterations: list[int] = []
+    solved, iterated = limits.solve, solve_of_newton.iterate
+    monkeypatch.setattr(limits, "solve", solve)
+    monkeypatch.setattr(solve_of_newton, "iterate", iterate)
+    momentum = A.BODY[0].vx + A.BODY[1].vx
+    _, status = rungs_of(monkeypatch, A, J, STEP)
+    assert status in (ELASTIC, HALVED)
+    assert max(solutions) <= 6
+    assert J.LOCAL[0].v0[0] + J.LOCAL[1].v0[0] == pytest.approx(momentum, rel=1e-12)
 
 
 @pytest.mark.parametrize(("spins", "h", "last"), [((20.0, -30.0), 0.07, 1), ((10.0, 20.0), 0.05, 2)])

@@ -45,6 +45,9 @@ NEWTON_PROGRESS = work(0.03, "ratio of errors",
     "Progress of an iteration with earlier factors below which they are computed again; it ends at JOINT_TOLERANCE "
     "with either.")
 NEWTON_FLOOR = round_off(1e-11, "of the component", "Error below which one that has not fallen twice is round-off.")
+ELASTIC_ROUND_OFF = round_off(1e-12, "of the component",
+    "Error by round-off of the impulses of elastic joints above which these have to be softer.")
+SPACING = round_off(2.2e-16, "of a number", "Spacing of floating-point numbers.")
 NEWTON_ITERATIONS = work(25, "iterations", "Newton iterations of a step, at most.")
 REDUNDANT_EPSILON = round_off(1e-10, "of the diagonal", "Term added to the diagonal for rows that may be redundant.")
 REDUNDANT_MOST = work(0.01, "of the diagonal",
