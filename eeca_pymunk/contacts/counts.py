@@ -36,7 +36,7 @@ def looks_of(contacts: int, out: Solved) -> float:
 def spend(A: Scene, bodies: int, pairs: int, solve: float) -> None:
     """Add the work of an interval, or of an impact, to that of the step: of so many bodies, of pairs of its geometry,
     and of its solve."""
-    A.COUNT.work += EVENT_LOOKS + int(BODY_LOOKS * bodies + PAIR_LOOKS * pairs + solve)
+    A.COUNT.work += EVENT_LOOKS + BODY_LOOKS * bodies + PAIR_LOOKS * pairs + solve
 
 
 @nonallocating

@@ -75,12 +75,12 @@ def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
     own, other = (A.STATE[i].own, A.STATE[i].other) if met else (-1, -1)
     if not met and A.STATE[i].shapes > 0:
         own = A.STATE[i].first_shape
-    note_unmet(A, SOLVES, own, other, float(A.COUNT.work), most_work(A))
+    note_unmet(A, SOLVES, own, other, A.COUNT.work, most_work(A))
     A.PAR.dt = t
     A.COUNT.heap = 0
     if J.TALLY.components > 0:
         # The shortened intervals are solved again below, beyond the budget that is spent, of events or of joints.
-        A.COUNT.work, J.PROGRESS.budget = 0, J.PROGRESS.effort + CUT_WORK
+        A.COUNT.work, J.PROGRESS.budget = 0.0, J.PROGRESS.effort + CUT_WORK
     # Impacts of jointed bodies come later than predicted, or earlier (`..jointed.meet`), so that bodies may have been
     # brought beyond t. Islands in an interval go back to t on its path; bodies of ended intervals, and others that are
     # beyond t, count as there at t.

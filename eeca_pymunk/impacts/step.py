@@ -70,7 +70,7 @@ def act(A: Scene, J: Joints) -> int:
             return PUSHES_FULL
         COUNT.phase = 1
         predict_due(A)
-        COUNT.work = 0  # the start of a step does not count
+        COUNT.work = 0.0  # the start of a step does not count
     if COUNT.phase == 1:
         status = process_events(A, J, COUNT.lossy > 0 or A.PAR.pulled > 0.0)
         if status != DONE:

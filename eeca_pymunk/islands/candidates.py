@@ -93,7 +93,7 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                     found = more
                 found[p, 0], found[p, 1] = s, o
                 p += 1
-    A.COUNT.work += int(PAIR_LOOKS * max(gaps - p, 0))  # that of the others is part of their solve
+    A.COUNT.work += PAIR_LOOKS * max(gaps - p, 0)  # that of the others is part of their solve
     return found[:p]
 
 

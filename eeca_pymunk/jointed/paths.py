@@ -41,7 +41,7 @@ def passes_through(A: Scene, root: int, t: float) -> float:
     while i >= 0:
         for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
             # Near lists are looked through as in a prediction.
-            A.COUNT.work += int(ENTRY_LOOKS * A.LIST[s].number)
+            A.COUNT.work += ENTRY_LOOKS * A.LIST[s].number
             for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
                 o = int(A.POOL[w])
                 twice = o < s and A.STATE[A.LINK[o].owner].island == A.STATE[i].island  # in the list of o, too

@@ -40,7 +40,7 @@ class Count(Record):
     unmet: int  # number of budgets and tolerances that the step has not met
     closing: int  # 1 if bodies that impulses do not move may move relative to each other, and squeeze others
     budget: int  # largest work of the events of a step no longer than `BUDGET_TIME`, in looks
-    work: int  # work of the events so far, in looks: evaluations of a gap in the search for an impact
+    work: float  # work of the events so far, in looks: evaluations of a gap in the search for an impact
     event_body: int  # body of the event at which the event loop has stopped
     room: int  # rows of LOG that the impact needs which is to be repeated with more memory
     pushes: int  # rows of PUSHED in use: contacts of intervals

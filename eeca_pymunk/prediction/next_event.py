@@ -118,7 +118,7 @@ def predict(A: Scene, i: int, now: float, end: float, until: float) -> None:
             t, certain = time_of_impact(A, s, o, min(horizon, horizon_of(A, LINK[o].owner, end)))
             if t < best or (t == best and other >= 0 and (s < own or (s == own and o < other))):
                 best, own, other = t, s, (o if certain else CHECK)
-    A.COUNT.work += 1 + int(ENTRY_LOOKS * entries) + (STATE[i].shapes - 1) // SHAPES_LOOK
+    A.COUNT.work += 1 + ENTRY_LOOKS * entries + (STATE[i].shapes - 1) / SHAPES_LOOK
     if until < best:
         best, own, other = until, -1, RENEW
     best = max(best, now)
