@@ -91,7 +91,7 @@ def test_pyramid_stands_still() -> None:
 @pytest.mark.parametrize("kind", ["disk", "box"])
 @pytest.mark.parametrize(("e", "mu"), [(0.0, 0.5), (0.3, 0.5), (0.8, 0.1), (1.0, 0.3)])
 def test_heaps_only_lose_energy(kind: str, e: float, mu: float) -> None:
-    pile = heap(kind, 30, e, mu)
+    pile = heap(kind, 20, e, mu)
     energy = pile.energy()
     pile.run(400, 1 / 60)  # disks roll on others for long
     check(pile, energy)

@@ -114,16 +114,15 @@ def test_square_of_four_disks_hit_in_the_middle() -> None:
     assert np.abs(block.after[:4, :2] - points).max() <= 1e-14
 
 
-@pytest.mark.parametrize("e", [0.5, 1.0])
-@pytest.mark.parametrize("mass", [1.0, 1e3])
-def test_a_thousand_contacts_on_one_body(e: float, mass: float) -> None:
-    angle = 2 * np.pi * np.arange(1000) / 1000
-    points = np.concatenate((np.zeros((1, 2)), 1.003 * np.stack((np.cos(angle), np.sin(angle)), axis=1)))
+@pytest.mark.parametrize(("count", "e", "mass"), [(300, 0.5, 1.0), (300, 1.0, 1.0), (300, 1.0, 1e3), (1000, 0.5, 1e3)])
+def test_hundreds_of_contacts_on_one_body(count: int, e: float, mass: float) -> None:
+    angle, radius = 2 * np.pi * np.arange(count) / count, 3.0 / count
+    points = np.concatenate((np.zeros((1, 2)), (1.0 + radius) * np.stack((np.cos(angle), np.sin(angle)), axis=1)))
     rng = np.random.default_rng(5)
     block = Block.disks(
-        points, rng.normal(size=(1001, 2)), np.append(mass, np.ones(1000)), np.append(1.0, np.full(1000, 0.003))
+        points, rng.normal(size=(count + 1, 2)), np.append(mass, np.ones(count)), np.append(1.0, np.full(count, radius))
     )
-    assert len(block.contacts) == 1000
+    assert len(block.contacts) == count
     block.solve(e, 0.0)
     assert block.status == CONVERGED
     check_books(block)
