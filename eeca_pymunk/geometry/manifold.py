@@ -165,9 +165,7 @@ def face_points(
 
 
 @nonallocating
-def face(
-    A: Scene, s: int, r: int, POSE: FloatArray, a: int, b: int, tolerance: float, OUT: Rows[ContactPoint]
-) -> int:
+def face(A: Scene, s: int, r: int, POSE: FloatArray, a: int, b: int, tolerance: float, OUT: Rows[ContactPoint]) -> int:
     """Write the contact of shapes s and r that meet to OUT, as `manifold` does: 2 rows, the ends of their common face,
     if both have an edge normal to n within `tolerance` (length), else 1. The gap is the same at both ends.
 
