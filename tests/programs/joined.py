@@ -84,18 +84,38 @@ def apart(joint: pymunk.Constraint, length: float) -> float:
     return 0.0
 
 
-def reach(joint: pymunk.Constraint) -> float:
-    """The size of the component of a joint, which its errors are measured by: its farthest coordinate or anchor."""
-    seen, front, far = {joint.a, joint.b}, [joint.a, joint.b], 0.0
+def component(joint: pymunk.Constraint) -> set[pymunk.Body]:
+    """The bodies that this joint and others connect, not through bodies that no force moves."""
+    seen, front = {joint.a, joint.b}, [joint.a, joint.b]
     while front:
         body = front.pop()
         if body.body_type == pymunk.Body.DYNAMIC:
             found = {end for other in body.constraints for end in (other.a, other.b)} - seen
             seen |= found
             front += found
-            anchors = (getattr(other, name, (0.0, 0.0)) for other in body.constraints for name in ANCHORS)
-            far = max((far, *(abs(x) for anchor in anchors for x in anchor)))
-    return max(far, *(abs(place) for body in seen for place in body.position))
+    return seen
+
+
+def reach(joint: pymunk.Constraint) -> float:
+    """The size of the component of a joint, which its errors are measured by: its farthest coordinate or anchor."""
+    seen = component(joint)
+    ends = {other for body in seen if body.body_type == pymunk.Body.DYNAMIC for other in body.constraints}
+    anchors = (getattr(other, name, (0.0, 0.0)) for other in ends for name in ANCHORS)
+    return max((0.0, *(abs(x) for anchor in anchors for x in anchor), *(abs(x) for b in seen for x in b.position)))
+
+
+def may_contradict(joint: pymunk.Constraint) -> bool:
+    """Whether a body that the program turns or moves holds two joints of this component, which others may not follow:
+    two gears on it, and a limit between what they turn."""
+    seen = component(joint)
+    springs = pymunk.DampedSpring, pymunk.DampedRotarySpring
+    for body in seen:
+        led = body.velocity.length > 0.0 or body.angular_velocity != 0.0
+        if body.body_type == pymunk.Body.KINEMATIC and led:
+            exact = [c for c in body.constraints if math.isinf(c.max_force) and not isinstance(c, springs)]
+            if sum({c.a, c.b} <= seen for c in exact) > 1:
+                return True
+    return False
 
 
 def overdone(joint: pymunk.Constraint, dt: float) -> float:

@@ -10,7 +10,7 @@ import pytest
 import eeca_pymunk as ep
 
 from .compositions import Composition
-from .joined import apart, overdone, reach
+from .joined import apart, may_contradict, overdone, reach
 from .seeds import play
 
 
@@ -44,3 +44,22 @@ def test_what_is_apart_and_what_is_overdone_is_seen() -> None:
     ep.EECA(space).step(1 / 60)
     assert overdone(pin, 1 / 60) <= 1.0 + 1e-9
     assert overdone(pin, 1 / 6000) > 10.0
+
+
+@pytest.mark.parametrize("spin", [0.0, 0.4])
+@pytest.mark.parametrize("second", ["gear", "spring", "none"])
+def test_two_gears_on_a_body_that_the_program_turns_may_contradict_a_limit(spin: float, second: str) -> None:
+    space = pymunk.Space()
+    wheel, a, b = pymunk.Body(body_type=pymunk.Body.KINEMATIC), pymunk.Body(1.0, 1.0), pymunk.Body(1.0, 1.0)
+    wheel.angular_velocity = spin
+    limit = pymunk.RotaryLimitJoint(a, b, -0.1, 0.1)
+    space.add(wheel, a, b, limit, pymunk.GearJoint(wheel, a, 0.0, 1.0))
+    if second == "gear":
+        space.add(pymunk.GearJoint(wheel, b, 0.0, 2.0))
+    elif second == "spring":
+        space.add(pymunk.DampedRotarySpring(wheel, b, 0.0, 9.0, 1.0))
+    assert may_contradict(limit) == (spin != 0.0 and second == "gear")
+    stepper = ep.EECA(space)
+    converged = [stepper.step(0.1).converged for _ in range(10)]
+    assert all(converged) or may_contradict(limit)
+    assert apart(limit, 1.0) <= 1e-8 or not converged[-1]
