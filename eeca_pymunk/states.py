@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from .runs import RunningStepper
 
-_MARK = 0x65656361_00000003
+_MARK = 0x65656361_00000004
 
 
 def get_state(stepper: RunningStepper) -> IntArray:

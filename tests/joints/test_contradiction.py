@@ -9,10 +9,12 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk.jointed.alone import begin_alone
-from eeca_pymunk.joints import ladder, limits
+from eeca_pymunk.joints import contradiction, ladder, limits
 from eeca_pymunk.joints.ladder import ELASTIC_RUNG, ORDER_4, WHOLE_STEP
+from eeca_pymunk.joints.workspace import workspace
 from eeca_pymunk.model.joint_steps import ELASTIC, HALVED
 from eeca_pymunk.model.joints import EDITED
+from eeca_pymunk.model.parameters.joints import BALANCED, JOINT_APART
 from eeca_pymunk.newton import solve as solve_of_newton
 
 STEP = 1 / 60
@@ -120,3 +122,23 @@ def test_a_step_too_long_for_its_motion_is_divided(
     tried, status = rungs_of(monkeypatch, A, J, h)
     assert status == HALVED
     assert tried == [ORDER_4, WHOLE_STEP, WHOLE_STEP, 1, 2][: 3 + last]
+
+
+@pytest.mark.parametrize(
+    ("end", "start", "left", "found"),
+    [
+        ((1.0, 0.0, 1.0), 1.0, STEP, True),
+        ((1.0, 0.0, 0.5 * JOINT_APART), 1.0, STEP, False),  # closed all the same
+        ((1.0, 4.0 * BALANCED**2, 1.0), 1.0, STEP, False),  # other poses fit better
+        ((1.0, 0.0, 1.0), 0.5, STEP, False),  # the motion has opened it
+        ((1.0, 0.0, 1.0), 1.0, 0.5 * STEP, False),  # a part after another one
+    ],
+)
+def test_errors_are_a_contradiction_if_they_are_in_balance_and_do_not_arise_from_the_motion(
+    monkeypatch: pytest.MonkeyPatch, end: tuple[float, float, float], start: float, left: float, found: bool
+) -> None:
+    _, J = two_bodies(gear, gear)
+    J.PARTS.left = left
+    misfits = iter((end, (start, 0.0, 1.0)))
+    monkeypatch.setattr(contradiction, "misfit", lambda W, h: next(misfits))
+    assert contradiction.contradicts(workspace(J, 0), STEP) == found
