@@ -35,5 +35,5 @@ MARGIN_HALVINGS = work(8, "number", "Halvings of margins, at most.")
 ALL_WALLS = work(16, "static shapes", "Number up to which all static shapes are tested without a grid.")
 REHEARSAL_NEAR = work(2.0, "times the ways in a step",
     "Distance within which pairs with handlers are near: the step is rehearsed, so that pymunk may call these.")
-REHEARSAL_SHIFT = heuristic(1e-07, "of the height above the lowest body",
+REHEARSAL_SHIFT = round_off(1e-07, "of the height above the lowest body",
     "Way of a body towards its support in a rehearsal. Smaller: round-off decides when a contact begins and ends.")
