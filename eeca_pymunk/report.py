@@ -169,7 +169,7 @@ class StepReport:
 
     @property
     def unmet(self) -> tuple[Unmet, ...]:
-        """Budgets and tolerances that were not met, for which bodies; of many the first ones. None if `converged`."""
+        """Budgets and tolerances that were not met, for which bodies; of many the first. Empty if `converged`."""
         unmet = self._unmet
         if not isinstance(unmet, tuple):
             self._unmet = unmet = unmet()
