@@ -115,8 +115,8 @@ class HookedStepper(PackedSpace):
             if world.hooks.steered:
                 world.set_accelerations(world.hooks.velocity_changes(dt), dt)
             if world.collisions:
-                sync = None if self._sleep is not None or self.decisions.laws else self._sync
-                if (status := world.rehearsal.run(dt, half_damping, sync)) < 0:
+                known = self._sleep is None and not self.decisions.laws
+                if (status := world.rehearsal.run(dt, half_damping, self._sync, known)) < 0:
                     self._raise_failure(world, dt, status)
                 if self._sleep is not None and self._sleep.woken():
                     world = self._reread_awoken(world)
@@ -159,13 +159,12 @@ class HookedStepper(PackedSpace):
             if slept and not body.is_sleeping:
                 body.velocity, body.angular_velocity = (0.0, 0.0), 0.0
         world.bodies.scatter(world.state)
-        world.HOOKED, world.EXTRA, rehearsal = world.HOOKED.copy(), world.EXTRA.copy(), world.rehearsal
+        world.HOOKED, world.EXTRA = world.HOOKED.copy(), world.EXTRA.copy()
         now = self._update_world(anew=True)
         now.gather()
         now.copy_start()
         rows = [world.bodies.row[body] for body in now.bodies.items]
         now.EXTRA[:], now.HOOKED[:] = world.EXTRA[rows], world.HOOKED[:, rows]
-        now.rehearsal.continue_from(rehearsal)
         now.hooks.late = world.hooks.late
         return now
 

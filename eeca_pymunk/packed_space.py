@@ -165,8 +165,6 @@ class PackedSpace(Stepper):
             self._sleep.recall(dict(zip(slept[0], slept[1].tolist(), strict=True)), slept[3])
         kept = None if past is None or past.void or self.event_loop is None else kept_rows(world, past)
         self.choose_method(world, past, kept)
-        if past is not None:
-            past.end()
         if self._sleep is not None and (book := self._method.outcome()[0]) is not None:
             self._idle_book = [0.0] * len(book)
         return self._adopt(world)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from itertools import chain, product
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import pymunk
@@ -18,7 +18,9 @@ from ..compiled.records import Rows, from_bytes, packer
 from ..layout import BODY_ROW
 from ..model.shapes import HandledShape
 from .edits import type_changes
+from .packing import ShapeRecord
 from .private import arbiters as private_arbiters
+from .private import batch as private_batch
 from .private import shapes as private_shapes
 from .private import spaces as private
 from .private import versions as private_versions
@@ -28,6 +30,8 @@ if TYPE_CHECKING:
 
 _MOST = 1024  # pairs; with more of them a test of all in each step saves no time
 _HANDLED = packer(HandledShape)
+# Values of a shape; centre of gravity of its body, and the pose of a static one; the fields of its `HandledShape`.
+_Known: TypeAlias = "tuple[ShapeRecord | None, list[float], tuple[float, ...]]"
 _WIDER = 0.01  # part of its size by which a box is wider than the shape, so that round-off hides no pair
 
 
@@ -40,20 +44,40 @@ class HandledPairs:
             a body is not in the space.
     """
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: World, past: HandledPairs | None) -> None:
+        """`past`: the pairs found before in this space, or None; boxes of shapes that have not changed are kept."""
         self._space, self.type_changes = world.space, type_changes()
         self.handled = private_versions.handled(world.space)
         pairs = self._pairs(list(world.records))
         place = {shape: k for k, shape in enumerate(dict.fromkeys(chain.from_iterable(pairs or ())))}
         self.arrays: tuple[Rows[HandledShape], IntArray] | None = None
-        values = world.bodies.center_of_gravity.tolist(), world.state.tolist(), world.IDS[BODY_ROW].tolist()
-        boxes = [box for shape in place if (box := _box(world, shape, *values)) is not None]
-        if pairs is not None and len(boxes) == len(place):
-            HANDLED: Rows[HandledShape] = from_bytes(HandledShape, boxes)
+        self._boxes: dict[pymunk.Shape, _Known] = {}
+        known, bodies, rows = {} if past is None else past._boxes, world.bodies, world.IDS[BODY_ROW].tolist()
+        centres, states = bodies.center_of_gravity.tolist(), world.state.tolist()
+        ids, owner, packed = list[int](), list[int](), list[bytes]()
+        for shape in place:
+            record = world.records[shape]
+            if record is not None and record.outside:
+                record = None
+            body: Any = shape.body if record is None else record.body
+            if (row := bodies.row.get(body)) is None:
+                return
+            at = centres[row] if rows[row] >= 0 else centres[row] + states[row][:3]
+            before = known.get(shape)
+            if before is None or record is None or before[0] is not record or before[1] != at:
+                box = _box(shape, record, at)
+                if box is None:
+                    return
+                before = record, at, box
+            self._boxes[shape] = before
+            ids.append(int(bodies.ids[row]))
+            owner.append(row if rows[row] >= 0 else -1)
+            packed.append(_HANDLED.pack(owner[-1], *before[2]))
+        if pairs is not None:
             # Static shapes do not meet each other, nor do those of one body.
-            body = HANDLED["body"].tolist()
-            found = [(place[a], place[b]) for a, b in pairs if body[place[a]] != body[place[b]]]
-            self.arrays = HANDLED, np.array(found, np.int64).reshape(-1, 2)
+            found = [(i, j) for a, b in pairs if owner[i := place[a]] != owner[j := place[b]]]
+            self.arrays = from_bytes(HandledShape, packed), np.array(found, np.int64).reshape(-1, 2)
+            self._bodies = {ids[i] ^ ids[j] for i, j in found}  # see `private_batch.arbiter_bodies`
 
     def _pairs(self, shapes: list[pymunk.Shape]) -> list[tuple[pymunk.Shape, pymunk.Shape]] | None:
         """All pairs of shapes whose types have handlers; None if there are more than `_MOST`."""
@@ -69,24 +93,23 @@ class HandledPairs:
         return found
 
     def remembered(self) -> bool:
-        """Whether pymunk keeps an arbiter of a pair from earlier steps."""
+        """Whether pymunk keeps an arbiter of a pair from earlier steps. Bodies of arbiters are read in one call, and
+        types one by one only if bodies of a pair may be among them."""
+        if self._bodies.isdisjoint(private_batch.arbiter_bodies(self._space)):
+            return False
         found = {private_arbiters.kinds(arbiter) for arbiter in private.raw_arbiters(self._space)}
         swapped = {(b, a) for a, b in found}
         return any(one in (None, a) and two in (None, b) for a, b in found | swapped for one, two in self.handled)
 
 
-def _box(
-    world: World, shape: Any, centres: list[list[float]], states: list[list[float]], rows: list[int]
-) -> bytes | None:
-    """The `HandledShape` of a shape; None if its body is not in the space, or its kind is unknown. Of each body:
-    `centres`, its centre of gravity; `states`, its state; `rows`, its row in BODY."""
-    record = world.records[shape]
-    if record is None or record.outside:
-        body, points, radius = shape.body, private_shapes.outline(shape), shape.radius
+def _box(shape: Any, record: ShapeRecord | None, at: list[float]) -> tuple[float, ...] | None:
+    """The fields of the `HandledShape` of a shape after `body`; None if its kind is unknown. `record`: its values, None
+    if they are to be read. `at`: centre of gravity of its body; of static bodies, also position and angle."""
+    if record is None:
+        points, radius = private_shapes.outline(shape), shape.radius
     else:
-        body, points, radius = record.body, record.vertices, record.numbers[0]
-    row = world.bodies.row.get(body)
-    if row is None or points is None:
+        points, radius = record.vertices, record.numbers[0]
+    if points is None:
         return None
     xs, ys = zip(*points, strict=True)
     left, right, low, high = min(xs), max(xs), min(ys), max(ys)
@@ -94,14 +117,13 @@ def _box(
     if len(points) == 2:
         dx, dy = xs[1] - xs[0], ys[1] - ys[0]
         tilt, half_x, half_y = math.atan2(dy, dx), 0.5 * math.hypot(dx, dy), 0.0
-    cx, cy = centres[row]
+    cx, cy, *pose = at
     arm_x, arm_y, c, s = x - cx, y - cy, math.cos(tilt), math.sin(tilt)
     size = math.hypot(half_x, half_y) + radius
     rounding, extent = radius + _WIDER * size, math.hypot(arm_x, arm_y) + size
     box = c * arm_x + s * arm_y, c * arm_y - s * arm_x, tilt, half_x, half_y, rounding, extent
-    if rows[row] >= 0:
-        return _HANDLED.pack(row, *box, 0.0, 0.0, 0.0, 0.0, 0.0)
-    to_x, to_y, turn, *_ = states[row]
+    if not pose:
+        return *box, 0.0, 0.0, 0.0, 0.0, 0.0
+    to_x, to_y, turn = pose
     c, s, angle = math.cos(turn), math.sin(turn), turn + tilt
-    at = to_x + c * x - s * y, to_y + s * x + c * y
-    return _HANDLED.pack(-1, *box, *at, math.cos(angle), math.sin(angle), rounding)
+    return *box, to_x + c * x - s * y, to_y + s * x + c * y, math.cos(angle), math.sin(angle), rounding

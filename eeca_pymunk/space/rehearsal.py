@@ -52,9 +52,7 @@ class Rehearsal:
     """
 
     def __init__(self, world: World) -> None:
-        self.world, self.space = world, world.space
-        self._place = self._bound(None)
-        (self._record_changes,) = world.bound(record_changes)
+        self.space = world.space
         self._settings = 0.0, 0.0, 0.0, 1.0  # dt, gravity (2), factor of half a step's damping
         # Whether begin or pre_solve, and post_solve or separate, have changed bodies; stage of the last call (see
         # `Watched`), -1 before the first.
@@ -63,15 +61,23 @@ class Rehearsal:
         self._functions: list[tuple[Any, ...]] = []  # see `private.functions`
         self.failure: BaseException | None = None
         self.decided, self.left_out = False, 0
-        self._sync: Sync | None = None  # of the last step
+        self._sync: Sync | None = None  # of the last step, if its rehearsal could be left out
         self._untested = 0  # number of steps until it is tested whether a step is silent; _SILENT if the last one was
+        # Number of steps for which decisions apply at least; ignored collisions are ignored as long as shapes touch.
+        self._decision_steps = 1.0
         self._pairs: HandledPairs | None = None
-        # Number of steps for which decisions apply at least; those that ignore collisions do as long as shapes touch.
-        self._decision_steps: float = 0.0 if world.undecided else 1.0
+        self.go_on(world, True)
 
-    def end(self) -> None:
-        """Forget the wrappers, which refer to this object."""
-        self._wrapped, self._functions = [], []
+    def go_on(self, world: World, edited: bool) -> bool:
+        """Go on in the next world of the space. `edited`: whether a shape or body was edited in place since the last
+        step. Returns whether no decision of a handler can apply. Boxes of shapes and wrappers are kept."""
+        undecided = not edited and self._decision_steps <= 0 and self._sync is not None and self._sync.is_ours()
+        self.world, self._sync, self._untested = world, None, max(self._untested, 0)
+        self.forget_old_handlers()
+        if self._pairs is not None:
+            self._pairs.type_changes = -1  # so that pairs are found again, in the rows of this world
+        self._place, (self._record_changes,) = self._bound(None), world.bound(record_changes)
+        return undecided
 
     def forget(self, reshaped: bool) -> None:
         """Forget earlier steps; if sizes, filters or places of shapes have changed, also the pairs with handlers."""
@@ -79,11 +85,6 @@ class Rehearsal:
             self._pairs = None
         self._changed, self._untested, self._decision_steps = [False, False], 0, 1.0
         self.world.forget_changes()
-
-    def is_silent(self) -> bool:
-        """Whether no decision applies, and the last `_BETWEEN_TESTS` steps, all of EECA, were silent and left out."""
-        silent = self.left_out >= _BETWEEN_TESTS and self._untested == _SILENT
-        return silent and self._sync is not None and self._sync.is_ours()
 
     def is_silent_again(self, dt: float, half_damping: float, sync: Sync) -> bool:
         """Whether this step is silent as the last one was; if so, its rehearsal is done or left out here. For worlds in
@@ -106,10 +107,6 @@ class Rehearsal:
         if self._pairs is not None and self._pairs.handled != private_versions.handled(self.space):
             self._pairs, self._untested = None, 0
 
-    def continue_from(self, earlier: Rehearsal) -> None:
-        """Use what functions have done in a rehearsal of an earlier world of the same step."""
-        self._changed, self.decided = earlier._changed, earlier.decided
-
     def before_call(self, stage: int) -> None:
         """Before a function is called: read the bodies, if pymunk has reached another stage."""
         if self._stage != stage:
@@ -123,12 +120,13 @@ class Rehearsal:
         self.world.gather()
         self._changed[late] |= self._record_changes(late) > 0
 
-    def run(self, dt: float, half_damping: float, sync: Sync | None = None) -> int:
+    def run(self, dt: float, half_damping: float, sync: Sync, known: bool) -> int:
         """Take pymunk's step; STATES then has the start of the EECA step, with the changes by begin and pre_solve. An
         exception of a function is raised when pymunk has finished.
 
         Args:
-            sync: if given, the rehearsal may be left out, unless pymunk has taken a step since the last EECA step.
+            sync: of the world.  known: whether arbiters have all decisions, and no body can sleep: then the rehearsal
+                may be left out.
 
         Returns:
             0 or a negative code of `model/step.py`, with nothing done.
@@ -138,13 +136,15 @@ class Rehearsal:
         status = self._place(*self._settings)
         if status < 0:
             return status
-        self.failure, self.decided, self._stage, self._sync = None, False, -1, sync
+        self.failure, self.decided, self._stage, self._sync = None, False, -1, sync if known else None
+        if not (continues := sync.continues()):
+            self._decision_steps = max(self._decision_steps, 1.0)
         if True in self._changed:
             world.forget_changes()
             self._changed = [False, False]
         if self._untested > 0:
             self._untested -= 1
-        elif sync is not None and sync.continues() and self._calls_none(status > 0):
+        elif known and continues and self._calls_none(status > 0):
             self._untested = _SILENT
             self._step_without_calls(dt, sync)
             return 0
@@ -193,7 +193,7 @@ class Rehearsal:
         if self._decision_steps > 0 or (joints is not None and joints.calling):
             return False
         if self._pairs is None or self._pairs.type_changes != type_changes():
-            self._pairs, self._untested = HandledPairs(self.world), 0
+            self._pairs, self._untested = HandledPairs(self.world, self._pairs), 0
             self._place = self._bound(self._pairs)
             near = self._place(*self._settings) > 0
         tested = not near and self._pairs.arrays is not None
@@ -224,7 +224,7 @@ class Rehearsal:
         hooks, now = self.world.hooks, private.functions(self.space)
         late = hooks.joints is not None and len(hooks.joints.after) > 0
         if now != self._functions or late:
-            self._functions = now
+            self._functions = [] if late else now
             self._wrapped = [
                 (handler, phase, f, Watched(self, f, phase, max(i - 1, 0)))
                 for handler, *functions in now

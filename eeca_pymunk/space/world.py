@@ -55,7 +55,7 @@ class World(BodyStates):
         rules: decisions of collision handlers about pairs of rows of SHAPE in this step.
         frictionless: whether friction, also that of handlers, is left out.  lacks_friction: and the space has some.
         joints: the constraints of the space, None if it has none.
-        undecided: whether no decision of a handler can apply: the steps before were silent, and nothing was edited.
+        undecided: whether no decision of a handler can apply, see `Rehearsal.go_on`.
         sleeps: whether bodies could sleep when it was read.  read_at: `edits.clock` when shapes and bodies were read.
         patches: number of patches so far.  packed: the arrays of the rows, and the kernel that writes them.
         objects_read: number of bodies, shapes and constraints read from pymunk for this world; others were known.
@@ -79,7 +79,6 @@ class World(BodyStates):
         self.records: ShapeRecords
         self.records, count = records_of(space, bodies, {} if known is None else known.records, stale or ())
         self.objects_read = bodies.fresh + count
-        self.undecided = past is not None and not past.edited() and past.is_silent()
         self.memory: SceneMemory = SceneMemory() if past is None else past.memory
         self.frictionless = "friction" in ignore
         self.lacks_friction = self.frictionless and has_friction([s for s, r in self.records.items() if r is not None])
@@ -104,6 +103,9 @@ class World(BodyStates):
             self.joints = past.joints
             self.recall(past)
         self.read_settings(anew=True)
+        self.undecided = False
+        if past is not None and (rehearsal := past.__dict__.pop("rehearsal", None)) is not None:
+            self.undecided, self.rehearsal = rehearsal.go_on(self, past.edited()), rehearsal
 
     def read_settings(self, anew: bool = False) -> None:
         """Read and check the settings of the space, and its joints if they have changed or if `anew`; record later
@@ -123,10 +125,6 @@ class World(BodyStates):
         self.plain = not self.hooked and self.joints is None
         self.current = private.watch(self.space, self._edits, self._seen)
 
-    def is_silent(self) -> bool:
-        """Whether collision handlers were not called in the last steps, and no decision of theirs applies."""
-        return "rehearsal" in self.__dict__ and self.rules is NO_RULES and self.rehearsal.is_silent()
-
     def _read_joints(self, anew: bool) -> None:
         past = self.joints
         if not self.space.constraints:
@@ -141,11 +139,6 @@ class World(BodyStates):
     def rehearsal(self) -> Rehearsal:
         """Arrays and wrappers for steps with collision handlers."""
         return Rehearsal(self)
-
-    def end(self) -> None:
-        """Break cycles of references, so that memory is freed without the garbage collector."""
-        if (rehearsal := self.__dict__.pop("rehearsal", None)) is not None:
-            rehearsal.end()
 
     @cached_property
     def places(self) -> dict[pymunk.Shape, int]:

@@ -142,6 +142,13 @@ def test_arbiters() -> None:
     assert {shape.body for shape in arbiter.shapes} == set(bodies)
 
 
+def test_bodies_of_arbiters() -> None:
+    space, (a, b) = meeting()
+    assert private_batch.arbiter_bodies(space) == []
+    space.step(0.001)
+    assert private_batch.arbiter_bodies(space) == [a.id ^ b.id]
+
+
 @pytest.mark.parametrize("kind", ["velocity", "position"])
 def test_functions_of_bodies(kind: str) -> None:
     edits.counts(pymunk.Space())  # pymunk before 7.3 needs it

@@ -142,6 +142,37 @@ def test_a_step_of_pymunk_in_between_is_heard() -> None:
     assert told == ["begin", "separate"]
 
 
+@pytest.mark.parametrize("read_anew", [False, True])
+def test_what_begin_decided_in_a_step_of_pymunk_holds(read_anew: bool) -> None:
+    """pymunk does not call `begin` again as long as the shapes touch."""
+    space, calls = pymunk.Space(), []
+    floor = pymunk.Segment(space.static_body, (-50, 0), (50, 0), 0.1)
+    disk = add_disk(space, (0.0, 0.64), 0.5, velocity=(0.0, -10.0))
+    space.add(floor)
+    for shape in space.shapes:
+        shape.collision_type = 1
+
+    def begin(arbiter: pymunk.Arbiter, *_: object) -> bool:
+        calls.append(arbiter)
+        arbiter.process_collision = False
+        return False
+
+    if hasattr(space, "on_collision"):
+        space.on_collision(1, 1, begin=begin)
+    else:
+        space.add_collision_handler(1, 1).begin = begin
+    stepper = ep.EECA(space)
+    for _ in range(3):
+        stepper.step(1e-4)
+    space.step(0.01)
+    if read_anew:
+        add_disk(space, (10.0, 5.0), 0.5)
+    for _ in range(30):
+        stepper.step(0.01)
+    assert len(calls) == 1
+    assert disk.position.y == pytest.approx(0.64 - 10.0 * (3e-4 + 0.31), rel=1e-12)
+
+
 def hear(space: pymunk.Space, a: int, b: int, told: list[str]) -> None:
     """Tell when shapes of types a and b begin to touch."""
 
@@ -260,11 +291,39 @@ def test_what_may_be_heard_is_found_again_after_edits_of_sizes() -> None:
     assert told == ["0 1"]
 
 
+@pytest.mark.parametrize("moved", ["body", "centre", "vertices"])
+def test_what_may_be_heard_is_found_again_after_readings(moved: str) -> None:
+    space, told = pymunk.Space(), list[str]()
+    wall, one = pymunk.Body(body_type=pymunk.Body.STATIC), add_disk(space, (0.0, 0.0), 0.5, velocity=(1.0, 0.0))
+    bar = pymunk.Poly(wall, [(9, -1), (10, -1), (10, 1), (9, 1)])
+    space.add(wall, bar)
+    bar.collision_type = 1
+    hear(space, 0, 1, told)
+    stepper = ep.EECA(space)
+    for _ in range(10):
+        stepper.step(DT)
+    assert told == []
+    if moved == "body":
+        wall.position = -6.0, 0.0
+    elif moved == "centre":  # about it the disk swings to the bar
+        one.center_of_gravity = 4.5, 0.0
+        one.velocity, one.angular_velocity = (0.0, 0.0), 1.0
+    else:
+        bar.unsafe_set_vertices([(3, -1), (4, -1), (4, 1), (3, 1)])
+    space.reindex_static()
+    add_disk(space, (0.0, 99.0), 0.5)
+    reads = stepper.reads
+    for _ in range(200):
+        stepper.step(DT)
+    assert stepper.reads > reads
+    assert told[0] == "0 1"
+
+
 def near_at_the_end(space: pymunk.Space, dt: float) -> bool:
     """Whether a pair with handlers is near at the end of free flight over dt."""
     world = ep.EECA(space)._world
     assert world is not None
-    pairs = HandledPairs(world)
+    pairs = HandledPairs(world, None)
     assert pairs.arrays is not None
     place = place_for_rehearsal.bind(world.reading, *pairs.arrays)
     world.gather()

@@ -12,7 +12,10 @@ from pymunk._chipmunk_cffi import ffi, lib
 
 from ...arrays import AnyArray, FloatArray, IntArray
 
-OF_LIBRARY = ("cpSpaceEachBody", "pmSpaceBodyGetIteratorFuncBatched", "pmSpaceBodySetIteratorFuncBatched")
+OF_LIBRARY = (
+    "cpSpaceEachBody", "pmSpaceBodyGetIteratorFuncBatched", "pmSpaceBodySetIteratorFuncBatched",
+    "cpSpaceEachCachedArbiter", "pmSpaceArbiterIteratorFuncBatched", "pmIntArrayNew", "pmIntArrayFree",
+)  # fmt: skip
 TYPES = ("pmBatchedData *", "pmFloatArray *", "pmIntArray *")
 # The readers and writers of whole spaces have attributes: `values` and `numbers`, the C arrays to which a later call
 # may give other memory (`last`), and `held`, the present memory, which is not freed before.
@@ -101,6 +104,20 @@ def writer(
     return _one_by_one(lib.pmSpaceBodySetIteratorFuncBatched, bodies, data, values, (floats, numbers))
 
 
+def arbiter_bodies(space: pymunk.Space) -> list[int]:
+    """For each arbiter that pymunk keeps, the exclusive or of the ids of both bodies."""
+    fields, numbers = batch.ArbiterFields.BODY_A_ID | batch.ArbiterFields.BODY_B_ID, lib.pmIntArrayNew(0)
+    floats = ffi.new("pmFloatArray *")
+    try:
+        data = _batched(fields, floats, numbers)
+        lib.cpSpaceEachCachedArbiter(space._space, ffi.addressof(lib, "pmSpaceArbiterIteratorFuncBatched"), data)
+        ids = np.frombuffer(ffi.buffer(numbers.arr, 8 * numbers.num), np.int64)
+        found: list[int] = (ids[::2] ^ ids[1::2]).tolist()
+    finally:
+        lib.pmIntArrayFree(numbers)
+    return found
+
+
 def _one_by_one(
     one: Any, bodies: Sequence[pymunk.Body], data: Any, values: Any, arrays: tuple[object, ...]
 ) -> Callable[[], None]:
@@ -129,7 +146,7 @@ def _point(array: Any, items: str, memory: FloatArray | IntArray) -> None:
     array.num, array.max = 0, memory.size
 
 
-def _batched(fields: batch.BodyFields, floats: Any, ints: Any) -> Any:
+def _batched(fields: batch.BodyFields | batch.ArbiterFields, floats: Any, ints: Any) -> Any:
     """The argument of pymunk's batch functions."""
     data = ffi.new("pmBatchedData *")
     data.fields, data.floatArray, data.intArray = fields.value, floats, ints
