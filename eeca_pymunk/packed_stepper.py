@@ -137,9 +137,11 @@ class PackedStepper(HookedStepper):
                 self._raise_failure(world, dt, status)
             if status >= 0:
                 outcome = self._outcome(world, dt)
+                stops = world.damping == 0.0
+                bits, lost = self._alter_end(world, dt) if stops else (status if left_out else world.write_whole(), 0.0)
                 if status & FORCES:
                     world.reset_forces()
-                status = status if left_out else status & EVENTS | world.write_whole()
+                status = status & EVENTS | bits
                 world.scatter(status)
         except BaseException:
             self._undo(world, world.state)  # a rehearsal that was not left out has moved the bodies
@@ -147,7 +149,7 @@ class PackedStepper(HookedStepper):
         if status < 0:
             self._undo(world, world.state)
             return self._hooked_step(self._update_world(anew=True), dt)
-        report = self._finish(world, dt, status, outcome)
+        report = self._finish(world, dt, status, outcome, lost)
         self._sync.finish_rehearsal(left_out)
         return report
 

@@ -51,7 +51,7 @@ class World(BodyStates):
         without_contacts: function that makes the arrays of a report without contacts.
         hooks: functions of bodies and constraints.  collisions: whether the space has collision handlers.
         hooked: whether a step calls functions of bodies or handlers, or damping is 0.  only_handlers: whether collision
-            handlers are the only reason for that.  plain: neither hooked nor with joints.
+            handlers are the only functions.  plain: neither hooked nor with joints.
         rules: decisions of collision handlers about pairs of rows of SHAPE in this step.
         frictionless: whether friction, also that of handlers, is left out.  lacks_friction: and the space has some.
         joints: the constraints of the space, None if it has none.
@@ -121,7 +121,7 @@ class World(BodyStates):
         self.rules = NO_RULES
         self.hooks = Hooks(self.space, self.bodies, self.joints, *self._functions)
         self.hooked = self.collisions or self.hooks.any_body or self.damping == 0.0
-        self.only_handlers = self.collisions and not self.hooks.any_body and self.damping != 0.0
+        self.only_handlers = self.collisions and not self.hooks.any_body
         self.plain = not self.hooked and self.joints is None
         self.current = private.watch(self.space, self._edits, self._seen)
 

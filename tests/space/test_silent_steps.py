@@ -78,7 +78,7 @@ def played(
             space.add(extra, disk)
         elif step[0] % 40 == 0 and step[0] > 0:
             space.remove(extra, disk)
-        stepper.step(DT)
+        told.append(stepper.step(DT).ledger)
         world = stepper._world
         left_out += world is not None and world.rehearsal.left_out > 0
         told.append([(*body.position, *body.velocity, body.angle) for body in space.bodies])
@@ -97,13 +97,22 @@ def touching(space: pymunk.Space, told: list[Any]) -> None:
             body.each_arbiter(lambda arbiter: told.append([shape.collision_type for shape in arbiter.shapes]))
 
 
+def driven(space: pymunk.Space, told: list[Any]) -> None:
+    """With damping 0 the program sets velocities."""
+    space.damping = 0.0
+    for k, body in enumerate(space.bodies):
+        body.velocity = 300.0 * math.sin(len(told) / (20.0 + k)), 300.0 * math.cos(len(told) / (30.0 + k))
+
+
 @pytest.mark.skipif(not hasattr(pymunk.Space, "on_collision"), reason="handlers of pymunk 6 are made otherwise")
-@pytest.mark.parametrize("each", [nothing, touching], ids=["unread", "read"])
+@pytest.mark.parametrize("each", [nothing, touching, driven], ids=["unread", "read", "driven"])
 @pytest.mark.parametrize("name", PAIRS)
 def test_calls_paths_and_arbiters_are_those_of_all_steps(
     name: str, each: Callable[[pymunk.Space, list[Any]], None], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Compared are the calls in their order, the paths bit by bit, and the pairs that arbiters tell."""
+    """Compared are the calls in their order, the paths and ledgers bit by bit, and the pairs that arbiters tell."""
+    if each is driven and name == "one type":
+        pytest.skip("pymunk's order of two contacts in a step depends on the history of its broad phase")
     for seed in range(4):
         with_all, without = [], []
         found, left_out = played(seed, PAIRS[name], each)
