@@ -66,7 +66,8 @@ class Entry:
         self.kinds = (kinds or ENTRIES[name]).split()
         numbers = ["double" if kind == "f8" else "int64_t" for kind in self.kinds if not is_array(kind)]
         self.function: Callable[..., int] = _ffi.cast(f"int64_t(*)({', '.join(['int64_t *', *numbers])})", address)
-        self._last: tuple[tuple[Any, ...], Callable[..., int]] = (), int  # arrays and result of the last `bind`
+        # Arrays and result of the last two calls of `bind`: scenes take turns (`impacts/scene_memory.py`).
+        self._last: tuple[tuple[tuple[Any, ...], Callable[..., int]], ...] = (((), int),) * 2
         self._arrays = [i for i, kind in enumerate(self.kinds) if is_array(kind)]
         # None for tables.
         self._wanted = [None if (kind := self.kinds[i]).endswith("}") else dtype_of(kind) for i in self._arrays]
@@ -79,16 +80,16 @@ class Entry:
         return result_of(self.name, call(*[args[i] for i in self._numbers]))
 
     def bind(self, *arrays: Any) -> Callable[..., int]:
-        """The entry with these arrays: a function of its numbers, whose result `result_of` takes; that of the last
-        call for the same arrays.
+        """The entry with these arrays: a function of its numbers, whose result `result_of` takes; that of one of the
+        last two calls, if it was for the same arrays.
 
         Raises:
             TypeError: an array is not of the declared dtype and dimensions, or not C-contiguous.
         """
-        known, call = self._last
-        # One by one: comparing tuples would compare the elements of arrays.
-        if 0 < len(arrays) == len(known) and not any(map(operator.is_not, arrays, known)):
-            return call
+        for known, call in self._last:
+            # One by one: comparing tuples would compare the elements of arrays.
+            if 0 < len(arrays) == len(known) and not any(map(operator.is_not, arrays, known)):
+                return call
         words: list[int] = []
         for place, (wanted, array) in enumerate(zip(self._wanted, arrays, strict=True)):
             if wanted is None:
@@ -105,7 +106,7 @@ class Entry:
         # A pointer is passed in half the time of a number.
         call = functools.partial(self.function, _ffi.new(_WORDS, words))
         call.kept = arrays  # type: ignore[attr-defined] # as long as their addresses are used
-        self._last = arrays, call
+        self._last = (arrays, call), self._last[0]
         return call
 
 

@@ -86,7 +86,7 @@ class EventLoop(Remembering):
 
     def _hold(self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link]) -> Rows[Pinned]:
         """The bodies that joints hold where they are, which lose their mobilities."""
-        if not self.jointed:
+        if not self._still.any():
             return NO_PINNED
         PINNED = pinned_bodies(BODY, self.partner, self.joint, self._still, SHAPE, LINK)
         if len(PINNED):

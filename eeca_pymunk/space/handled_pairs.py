@@ -51,10 +51,12 @@ class HandledPairs:
         pairs = self._pairs(list(world.records))
         place = {shape: k for k, shape in enumerate(dict.fromkeys(chain.from_iterable(pairs or ())))}
         self.arrays: tuple[Rows[HandledShape], IntArray] | None = None
-        self._boxes: dict[pymunk.Shape, _Known] = {}
-        known, bodies, rows = {} if past is None else past._boxes, world.bodies, world.IDS[BODY_ROW].tolist()
-        centres, states = bodies.center_of_gravity.tolist(), world.state.tolist()
-        ids, owner, packed = list[int](), list[int](), list[bytes]()
+        self._boxes: dict[pymunk.Shape, _Known] = {} if past is None else past._boxes
+        for gone in self._boxes.keys() - world.records.keys():
+            del self._boxes[gone]
+        known, bodies, rows = self._boxes, world.bodies, world.IDS[BODY_ROW].tolist()
+        centres, states, ids = bodies.center_of_gravity.tolist(), world.state.tolist(), bodies.ids.tolist()
+        body_id, owner, packed = list[int](), list[int](), list[bytes]()
         for shape in place:
             record = world.records[shape]
             if record is not None and record.outside:
@@ -68,16 +70,15 @@ class HandledPairs:
                 box = _box(shape, record, at)
                 if box is None:
                     return
-                before = record, at, box
-            self._boxes[shape] = before
-            ids.append(int(bodies.ids[row]))
+                before = known[shape] = record, at, box
+            body_id.append(ids[row])
             owner.append(row if rows[row] >= 0 else -1)
             packed.append(_HANDLED.pack(owner[-1], *before[2]))
         if pairs is not None:
             # Static shapes do not meet each other, nor do those of one body.
             found = [(i, j) for a, b in pairs if owner[i := place[a]] != owner[j := place[b]]]
             self.arrays = from_bytes(HandledShape, packed), np.array(found, np.int64).reshape(-1, 2)
-            self._bodies = {ids[i] ^ ids[j] for i, j in found}  # see `private_batch.arbiter_bodies`
+            self._bodies = {body_id[i] ^ body_id[j] for i, j in found}  # see `private_batch.arbiter_bodies`
 
     def _pairs(self, shapes: list[pymunk.Shape]) -> list[tuple[pymunk.Shape, pymunk.Shape]] | None:
         """All pairs of shapes whose types have handlers; None if there are more than `_MOST`."""

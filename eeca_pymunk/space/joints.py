@@ -187,9 +187,11 @@ class JointRows(Listing):
         return len(self._edits.rows) > 0
 
     def unchanged(self) -> bool:
-        """Whether nothing has changed since the last step, and `update` has nothing to do."""
-        changed = self._edits.rows or self.replan or self.ends_moved or self.parted is None
-        return not (changed or self.functions or self.partners.outside)
+        """Whether `update` has nothing to do: nothing has changed, but poses of partners, which are read here."""
+        if self._edits.rows or self.replan or self.ends_moved or self.parted is None or self.functions:
+            return False
+        self.ends_moved = len(self.partners.outside) > 0 and self.partners.read() > 0
+        return not self.ends_moved
 
     def update(self, state: FloatArray, place: Mapping[pymunk.Body, int], dt: float) -> None:
         """Update what the step needs: edited constraints, poses of partners, laws of springs with functions.
@@ -202,8 +204,7 @@ class JointRows(Listing):
                 spring has not returned a finite number.
         """
         self.refresh()
-        if self.partners.outside and self.partners.read() > 0:
-            self.ends_moved = True
+        self.ends_moved |= len(self.partners.outside) > 0 and self.partners.read() > 0
         if self.functions:
             with FunctionsCalled(self.space), private.locked(self.space):
                 for j in self.functions:
@@ -215,8 +216,7 @@ class JointRows(Listing):
         row = self._row_of[body]
         if row >= self._n:
             return self.partners.motion(row - self._n)
-        x, y, angle, vx, vy, spin = state[place[body], :6].tolist()
-        return x, y, angle, vx, vy, spin
+        return tuple(state[place[body], :6].tolist())
 
     def find_parted(self, owner: IntArray, bodies: Sequence[pymunk.Body]) -> set[tuple[int, int]]:
         """Find `parted`; returns the pairs (i < j) of shapes of these bodies. `owner` (k,): index in `bodies` of the

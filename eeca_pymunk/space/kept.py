@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arrays import IntArray
 from ..impacts.edits import FILTER, MASS, OUTLINE, SURFACE, Changes
 from ..impacts.taking_over import Kept
 from ..layout import BODY_ROW, READ, WRITTEN
@@ -20,7 +19,7 @@ def same_outline(new: ShapeRecord | None, old: ShapeRecord | None) -> bool:
     """Whether two records of a shape have the same vertices and radius on the same body."""
     if new is None or old is None:
         return False
-    return new is old or (new.body, new.points, new.numbers[0]) == (old.body, old.points, old.numbers[0])
+    return (new.body, new.points, new.numbers[0]) == (old.body, old.points, old.numbers[0])
 
 
 def changes_of(row: int, new: ShapeRecord, old: ShapeRecord) -> Changes:
@@ -36,8 +35,7 @@ def changes_of(row: int, new: ShapeRecord, old: ShapeRecord) -> Changes:
 def kept_rows(world: World, past: World) -> Kept:
     """What a world that was just read has kept of the one before, `past`."""
     row, old_row = world.IDS[BODY_ROW].tolist(), past.IDS[BODY_ROW].tolist()
-    bodies: IntArray = np.full(len(past.BODY), -1, np.int64)
-    changes: Changes = []
+    bodies, changes = [-1] * len(past.BODY), list[tuple[int, int]]()
     for i, j, unedited in world.same_as_before:
         if old_row[j] >= 0:
             bodies[old_row[j]] = row[i]
@@ -45,24 +43,26 @@ def kept_rows(world: World, past: World) -> Kept:
                 changes.append((MASS, row[i]))
     bodies[-1] = len(world.BODY) - 1  # the ground
     places, records, before = world.places, world.records, past.records
-    now, then, items, old_items = world.STATES[READ], past.STATES[WRITTEN], world.bodies.items, past.bodies.items
+    now, then = world.STATES[READ], past.STATES[WRITTEN]
     owner, old_owner = world.owner.tolist(), past.owner.tolist()
     shapes, outlines = [-1] * len(past.shapes), [-1] * len(past.shapes)
     unmoved: dict[int, bool] = {}  # of static bodies
     for s, shape in enumerate(past.shapes):
-        place = places.get(shape, -1)
-        if place < 0 or not same_outline(new := records[shape], old := before[shape]):
+        if (place := places.get(shape, -1)) < 0:
             continue
+        new, old = records[shape], before[shape]
+        if new is not old and not same_outline(new, old):
+            continue
+        # Both are on the same body, row i here and j before.
         i, j = owner[place], old_owner[s]
-        if items[i] is not old_items[j]:
-            continue
-        if row[i] < 0 and i not in unmoved:
+        here, there = row[i], old_row[j]
+        if here < 0 and i not in unmoved:
             unmoved[i] = bool((now[i, :3] == then[j, :3]).all())
-        if row[i] < 0 and not unmoved[i]:
+        if here < 0 and not unmoved[i]:
             continue
         outlines[s] = place
-        if bodies[old_row[j]] == row[i] if min(row[i], old_row[j]) >= 0 else row[i] == old_row[j]:
+        if bodies[there] == here if here >= 0 and there >= 0 else here == there:
             shapes[s] = place
             if new is not old and new is not None and old is not None:
                 changes += changes_of(place, new, old)
-    return Kept(bodies, np.array(shapes, np.int64), np.array(outlines, np.int64), changes)
+    return Kept(np.array(bodies, np.int64), np.array(shapes, np.int64), np.array(outlines, np.int64), changes)

@@ -17,6 +17,7 @@ OF_LIBRARY = (
     "cpSpaceEachCachedArbiter", "pmSpaceArbiterIteratorFuncBatched", "pmIntArrayNew", "pmIntArrayFree",
 )  # fmt: skip
 TYPES = ("pmBatchedData *", "pmFloatArray *", "pmIntArray *")
+_BOTH_IDS = batch.ArbiterFields.BODY_A_ID | batch.ArbiterFields.BODY_B_ID
 # The readers and writers of whole spaces have attributes: `values` and `numbers`, the C arrays to which a later call
 # may give other memory (`last`), and `held`, the present memory, which is not freed before.
 
@@ -106,10 +107,9 @@ def writer(
 
 def arbiter_bodies(space: pymunk.Space) -> list[int]:
     """For each arbiter that pymunk keeps, the exclusive or of the ids of both bodies."""
-    fields, numbers = batch.ArbiterFields.BODY_A_ID | batch.ArbiterFields.BODY_B_ID, lib.pmIntArrayNew(0)
-    floats = ffi.new("pmFloatArray *")
+    floats, numbers = ffi.new("pmFloatArray *"), lib.pmIntArrayNew(0)
     try:
-        data = _batched(fields, floats, numbers)
+        data = _batched(_BOTH_IDS, floats, numbers)
         lib.cpSpaceEachCachedArbiter(space._space, ffi.addressof(lib, "pmSpaceArbiterIteratorFuncBatched"), data)
         ids = np.frombuffer(ffi.buffer(numbers.arr, 8 * numbers.num), np.int64)
         found: list[int] = (ids[::2] ^ ids[1::2]).tolist()
