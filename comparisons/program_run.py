@@ -69,6 +69,11 @@ class Run:
 
     def step(self, space: pymunk.Space, dt: float) -> None:
         """In the place of `Space.step`."""
+        if not self.steps:
+            # What was made while there were no collections is as old as it would be otherwise: young collections do not
+            # go through it.
+            gc.freeze()
+            gc.unfreeze()
         gc.enable()
         self._stepping = True
         begun = time.thread_time()
