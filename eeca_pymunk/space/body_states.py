@@ -202,11 +202,12 @@ class BodyStates:
         step counts them as unedited unless their state differs from it. Of those with another mass or moment, or that
         have woken, only poses are copied, so that their velocities count as edited."""
         self.same_as_before = self.bodies.same_in(before.bodies)
-        for columns, whole in ((layout.STATE_COLUMNS, True), (3, False)):
-            same = [(i, j) for i, j, unedited in self.same_as_before if unedited == whole]
-            if same:
-                to, of = zip(*same, strict=True)
-                self.STATES[layout.WRITTEN, to, :columns] = before.STATES[layout.WRITTEN, of, :columns]
+        # Row by row: numpy's indices take longer for few bodies, and as long for a hundred.
+        row, number = self.STATES.strides[1:]
+        to, of = (states.STATES[layout.WRITTEN].data.cast("B") for states in (self, before))
+        for i, j, unedited in self.same_as_before:
+            size = row if unedited else 3 * number
+            to[i * row : i * row + size] = of[j * row : j * row + size]
 
     def void_predictions(self) -> None:
         """Void all predictions: in the next step all bodies count as placed by the program (PLACED in `layout.py`)."""

@@ -64,7 +64,6 @@ class Partners:
         for i, row in enumerate(past_rows):
             if past is not None and row >= 0:
                 self._fixed[i], self._known[i] = past._fixed[row], past._known[row]
-        self._all = self._reader(range(len(self.items)))
         self.renumber(space, n)
 
     def renumber(self, space: pymunk.Space, n: int) -> None:
@@ -73,8 +72,9 @@ class Partners:
         self._n, self.outside = n, [i for i, body in enumerate(self.items) if body.space is not space]
         self.__dict__.pop("_outside", None)
         self._clock = clock()
-        self._find_fixed(range(len(self.items)))
-        self._read(self._all)
+        if self.items:
+            self._find_fixed(range(len(self.items)))
+            self._read(self._all)
         self.still: IntArray = (self._fixed[:, 2] < 0.0).astype(np.int64)
 
     def read(self) -> int:
@@ -84,6 +84,10 @@ class Partners:
             self._find_fixed(self.outside)
             self._clock = now
         return self._read(self._outside)
+
+    @cached_property
+    def _all(self) -> _Reader:
+        return self._reader(range(len(self.items)))
 
     @cached_property
     def _outside(self) -> _Reader:
