@@ -82,8 +82,8 @@ class JointRows(Listing):
         """Find the constraints that always exert forces in a rest step, and those with a sleeping body; forget
         `parted`. Dynamic partners sleep or are outside the space: batch calls do not set their velocities to 0, so that
         their constraints always exert forces, too."""
-        unreached = {body: body.body_type == pymunk.Body.DYNAMIC for body in self.partners.items}
-        asleep = {body: dynamic and body.space is self.space for body, dynamic in unreached.items()}
+        unreached = dict(zip(self.partners.items, self.partners.dynamic(), strict=True))
+        asleep = {**unreached, **{self.partners.items[i]: False for i in self.partners.outside}}
         always = sorted({*self.forcing, *self.with_body(unreached)})
         self._always, self._asleep = [self.items[j] for j in always], {self.items[j] for j in self.with_body(asleep)}
         self._touched, self._pushing = b"", list[pymunk.Constraint]()

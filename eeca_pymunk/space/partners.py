@@ -95,10 +95,10 @@ class Partners:
 
     def _find_fixed(self, rows: Sequence[int]) -> None:
         """Read the centres of gravity and the kinds of the bodies of these rows, which only setters change."""
-        for i in rows:
-            now = private_joints.centre_and_kind(self.items[i])
-            if now != tuple(self._fixed[i].tolist()):
-                self._fixed[i], self._known[i] = now, np.nan
+        at: IntArray = np.array(rows, np.int64)
+        now = np.array([private_joints.centre_and_kind(self.items[i]) for i in rows]).reshape(-1, 3)
+        self._known[at[(now != self._fixed[at]).any(axis=1)]] = np.nan
+        self._fixed[at] = now
 
     def _reader(self, rows: Sequence[int]) -> _Reader:
         """What `_read` takes, for the bodies of these rows."""
@@ -121,6 +121,10 @@ class Partners:
                 f"{body.velocity} and angular velocity {body.angular_velocity}: set finite values before stepping"
             )
         return status
+
+    def dynamic(self) -> list[bool]:
+        """Which of the bodies are dynamic."""
+        return [kind == 0.0 for kind in self._fixed[:, 2].tolist()]
 
     def motion(self, i: int) -> tuple[float, float, float, float, float, float]:
         """Position of the origin (2), angle, velocity (2) and spin of the body in row i, as last read."""
