@@ -129,7 +129,7 @@ class HookedStepper(PackedSpace):
             changed = hooks.moved > 0 or (world.collisions and world.rehearsal.after)
             alters = changed or world.damping == 0.0
             bits, lost = self._alter_end(world, dt) if alters else (world.write_whole(), 0.0)
-            if alters or status & FORCES or hooks.any_body or world.joints is not None:
+            if changed or status & FORCES or hooks.any_body or world.joints is not None:
                 world.reset_forces()
             status = status & EVENTS | bits
             self._write_hooked_end(world, dt, status)
