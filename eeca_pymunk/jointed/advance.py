@@ -16,6 +16,7 @@ from ..model.joints import Joints
 from ..model.parameters.joints import ARM_ERROR, ARM_ITERATIONS, COLUMN_CONTACTS
 from ..model.scene import Scene
 from ..rows.build import push_contact
+from ..rows.inplace import copy
 from .bounded_rows import fill_rows, list_rows, note_rows
 from .columns import fill_group
 from .component import ready_in_step, step_component
@@ -151,26 +152,34 @@ def join_points(row: Row, along: float, across: float) -> None:
 
 
 @nonallocating
-def align(interval: Interval, change: bool) -> float:
-    """The largest distance of the two points of a contact between moving bodies at their mean places, over the size of
-    bodies and places. `change`: join the points, unless they are farther apart than the smaller body is large.
+def points_apart(interval: Interval, i: int) -> tuple[float, float, float]:
+    """How far the two points of contact i are `apart` at the mean places of its bodies, along n and along -t, and over
+    the size of bodies and places. 0 if a body does not move, or if they are farther apart than the smaller body is
+    large."""
+    isle, row, MID = interval.isle, interval.ROWS[i], interval.motion.MID
+    a, b = row.a, row.b
+    if isle.IM[a] == 0.0 or isle.IM[b] == 0.0:
+        return 0.0, 0.0, 0.0
+    along, across = apart(row, MID[b, 0] - MID[a, 0], MID[b, 1] - MID[a, 1])
+    off, size = abs(along) + abs(across), min(isle.EXTENT[a], isle.EXTENT[b])
+    if not off <= size:
+        return 0.0, 0.0, 0.0
+    return along, across, off / (size + abs(MID[a, 0]) + abs(MID[a, 1]))
+
+
+@nonallocating
+def align(interval: Interval) -> float:
+    """Join the two points of each contact between moving bodies at their mean places. Returns how far they were apart
+    at most (`points_apart`).
 
     An impulse p spread over a step changes the angular momentum of a body by (x + r) x p, with x its mean place: the
     two changes only cancel if both points are one.
     """
-    isle, ROWS, MID, worst = interval.isle, interval.ROWS, interval.motion.MID, 0.0
+    worst = 0.0
     for i in range(interval.m):
-        a, b = ROWS[i].a, ROWS[i].b
-        if isle.IM[a] == 0.0 or isle.IM[b] == 0.0:
-            continue
-        x, y = MID[b, 0] - MID[a, 0], MID[b, 1] - MID[a, 1]
-        along, across = apart(ROWS[i], x, y)
-        off, size = abs(along) + abs(across), min(isle.EXTENT[a], isle.EXTENT[b])
-        if not off <= size:
-            continue
-        worst = max(worst, off / (size + abs(MID[a, 0]) + abs(MID[a, 1])))
-        if change:
-            join_points(ROWS[i], along, across)
+        along, across, off = points_apart(interval, i)
+        worst = max(worst, off)
+        join_points(interval.ROWS[i], along, across)
     return worst
 
 
@@ -186,9 +195,31 @@ def farthest_apart(V: FloatArray, W: FloatArray, EXTENT: FloatArray, n: int) -> 
 
 @kernel
 def advance_aligned(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, free: bool) -> None:
-    """`advance`; in a `free` island repeated until the arms of contacts fit the motion (`align`), which keeps angular
-    momentum."""
+    """`advance`; in a `free` island repeated until the arms of contacts with an impulse fit the motion (`align`), which
+    keeps angular momentum.
+
+    Each motion has errors r of the arms. They change by w r, with w by Aitken's method for vectors:
+    w+ = -w r.(r+ - r)/|r+ - r|^2, from 1 on. So they converge where arms turn bodies as much as these move them.
+    """
+    m, weight = interval.m, 1.0
+    OFF, BEFORE = np.zeros((m, 2)), np.zeros((m, 2))
     for turn in range(ARM_ITERATIONS):
         advance(A, J, interval, L, B, False, np.empty((0, 3)))
-        if not free or align(interval, turn + 1 < ARM_ITERATIONS) <= ARM_ERROR:
+        if not free:
             break
+        worst, change, square = 0.0, 0.0, 0.0
+        for i in range(m):
+            if L[i, 0] == 0.0 and L[i, 1] == 0.0:
+                continue
+            OFF[i, 0], OFF[i, 1], off = points_apart(interval, i)
+            worst = max(worst, off)
+            for c in range(2):
+                change += BEFORE[i, c] * (OFF[i, c] - BEFORE[i, c])
+                square += (OFF[i, c] - BEFORE[i, c]) ** 2
+        if worst <= ARM_ERROR or turn + 1 == ARM_ITERATIONS:
+            break
+        if turn > 0 and square > 0.0:
+            weight *= -change / square
+        for i in range(m):
+            join_points(interval.ROWS[i], weight * OFF[i, 0], weight * OFF[i, 1])
+        copy(BEFORE, OFF)

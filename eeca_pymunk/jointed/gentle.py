@@ -22,7 +22,7 @@ def solve_gently(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Boun
     L[:m] = 0.0
     advance(A, J, interval, L, B, True, np.empty((0, 3)))
     if free:
-        align(interval, True)
+        align(interval)
     fill_free(groups, C, ROWS, isle.IM, isle.II, m)
     set_effective_masses(groups, C, ROWS, m)
     V, BOTH = interval.motion.MEAN.copy(), with_bounded(B, L, m)

@@ -144,7 +144,7 @@ def solve_contacts(
         J.PROGRESS.effort += joints.CONTACT_WORK * (m + 2)
         build = outer % joints.CHORD == 0
         advance(A, J, interval, L, B, build, FORESEEN if outer > 0 else UNKNOWN)
-        bent = align(interval, True) if free else 0.0
+        bent = align(interval) if free else 0.0
         if outer > 0:
             off = farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n)
             reached = min(reached, off)

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import copy
 import itertools
 from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pymunk
@@ -11,6 +14,7 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk.arrays import FloatArray
+from eeca_pymunk.jointed import advance
 
 Join = Callable[[pymunk.Body, pymunk.Body], pymunk.Constraint]
 KEPT = 1e-12  # over the largest momentum of a body
@@ -106,6 +110,30 @@ def test_arms_fit_the_motion_where_contacts_do_not_converge(dt: float) -> None:
         motor.max_force = 1000.0
         space.add(pymunk.PivotJoint(a, b, tuple((a.position + b.position) / 2)), motor)
     assert not all(keep(space, dt, 40))
+
+
+@pytest.mark.parametrize("factors", [(0.76, 0.76), (-0.9, -0.9), (1.5, 1.5), (0.9, -0.5), (-2.0, 0.5)])
+def test_arms_are_found_where_they_turn_bodies_as_much_as_these_move_them(
+    monkeypatch: pytest.MonkeyPatch, factors: tuple[float, float]
+) -> None:
+    """A motion that multiplies errors of the arms by a factor, along and across, of which joining points alone takes
+    hundreds of turns or diverges. A contact without impulse does not disturb that."""
+    row: Any = SimpleNamespace(a=0, b=1, nx=1.0, ny=0.0, arm_na=0.1, arm_ta=0.2, arm_nb=0.3, arm_tb=-0.4)
+    isle: Any = SimpleNamespace(IM=np.ones(2), EXTENT=np.full(2, 10.0))
+    motion = SimpleNamespace(MID=np.zeros((2, 2)))
+    nothing: Any = None
+    interval: Any = SimpleNamespace(isle=isle, ROWS=[copy.copy(row), row], motion=motion, m=2)
+    turns: list[int] = []
+
+    def motion_under(A: object, J: object, interval: object, L: FloatArray, *rest: object) -> None:
+        turns.append(0)
+        along, across = row.arm_tb - row.arm_ta, row.arm_nb - row.arm_na
+        motion.MID[1] = 0.5 - factors[0] * (along + 0.5), factors[1] * (across + 0.5) - 0.5
+
+    monkeypatch.setattr(advance, "advance", motion_under)
+    advance.advance_aligned(nothing, nothing, interval, np.array([[0.0, 0.0], [1.0, 0.0]]), nothing, True)
+    assert (row.arm_tb - row.arm_ta, row.arm_nb - row.arm_na) == pytest.approx((-0.5, -0.5), abs=1e-14)
+    assert len(turns) <= 13
 
 
 @pytest.mark.parametrize("spin", [19.9, 20.0, 20.1])

@@ -80,8 +80,7 @@ TAUT = heuristic(0.5, "of a body's inertia",
     "hold bodies; and, of joints that press, up to which contacts take it into account, as beyond twice that no "
     "inertia of the body would be left. A box stays on a tight bridge.")
 ARM_ITERATIONS = work(30, "iterations",
-    "Most iterations of the motion in which arms of contacts become those of its middle: each lowers their error by a "
-    "factor of six where motors press hard.")
+    "Most iterations of the motion in which arms of contacts become those of its middle (`advance_aligned`).")
 ARM_ERROR = round_off(1e-15, "of the component", "Error of the arms of contacts at which these iterations end.")
 MOTOR_OFF = round_off(1e-9, "of the speed, and of its bound",
     "Speed of a bounded row off its target, inside its bounds, that is an error.")
