@@ -20,6 +20,7 @@ from ..compiled.records import Rows
 from ..model.shapes import Shape
 from .private import arbiters as private_arbiters
 from .private import spaces as private
+from .private.shapes import overlap
 from .private.versions import processed
 
 if TYPE_CHECKING:
@@ -119,13 +120,15 @@ class Decisions:
         now, oldest = private.timestamp(space)(), self.since
         newest = [arbiter for arbiter in private.differing_arbiters(space) if private_arbiters.stamp(arbiter) > oldest]
         rules = Rules.of_arbiters(newest, world)
+        self._prolong(world, newest, now)
         if not self.laws:
             return rules
-        newer = {frozenset(a.shapes) for a in private.arbiters(space) if private_arbiters.stamp(a) > oldest}
+        found = ((frozenset(a.shapes), private_arbiters.stamp(a)) for a in private.arbiters(space))
+        stamps = {pair: step for pair, step in found if step > oldest}
         self.laws = {
             pair: (law, step)
             for pair, (law, step) in self.laws.items()
-            if now - step < space.collision_persistence and frozenset(pair) not in newer
+            if now - step < space.collision_persistence and stamps.get(frozenset(pair), -1) <= step
         }
         earlier: dict[ShapePair, Law] = {}
         for (one, two), (law, _) in self.laws.items():
@@ -135,6 +138,19 @@ class Decisions:
         never = {pair for pair, law in earlier.items() if law[0] < 0.0}
         changed = {pair: law for pair, law in earlier.items() if pair not in never}
         return Rules(rules.ignored | never, {**rules.changed, **changed})
+
+    def _prolong(self, world: World, newest: Iterable[pymunk.Arbiter], now: int) -> None:
+        """Let shapes that do not collide, and that pymunk's step has not seen, count as touching in it if they overlap
+        at its start: pymunk sees what overlaps at the end of free flight, which may be far away, as of a ball that
+        bounces fast within a shape that lets it pass."""
+        places, rows = world.places, world.bodies.row
+        rejected = [a.shapes for a in newest if not processed(a) and private_arbiters.stamp(a) < now]
+        rejected += [pair for pair, (law, step) in self.laws.items() if law[0] < 0.0 and step < now]
+        for pair in rejected:
+            if all(shape in places and shape.body in rows for shape in pair):  # sensors have no place
+                if overlap(pair, [world.state[rows[shape.body], :3].tolist() for shape in pair]):
+                    one, two = sorted(pair, key=places.__getitem__)
+                    self.laws[one, two] = _NONE, now
 
     def state(self, world: World) -> FloatArray:
         """(n, DECISION_COLUMNS) all decisions that apply, sorted."""
@@ -148,7 +164,8 @@ class Decisions:
             found = Rules.of_arbiters([arbiter], world)
             for a, b in (*found.ignored, *found.changed):
                 one, two = sorted(arbiter.shapes, key=world.places.__getitem__)
-                known[one, two] = found.changed.get((a, b), _NONE), step
+                if (one, two) not in known or known[one, two][1] < step:
+                    known[one, two] = found.changed.get((a, b), _NONE), step
         at = {shape: k for k, shape in enumerate(shapes)}
         rows = [(at[a], at[b], *law, now - step) for (a, b), (law, step) in known.items() if a in at and b in at]
         return np.array(sorted(rows), float).reshape(-1, DECISION_COLUMNS)

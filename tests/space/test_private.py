@@ -113,6 +113,16 @@ def test_what_shapes_say_of_themselves() -> None:
     assert private_shapes.collision_types([shape, pymunk.Circle(None, 1.0)]) == [5, 0]
 
 
+def test_shapes_overlap_at_given_poses_and_stay_where_they_are() -> None:
+    _, (one, two) = meeting()
+    one.center_of_gravity = 0.3, 0.2
+    (a,), (b,) = one.shapes, two.shapes
+    boxes = [shape.cache_bb() for shape in (a, b)]
+    assert private_shapes.overlap((a, b), [(7.0, 0.0, 1.0), (7.1, 0.1, 2.0)])
+    assert not private_shapes.overlap((a, b), [(7.0, 0.0, 1.0), (-7.1, 0.1, 2.0)])
+    assert [shape.bb for shape in (a, b)] == boxes
+
+
 def test_values_of_bodies() -> None:
     body = pymunk.Body(2.0, 3.0)
     body.center_of_gravity = 0.5, -0.25

@@ -3,6 +3,7 @@ long."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -13,7 +14,8 @@ OF_LIBRARY = (
     "cpShapeGetElasticity", "cpShapeGetFriction", "cpShapeGetSurfaceVelocity", "cpShapeGetFilter",
     "cpShapeGetCollisionType",
     "cpSpaceReindexShapesForBody", "cpBodyUpdatePosition", "cpCircleShapeGetOffset", "cpSegmentShapeGetA",
-    "cpSegmentShapeGetB", "cpPolyShapeGetCount", "cpPolyShapeGetVert",
+    "cpSegmentShapeGetB", "cpPolyShapeGetCount", "cpPolyShapeGetVert", "cpShapeUpdate", "cpShapeCacheBB",
+    "cpShapesCollide",
 )  # fmt: skip
 
 
@@ -73,3 +75,14 @@ def forget_corrections(bodies: Iterable[Any]) -> None:
     it when it moves the body next, and then sets it to 0; a move over dt = 0 therefore only clears it."""
     for body in bodies:
         lib.cpBodyUpdatePosition(body, 0.0)
+
+
+def overlap(shapes: tuple[Any, Any], poses: Sequence[Sequence[float]]) -> bool:
+    """Whether two shapes touch at these poses (x, y, angle) of their bodies, which stay where they are."""
+    for shape, (x, y, angle) in zip(shapes, poses, strict=True):
+        c, s = math.cos(angle), math.sin(angle)
+        lib.cpShapeUpdate(shape._shape, pymunk.Transform(c, s, -s, c, x, y))
+    count: int = lib.cpShapesCollide(shapes[0]._shape, shapes[1]._shape).count
+    for shape in shapes:
+        lib.cpShapeCacheBB(shape._shape)
+    return count > 0
