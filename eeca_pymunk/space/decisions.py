@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pymunk
@@ -144,13 +144,15 @@ class Decisions:
         at its start: pymunk sees what overlaps at the end of free flight, which may be far away, as of a ball that
         bounces fast within a shape that lets it pass."""
         places, rows = world.places, world.bodies.row
-        rejected = [a.shapes for a in newest if not processed(a) and private_arbiters.stamp(a) < now]
+        rejected: list[tuple[Any, ...]] = [
+            arbiter.shapes for arbiter in newest if not processed(arbiter) and private_arbiters.stamp(arbiter) < now
+        ]
         rejected += [pair for pair, (law, step) in self.laws.items() if law[0] < 0.0 and step < now]
         for pair in rejected:
-            if all(shape in places and shape.body in rows for shape in pair):  # sensors have no place
-                if overlap(pair, [world.state[rows[shape.body], :3].tolist() for shape in pair]):
-                    one, two = sorted(pair, key=places.__getitem__)
-                    self.laws[one, two] = _NONE, now
+            at = [rows.get(shape.body, -1) if shape in places else -1 for shape in pair]  # sensors have no place
+            if min(at) >= 0 and overlap(pair, [world.state[row].tolist() for row in at]):
+                one, two = sorted(pair, key=places.__getitem__)
+                self.laws[one, two] = _NONE, now
 
     def state(self, world: World) -> FloatArray:
         """(n, DECISION_COLUMNS) all decisions that apply, sorted."""

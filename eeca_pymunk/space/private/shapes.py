@@ -78,8 +78,8 @@ def forget_corrections(bodies: Iterable[Any]) -> None:
 
 
 def overlap(shapes: tuple[Any, Any], poses: Sequence[Sequence[float]]) -> bool:
-    """Whether two shapes touch at these poses (x, y, angle) of their bodies, which stay where they are."""
-    for shape, (x, y, angle) in zip(shapes, poses, strict=True):
+    """Whether two shapes touch at these poses (x, y, angle, ...) of their bodies, which stay where they are."""
+    for shape, (x, y, angle, *_) in zip(shapes, poses, strict=True):
         c, s = math.cos(angle), math.sin(angle)
         lib.cpShapeUpdate(shape._shape, pymunk.Transform(c, s, -s, c, x, y))
     count: int = lib.cpShapesCollide(shapes[0]._shape, shapes[1]._shape).count
