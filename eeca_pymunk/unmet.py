@@ -25,7 +25,8 @@ class Unmet(NamedTuple):
         "impacts": number of impacts on a body in a step. Further ones are ignored and may penetrate.
         "hits": number of impacts on an island. Further ones are ignored until the next step and may penetrate.
         "impact": residual velocity of a simultaneous impact, length/time.
-        "solves": work of the events of the step, in looks (see the glossary). The step ends early.
+        "solves": work of the step, in looks (see the glossary): that of its events, and the part of the limit that
+            joints have taken of theirs. The step ends early.
         "contacts": residual velocity of the persistent contacts of an island of up to `COLUMN_CONTACTS` contacts,
             length/time; nan if bodies are jointed.
         "joints": status of the solve of jointed bodies.

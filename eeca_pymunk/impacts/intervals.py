@@ -10,6 +10,7 @@ from ..islands.building import build_islands
 from ..islands.intervals import begin_interval, find_lifts_at_cut
 from ..islands.local import contact_range
 from ..jointed.ends import shorten, under_way
+from ..jointed.ledger import most_looks
 from ..jointed.lifting import lift_at_cut
 from ..jointed.meet import end_before
 from ..jointed.partners import carry
@@ -75,7 +76,7 @@ def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
     own, other = (A.STATE[i].own, A.STATE[i].other) if met else (-1, -1)
     if not met and A.STATE[i].shapes > 0:
         own = A.STATE[i].first_shape
-    note_unmet(A, SOLVES, own, other, A.COUNT.work, most_work(A))
+    note_unmet(A, SOLVES, own, other, A.COUNT.work + most_work(A) - most_looks(A, J), most_work(A))
     A.PAR.dt = t
     A.COUNT.heap = 0
     if J.TALLY.components > 0:
