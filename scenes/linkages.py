@@ -155,6 +155,21 @@ def cloth(side: int = 15, mesh: float = 0.1) -> pymunk.Space:
     return space
 
 
+def draped(side: int = 7, mesh: float = 0.1) -> pymunk.Space:
+    """A `cloth` that nothing holds, above a fixed disk: its knots are disks of .03, which pass through one another."""
+    space = cloth(side, mesh)
+    for joint in list(space.constraints):
+        if isinstance(joint, pymunk.PivotJoint):
+            space.remove(joint)
+    for knot in list(space.bodies):
+        shape = pymunk.Circle(knot, 0.03)
+        shape.filter = pymunk.ShapeFilter(group=1)
+        space.add(shape)
+    middle = (side // 2) * mesh * math.cos(math.pi / 6.0) + 0.013
+    space.add(pymunk.Circle(space.static_body, 0.15 * side / 7, (middle, -1.0 * side / 7)))
+    return space
+
+
 # Andrews' squeezing mechanism (Test Set for IVP Solvers, problem andrews): angles at the start, angles and their rates
 # after .03 s.
 SQUEEZER_START = {

@@ -21,8 +21,9 @@ from ..jointed.groups import find_groups
 from ..jointed.meet import end_before, locate_impact
 from ..model.contacts import SOLVED, JointedProblem, Row, Solved
 from ..model.joints import Joints
-from ..model.parameters.events import EVENT_LOOKS, RESOLUTION
+from ..model.parameters.events import EVENT_LOOKS
 from ..model.parameters.impulses import WEDGED
+from ..model.parameters.intervals import UNSOLVED_PART
 from ..model.parameters.joints import CLOSES, IMPACT_ENERGY, IMPACT_LIMITS
 from ..model.scene import Scene
 from ..rows.blocks import TRUNCATED, close_block, solve_block
@@ -181,5 +182,5 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     n = unite_block(A, a, b, t, n, lasts, lost)
     n = list_ended(A, n)
     for q in range(n):
-        A.RESTING[A.BLOCK[q]].longest *= RESOLUTION  # they move otherwise now, perhaps for long
+        A.RESTING[A.BLOCK[q]].longest *= UNSOLVED_PART  # they move otherwise now, perhaps for long
     return n

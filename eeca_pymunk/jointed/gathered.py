@@ -7,11 +7,12 @@ from ..compiled import nonallocating
 from ..geometry.flight import pose, rate
 from ..joints.ledger import clear_interval
 from ..joints.parts import meets_limit
-from ..model.joint_steps import ELASTIC
+from ..model.joint_steps import ELASTIC, LINEAR
 from ..model.joints import GIVES_WAY, LEFT_APART, RATCHET, Joints
 from ..model.parameters.joints import NEARLY_HELD
 from ..model.scene import Scene
 from ..newton.motion import read_body, seat, size_up
+from .groups import Groups
 
 
 @nonallocating
@@ -47,6 +48,33 @@ def gave_way(J: Joints, s: int) -> bool:
         if touched == LEFT_APART or (touched == GIVES_WAY and B.status == ELASTIC and not worse):
             return False
     return True
+
+
+@nonallocating
+def some_taut(J: Joints, groups: Groups) -> bool:
+    """Whether a component is held across its joints by their pull (`..joints.taut`)."""
+    for s in groups.JOINTED:
+        if J.COMPONENT[s].taut > 0:
+            return True
+    return False
+
+
+@nonallocating
+def some_give(J: Joints, groups: Groups) -> bool:
+    """Whether joints of a component have given way elastically in its last step."""
+    for s in groups.JOINTED:
+        if J.JOINT[J.COUPLING[J.COMPONENT[s].first_joint].joint].compliance > 0.0:
+            return True
+    return False
+
+
+@nonallocating
+def some_refused(J: Joints, groups: Groups) -> bool:
+    """Whether a component `gave_way` in a long interval, or failed to take it as a whole."""
+    for s in groups.JOINTED:
+        if gave_way(J, s) or J.STEPPED[s].status == LINEAR:
+            return True
+    return False
 
 
 @nonallocating

@@ -21,6 +21,7 @@ from ..islands.candidates import before_end, sweeps_of
 from ..model.contacts import Bounded, JointedProblem
 from ..model.joints import Joints
 from ..model.parameters import joints
+from ..model.parameters.events import RESOLUTION
 from ..model.parameters.impulses import WEDGED
 from ..model.parameters.intervals import LARGE_ISLAND
 from ..model.scene import Scene
@@ -32,28 +33,13 @@ from ..rows.laws import give_slips, solve_columns, solve_wedged, take_slips
 from .advance import Interval, advance, advance_aligned, align, farthest_apart
 from .bounded_rows import make_bounded, settle_bounded, with_bounded
 from .columns import count_operations, fill_free, leave_out, set_effective_masses
+from .gathered import some_give, some_refused, some_taut
 from .gentle import solve_gently
-from .groups import Groups, is_free
+from .groups import is_free
 from .losses import lock_jointed, lost, work_error
 from .secant import fit_columns
 
-
-@nonallocating
-def some_taut(J: Joints, groups: Groups) -> bool:
-    """Whether a component is held across its joints by their pull (`..joints.taut`)."""
-    for s in groups.JOINTED:
-        if J.COMPONENT[s].taut > 0:
-            return True
-    return False
-
-
-@nonallocating
-def some_give(J: Joints, groups: Groups) -> bool:
-    """Whether joints of a component have given way elastically in its last step."""
-    for s in groups.JOINTED:
-        if J.JOINT[J.COUPLING[J.COMPONENT[s].first_joint].joint].compliance > 0.0:
-            return True
-    return False
+GIVEN_UP, UNSOLVED, SOLVED = -1, 0, 1  # what becomes of the contacts of an interval
 
 
 @nonallocating
@@ -87,12 +73,15 @@ def accelerations(interval: Interval, L: FloatArray, B: Bounded) -> tuple[FloatA
 def solve_contacts(
     A: Scene, J: Joints, interval: Interval, L: FloatArray, EXPECTED: FloatArray, slow: float, fast: float, pull: float,
     owed: float,
-) -> bool:  # fmt: skip
-    """Impulses L (in: guesses) of the m contacts of an island, and the motion under them; whether they have converged.
+) -> int:  # fmt: skip
+    """Impulses L (in: guesses) of the m contacts of an island, and the motion under them. Returns SOLVED if they have
+    converged, else UNSOLVED, or GIVEN_UP without a result.
 
     Each iteration steps the components under L, and ends if their velocities agree with FORESEEN, those that the
     contacts' laws gave before; else it solves these laws with the columns, for L and FORESEEN. Columns are computed
-    again in every CHORD-th iteration, else updated (`secant`). Iterations end in five ways:
+    again in every CHORD-th iteration, else updated (`secant`). A long interval (PROGRESS.long) is given up where a
+    component gives way or is not stepped as a whole, or CHORD iterations have not come near. Else iterations end in
+    five ways:
 
     | because | `agreed` | `converged` | impulses |
     |---|---|---|---|
@@ -137,13 +126,15 @@ def solve_contacts(
     better, bent, reached, B = 0, 0.0, np.inf, make_bounded(J, groups, m <= joints.COLUMN_CONTACTS)
     NOW = np.empty(len(B.OF))
     problem = JointedProblem(ROWS, C, B, m)
-    free = is_free(isle, groups, n, J)
+    free, begun = is_free(isle, groups, n, J), J.PROGRESS.effort
     for outer in range(rounds):
         if J.PROGRESS.effort > J.PROGRESS.share:
             break
         J.PROGRESS.effort += joints.CONTACT_WORK * (m + 2)
         build = outer % joints.CHORD == 0
         advance(A, J, interval, L, B, build, FORESEEN if outer > 0 else UNKNOWN)
+        if J.PROGRESS.long > 0 and some_refused(J, groups):
+            return GIVEN_UP
         bent = align(interval) if free else 0.0
         if outer > 0:
             off = farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n)
@@ -165,6 +156,9 @@ def solve_contacts(
             if off < best:
                 best, better = off, outer
                 copy(LEAST, L)
+            if J.PROGRESS.long > 0 and exactly and outer >= joints.CHORD and off > joints.OUTER_FAR * scale:
+                if RESOLUTION * (J.PROGRESS.effort - begun) <= J.PROGRESS.budget:
+                    return GIVEN_UP  # the step has work for many shorter intervals
             if exactly and outer >= joints.CHORD and (off > scale or outer - better > joints.CHORD):
                 break  # new columns have not helped either
         if not build and not fit_columns(interval, B, L, USED, NOW, PREVIOUS):
@@ -234,4 +228,5 @@ def solve_contacts(
         known = max(known, min(2.0 * reached / (slow + pull * h), joints.PRESS_WORK_TAUT))
     copy(FORESEEN, motion.MEAN)
     lock_jointed(A, J, interval, L, B, free, elastic, owed, work_error(interval, L, slow, pull, known))
-    return converged and farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n) <= max(agree, joints.AGREE * scale)
+    agreed = farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n) <= max(agree, joints.AGREE * scale)
+    return SOLVED if converged and agreed else UNSOLVED

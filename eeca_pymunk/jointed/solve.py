@@ -35,7 +35,7 @@ from .ledger import work_left
 from .lengths import excess, forced_deeper, sinks, too_deep_on_way, within_sagitta
 from .lifting import lift_island
 from .losses import lost, slip_of
-from .press import solve_contacts
+from .press import GIVEN_UP, SOLVED, solve_contacts
 from .rest import rest_if_still
 
 
@@ -45,14 +45,15 @@ def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
     if joints do not hold, work is short, or bodies move too far (`lengths`).
 
     A length that was too long is not tried again at once: the next interval is at most INTERVAL_RETRY times as long as
-    one that was shortened, RESOLUTION times after an impact (`Rest.longest`).
+    one that was shortened, UNSOLVED_PART times after an impact (`Rest.longest`).
 
     Returns DONE; or, with everything as before, PUSHES_FULL, or SPENT if the step has no work left.
     """
     rest, longest = A.RESTING[root], h
     # One as short as PAR.instant would be empty (`ends.end_here`).
     least = min(h, 2.0 * A.PAR.instant)
-    h = min(h, rest.longest)
+    # How a step was cut does not tell how short the intervals of the next one have to be.
+    h = min(h, rest.longest if t > 0.0 else max(rest.longest, h / RESOLUTION**2))
     for attempt in range(INTERVAL_TRIES):
         h = max(h, least)
         last = attempt + 1 == INTERVAL_TRIES or A.COUNT.together > 0 or h <= least
@@ -97,7 +98,7 @@ def excess_length(
     Args:
         solved: whether contacts are.  last: whether no other attempt follows, see `try_jointed`.
     """
-    m, n, h = interval.m, interval.n, interval.h
+    m, n = interval.m, interval.n
     far = 2.0 if not solved and J.PROGRESS.effort > J.PROGRESS.share else 0.0
     for s in interval.groups.JOINTED:
         if gave_way(J, s):
@@ -114,8 +115,7 @@ def excess_length(
     # unsolved contacts would sink further in the next interval.
     payable = RESOLUTION * effort <= J.PROGRESS.budget
     hard = (m <= COLUMN_CONTACTS and payable) or (n < LARGE_ISLAND and sinks(A, interval))
-    hard = hard and h * UNSOLVED_PART**2 > A.PAR.dt / RESOLUTION
-    return UNSOLVED_PART if hard else min(far, UNSOLVED_PART)
+    return UNSOLVED_PART if hard and J.PROGRESS.long > 0 else min(far, UNSOLVED_PART)
 
 
 @kernel
@@ -156,20 +156,27 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     if p > 0:
         m = gather_contacts(A, isle, contacts, isle.POSE + 0.5 * h * isle.V, REACH, h, k == n)
     interval = Interval(isle, groups, ROWS, motion, make_columns(groups, ROWS, m), m, n, t, h)
-    solved, before = True, J.PROGRESS.effort
+    outcome, before = SOLVED, J.PROGRESS.effort
     J.PROGRESS.share = before + INTERVAL_SHARE * max(work_left(A, J), 0.0)
     if m > 0:
         recall(A, ROWS, m, h, m > COLUMN_CONTACTS, L, EXPECTED)
         owed = max(-A.RESTING[root].lost, 0.0)
-        solved = solve_contacts(A, J, interval, L, EXPECTED, slow, fast, pull, owed)
-        if solved or m > COLUMN_CONTACTS:  # impulses of few contacts that are no solution are a bad guess
+        # Contacts of a short interval are solved more easily than those of components that are stepped in parts.
+        J.PROGRESS.long = int(not last and h * UNSOLVED_PART**2 > A.PAR.dt / RESOLUTION)
+        outcome = solve_contacts(A, J, interval, L, EXPECTED, slow, fast, pull, owed)
+        if outcome == SOLVED or m > COLUMN_CONTACTS:  # impulses of few contacts that are no solution are a bad guess
             remember_loads(A, ROWS, L, m, h)
     if m == 0:
         advance(A, J, interval, L, room_for_rows(0, 0), False, np.empty((0, 3)))
     COUNT.solves += 1
     COUNT.solved += n
-    far = excess_length(A, J, interval, L, root, J.PROGRESS.effort - before, solved, last)
+    solved, far = outcome == SOLVED, UNSOLVED_PART
+    if outcome != GIVEN_UP:
+        far = excess_length(A, J, interval, L, root, J.PROGRESS.effort - before, solved, last)
+    J.PROGRESS.long = 0
     if far > INTERVAL_RETRY and not last:
+        if work_left(A, J) < 0.0:
+            far = max(far, RESOLUTION)  # few more attempts follow
         for s in groups.JOINTED:
             restore_joints(J, s)
         local.clear_places(A, MINE)

@@ -7,8 +7,9 @@ and the compliance of the joints over (h/7)^2:
     ORDER_4 = -1: 5 parts, 0           WHOLE_STEP = 0: 1 part, 0     1, 2, 3: 2, 4, 7 parts, 0
     ELASTIC_RUNG = 4: 1 part, 1e-9     5 to 9: 7 parts, 1e-9, 1e-8, 1e-7, 1e-6, 1e-4
 
-Joints that contradict one another (`contradiction`) become elastic at once: all rungs before would fail alike. The work
-of all rungs together is bounded. Elastic joints keep at least the same compliance in later steps until they are closed.
+Joints that contradict one another (`contradiction`) become elastic at once: all rungs before would fail alike. Where a
+shorter interval is tried instead (PROGRESS.long), exact joints take the step as a whole or not at all. The work of all
+rungs together is bounded. Elastic joints keep at least the same compliance in later steps until they are closed.
 """
 
 from __future__ import annotations
@@ -176,6 +177,8 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
         forget_parts(W)
     progress.most_epsilon = joints.REDUNDANT_MOST
     while rung < RUNGS and not progress.effort > progress.limit:
+        if progress.long > 0 and WHOLE_STEP < rung < ELASTIC_RUNG:
+            break
         parts = (
             PARTS if rung == ORDER_4 else 1 if rung == ELASTIC_RUNG else 1 << rung if rung < 3 else joints.ELASTIC_PARTS
         )

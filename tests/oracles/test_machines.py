@@ -70,16 +70,7 @@ def test_cloth_of_fifteen_by_fifteen_keeps_its_pins() -> None:
 
 def test_a_cloth_that_falls_over_a_disk_gains_nothing() -> None:
     """Some of its steps are cut short, and give way by no more than a ten-thousandth of a mesh."""
-    space = linkages.cloth(7)
-    for joint in list(space.constraints):
-        if isinstance(joint, pymunk.PivotJoint):
-            space.remove(joint)
-    for knot in list(space.bodies):
-        shape = pymunk.Circle(knot, 0.03)
-        shape.filter = pymunk.ShapeFilter(group=1)
-        space.add(shape)
-    middle = 0.3 * math.cos(math.pi / 6.0) + 0.013
-    space.add(pymunk.Circle(space.static_body, 0.15, (middle, -1.0)))
+    space = linkages.draped()
     matter(space, 0.5)
     stepper, worst = Audit(space), 0.0
     for _ in range(60):

@@ -42,7 +42,8 @@ INTERVAL_RETRY = heuristic(1.5, "ratio",
 SMALL_SWEEPS = work(40, "sweeps",
     "Sweeps of an impact on a pile before its direct solves, and of a small island that waits for its next one.")
 UNSOLVED_PART = work(4.0, "ratio",
-    "Factor by which an interval with joints becomes shorter, at most, where its contacts are not solved.")
+    "Factor by which an interval with joints becomes shorter, at most, where its contacts are not solved, and may be "
+    "longer after an impact.")
 UNSOLVED_DEPTH = heuristic(0.1, "of what an interval allows",
     "Depth by which a contact of a small island with joints may close in an interval that is not solved: beyond it "
     "the interval becomes shorter whatever work the step has left.")

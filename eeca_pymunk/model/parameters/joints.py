@@ -102,7 +102,7 @@ FIT_RESIDUAL = accuracy(1e-06, "of the fastest closing contact",
     "Residual of the impulses that keep contacts from closing in this projection.")
 FIT_ENERGY = round_off(1e-12, "of the energy", "Change of energy by this projection that is round-off.")
 JOINTED_CORRECTION_SWEEPS = work(40, "sweeps", "Sweeps of the penetration correction of jointed bodies.")
-STEP_WORK = work(64000000.0, "operations",
+STEP_WORK = work(54000000.0, "operations",
     "Work of a step with joints besides STEP_WORK_BODY; 4e9 operations take about a second.")
 INTERVAL_SHARE = work(0.25, "of what is left of the budget",
     "Work of an interval after which it is solved again, shorter, if it has not converged.")
@@ -129,6 +129,9 @@ COLUMN_HOMOTOPIES = work(8, "homotopies", "Homotopies to the solution, at most."
 COLUMN_PROXIMAL = round_off(10000000000.0, "over the effective mass",
     "Stiffness of the proximal term of redundant contacts of components.")
 OUTER = work(20, "steps of the components", "Iterations between contacts and components, at most.")
+OUTER_FAR = work(0.01, "of |a| h and the speed",
+    "Difference of the velocities of contacts and components beyond which, after CHORD iterations, a shorter interval "
+    "is tried at once.")
 OUTER_MANY = work(2, "steps of the components", "These iterations with more than COLUMN_CONTACTS contacts.")
 OUTER_PART = work(1, "steps of the components",
     "These iterations in an interval of many contacts that ends within the step.")
@@ -169,7 +172,7 @@ CHORD = work(5, "steps of the components", "Iterations after which the response 
 CLOSES = round_off(1e-12, "of the fastest contact",
     "Speed with which contacts may close after an elastic impact on components.")
 
-LEAST_SOLUTIONS = work(40, "solutions", "Newton iterations that a step of a component may take whatever work is left.")
+LEAST_SOLUTIONS = work(10, "solutions", "Newton iterations that a step of a component may take whatever work is left.")
 LINEAR_APART = accuracy(1e-4, "of the component",
     "How far one linear system may leave joints: what would be farther moves as one body. An interval that ends at "
     "an impact is shorter where elastic joints would give way farther.")

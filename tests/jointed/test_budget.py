@@ -1,0 +1,65 @@
+"""No step of jointed bodies takes much more work than its budget, whatever its size and however hard its contacts are;
+and its work is spent on motion: lengths of intervals that joints refuse are given up at once."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pymunk
+import pytest
+
+import eeca_pymunk as ep
+from comparisons.hard_cases.case import matter
+from eeca_pymunk.model.parameters.joints import STEP_WORK, STEP_WORK_BODY
+from eeca_pymunk.prediction.work import growth
+from scenes import linkages
+from tests.programs import varied
+
+DT = 1 / 60
+
+
+class Counting(ep.EECA):
+    """EECA that notes, of each step, the work over its budget, and the part of dt that was taken before it was cut."""
+
+    def __init__(self, space: pymunk.Space) -> None:
+        super().__init__(space)
+        self.works, self.parts = list[float](), list[float]()
+
+    def step(self, dt: float) -> ep.StepReport:
+        report, loop = super().step(dt), self.event_loop
+        for unmet in report.unmet:
+            assert unmet.name != "solves" or 0.9 < unmet.value / unmet.limit < 1.6
+        if loop is not None and loop.jointed:
+            budget = (STEP_WORK + STEP_WORK_BODY * len(loop.scene.BODY)) * growth(dt)
+            self.works.append(float(loop.joints.PROGRESS.effort / budget))
+            self.parts.append(float(loop.scene.PAR.dt / dt))
+        return report
+
+
+@pytest.mark.parametrize("side", [7, 10, 14])
+def test_a_cloth_that_falls_over_a_disk_stays_within_its_budget(side: int) -> None:
+    """Its knots are almost in line when it folds, so that Newton's method is slow, and 196 of them are expensive. Past
+    the budget only what ends a step is solved, six tenths of the budget at most (four budgets, .18 s, if each attempt
+    at an interval may take 40 iterations, and becomes shorter by a factor of 4). Steps are cut, but time goes on."""
+    space = linkages.draped(side)
+    matter(space, 0.5)
+    stepper = Counting(space)
+    for _ in range(60):
+        stepper.step(DT)
+    assert 0.5 < max(stepper.works) <= 1.6
+    assert np.mean(stepper.parts) >= 0.4
+    assert min(stepper.parts) > 0.0
+
+
+@pytest.mark.parametrize(("seed", "least"), [(51050106, 0.6), (51050051, 0.8), (51050114, 0.85)])
+def test_the_work_of_steps_is_spent_on_motion(monkeypatch: pytest.MonkeyPatch, seed: int, least: float) -> None:
+    """Of so much of the time of a hard scene motion is found before its steps are cut. If components may be stepped in
+    parts within long intervals, and these are tried again at full length after each impact, it is a third in 51050106.
+    """
+    monkeypatch.setattr(varied.ep, "EECA", Counting)
+    scene = varied.Varied(seed, True)
+    monkeypatch.setattr(scene, "_longest", lambda: math.inf)
+    scene.play(60)
+    assert isinstance(scene.stepper, Counting)
+    assert np.mean(scene.stepper.parts) >= least
