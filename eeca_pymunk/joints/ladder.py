@@ -104,24 +104,12 @@ def take_parts(W: Workspace, h: float, length: float, rung: int, parts: int, giv
 
 
 @nonallocating
-def energy_of_fall(W: Workspace, h: float) -> float:
-    """The kinetic energy that the accelerations of the bodies would give them in h from rest, without joints."""
-    energy = 0.0
-    for i in range(W.bodies):
-        for c in range(W.J.LOCAL[i].freedoms):
-            if W.J.LOCAL[i].mobility[c] > 0.0:
-                energy += 0.5 * (h * W.J.LOCAL[i].acceleration[c]) ** 2 / W.J.LOCAL[i].mobility[c]
-    return energy
-
-
-@nonallocating
-def repaid(W: Workspace, h: float, own: bool) -> bool:
-    """Whether exact rows have given no energy, or only what can be taken from the relative motion, which is done.
+def repaid(W: Workspace, own: bool) -> bool:
+    """Whether exact rows have given no energy, or little, which is then taken from the motion.
 
     Joints that an earlier step left apart (`own`) close at once; if that gives much energy beside what was there, the
     step fails. Other rows hold to round-off e of their places, and give e times their impulse over h: more in shorter
-    steps. The step also fails if bodies keep much of a gain: in a short one impulses of joints that contradict one
-    another seem to fit, and their round-off turns the component as a whole.
+    steps.
     """
     part = W.J.PART_LEDGER
     # What limits lose pays for round-off of joints that hold.
@@ -133,11 +121,7 @@ def repaid(W: Workspace, h: float, own: bool) -> bool:
     if own and not gain <= joints.REPAID * had:
         return False
     if own or gain > joints.JOINT_GAIN * had:
-        taken = lock_energy(W.J.LOCAL, W.bodies, gain)
-        part.closed -= taken
-        started = kinetic_of_component(W.J.LOCAL, W.bodies, SAVED)
-        rise = kinetic_of_component(W.J.LOCAL, W.bodies, NOW) - started
-        return bool(min(gain - taken, rise) <= joints.GAIN_KEPT * (started + energy_of_fall(W, h)))
+        part.closed -= lock_energy(W.J.LOCAL, W.bodies, gain)
     return True
 
 
@@ -185,7 +169,7 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
         compliance = compliance_on(rung, h, yields, first.compliance)
         clear_ledger(W.J.PART_LEDGER)
         outcome = take_parts(W, h, length, rung, parts, compliance / (h / parts) ** 2, cold)
-        if outcome == TAKEN and (rung >= ELASTIC_RUNG or repaid(W, h, own)):
+        if outcome == TAKEN and (rung >= ELASTIC_RUNG or repaid(W, own)):
             first.compliance = compliance
             return EXACT if rung <= WHOLE_STEP else HALVED if rung < ELASTIC_RUNG else ELASTIC
         # A rung that began with predicted values, or with impulses of redundant rows, is tried again without these.
