@@ -134,6 +134,7 @@ def solve_contacts(
         build = outer % joints.CHORD == 0
         advance(A, J, interval, L, B, build, FORESEEN if outer > 0 else UNKNOWN)
         if J.PROGRESS.long > 0 and some_refused(J, groups):
+            J.PROGRESS.near = 0.0
             return GIVEN_UP
         bent = align(interval) if free else 0.0
         if outer > 0:
