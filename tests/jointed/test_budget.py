@@ -63,3 +63,21 @@ def test_the_work_of_steps_is_spent_on_motion(monkeypatch: pytest.MonkeyPatch, s
     scene.play(60)
     assert isinstance(scene.stepper, Counting)
     assert np.mean(scene.stepper.parts) >= least
+
+
+def test_what_a_pin_holds_on_a_floor_is_solved_at_once() -> None:
+    """At rest, where energies are round-off, no gain of a joint is a reason to step it in parts."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -9.81
+    floor = pymunk.Segment(space.static_body, (-50.0, 0.0), (50.0, 0.0), 0.1)
+    floor.friction = 1.0
+    space.add(floor)
+    for x in (0.0, 3.0, 6.0):
+        body = pymunk.Body(1.0, 0.5)
+        body.position = (x, 0.6)
+        shape = pymunk.Circle(body, 0.5)
+        shape.friction = 0.5
+        space.add(body, shape, pymunk.PinJoint(space.static_body, body, (x + 0.5, 3.0), (0.0, 0.0)))
+    stepper = Counting(space)
+    assert all(stepper.step(0.01).converged for _ in range(120))
+    assert max(stepper.works, default=0.0) < 0.05
