@@ -27,9 +27,11 @@ from ..model.parameters.intervals import LARGE_ISLAND
 from ..model.scene import Scene
 from ..rows.build import conserves, rates, rubs
 from ..rows.columns import push_columns
+from ..rows.conjugate import sweep_conjugate
 from ..rows.gentle import excessive
 from ..rows.inplace import copy
 from ..rows.laws import give_slips, solve_columns, solve_wedged, take_slips
+from ..rows.sweeps import sweep
 from .advance import Interval, advance, advance_aligned, align, farthest_apart
 from .bounded_rows import make_bounded, settle_bounded, with_bounded
 from .columns import count_operations, fill_free, leave_out, set_effective_masses
@@ -123,7 +125,7 @@ def solve_contacts(
     VELOCITIES, k = np.empty((2 * len(isle.IM), 3)), len(isle.IM)
     PREVIOUS, FORESEEN, UNKNOWN = VELOCITIES[:k], VELOCITIES[k:], VELOCITIES[:0]
     converged, best, worst, LEAST, USED, agreed = False, np.inf, 0.0, L.copy(), L.copy(), False
-    better, bent, reached, B = 0, 0.0, np.inf, make_bounded(J, groups, m <= joints.COLUMN_CONTACTS)
+    better, bent, rough, reached, B = 0, 0.0, False, np.inf, make_bounded(J, groups, m <= joints.COLUMN_CONTACTS)
     NOW = np.empty(len(B.OF))
     problem = JointedProblem(ROWS, C, B, m)
     free, begun = is_free(isle, groups, n, J), J.PROGRESS.effort
@@ -141,7 +143,7 @@ def solve_contacts(
             off = farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n)
             reached = min(reached, off)
             stalls = off > joints.OUTER_PROGRESS * best
-            if off <= agree or (off <= joints.OUTER_FLOOR * scale and stalls):
+            if (off <= agree and not (rough and worst > fine)) or (off <= joints.OUTER_FLOOR * scale and stalls):
                 # Velocities agree, but not well enough as long as contacts gain energy by them.
                 error = work_error(interval, L, slow, pull, joints.PRESS_WORK_ROUND_OFF)
                 pays = elastic or lost(interval, L) >= owed - error
@@ -188,9 +190,19 @@ def solve_contacts(
         leave_out(C, L, m, FORESEEN)
         BOTH = with_bounded(B, L, m)
         work = J.PROGRESS.share - J.PROGRESS.effort
-        worst = solve_columns(problem, BOTH, FORESEEN, fine, joints.COLUMN_SWEEPS if build else 0, most, work)
+        sweeps = joints.COLUMN_SWEEPS if build else 0
+        worst = solve_columns(problem, BOTH, FORESEEN, fine, sweeps, most, work)
         if worst > WEDGED * scale and m <= joints.COLUMN_CONTACTS and rubs(ROWS, m):
             worst = solve_wedged(problem, BOTH, FORESEEN, fine, most, work)
+        rough = outer == 0 and exactly and excessive(BOTH, m, isle.IM, n, quick)
+        if rough:
+            # Far from the solution laws may contradict one another, by as much as the columns are wrong.
+            copy(L, USED)
+            copy(FORESEEN, motion.MEAN)
+            leave_out(C, L, m, FORESEEN)
+            BOTH = with_bounded(B, L, m)
+            worst = sweep(problem, BOTH, FORESEEN)
+            worst = sweep_conjugate(problem, BOTH, FORESEEN, joints.LAWS_ROUGH * worst, most)[1]
         if not exactly:
             stop_at_walls(A, problem, n, C.LEFT_OUT, BOTH, FORESEEN)
         count_operations(J, C)

@@ -18,8 +18,8 @@ from ..islands.membership import lossy
 from ..model.islands import Island
 from ..model.joints import Joints
 from ..model.parameters.events import RESOLUTION
-from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, LARGE_ISLAND, UNSOLVED_PART
-from ..model.parameters.joints import COLUMN_CONTACTS, INTERVAL_SHARE, INTERVAL_WORK
+from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, LARGE_ISLAND, REACH_ROUND_OFF, UNSOLVED_PART
+from ..model.parameters.joints import COLUMN_CONTACTS, INTERVAL_SHARE, INTERVAL_WORK, SPACING
 from ..model.scene import Scene
 from ..model.step import AGAIN, CONTACTS, DONE, PUSHES_FULL, SPENT
 from ..rows.bounded import room_for_rows
@@ -152,6 +152,9 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     ROWS, L = contacts.ROWS, contacts.L
     motion, REACH = motion_at_start(isle, k), np.empty(k)
     slow, fast, pull = speeds(isle.V, isle.ACC, isle.EXTENT, isle.IM, n, h, REACH)
+    for q in range(n):
+        slow = max(slow, SPACING * REACH_ROUND_OFF * isle.EXTENT[q] / h)  # tolerances must not underflow
+    fast = max(slow, fast)
     m = 0
     if p > 0:
         m = gather_contacts(A, isle, contacts, isle.POSE + 0.5 * h * isle.V, REACH, h, k == n)

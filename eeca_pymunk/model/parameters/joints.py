@@ -175,6 +175,8 @@ LINEAR_APART = accuracy(1e-4, "of the component",
     "an impact is shorter where elastic joints would give way farther.")
 EXCESSIVE_IMPULSE = round_off(1e3, "of the island's mass and speed",
     "Impulse beyond which a solution is replaced by sweeps from zero.")
+LAWS_ROUGH = work(1e-3, "of the change of velocities in a sweep",
+    "Error that sweeps may leave in the first iteration if its exact impulses are excessive.")
 GUESS_SPEED = round_off(1e2, "of the island's speed and |a| h",
     "Velocity without impulses, by the answers to a guess, from which on the guess is none.")
 GENTLE_SWEEPS = work(20, "sweeps", "Sweeps that replace an excessive solution.")
