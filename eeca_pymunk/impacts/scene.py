@@ -207,9 +207,10 @@ class EventLoop(Remembering):
         # The same array again, as long as it suffices: calls with other ones take longer.
         if len(changes) > len(self._changes):
             self._changes = np.zeros((2 * len(changes), 2), np.int64)
-        self._changes.fill(SAME)
-        self._changes.data.cast("B").cast("q")[: 2 * len(changes)] = array("q", chain.from_iterable(changes))
-        return bool(renew(self.table, self._changes))
+        words = array("q", chain.from_iterable(changes))
+        words.extend((SAME,) * (self._changes.size - len(words)))
+        self._changes.data.cast("B")[:] = words.tobytes()
+        return bool(result_of("renew", renew.bind(self.table, self._changes)()))
 
     def go_on_from(self, before: EventLoop, kept: Kept) -> None:
         """Before the first step: go on with the results of the loop before, for the rows that are the same."""

@@ -106,8 +106,10 @@ def edited_since(time: int) -> Edited | None:
     for thing, name in islice(reversed(_edited), _clock - time):
         (others if name in _SURFACE else reshaped).add(thing())
         values = values and name in _VALUES
-    reshaped.update([thing.body for thing in reshaped if isinstance(thing, pymunk.Shape)])
-    return Edited(reshaped | others, reshaped, values)
+    if reshaped:
+        reshaped.update([thing.body for thing in reshaped if isinstance(thing, pymunk.Shape)])
+        others |= reshaped
+    return Edited(others, reshaped, values)
 
 
 def record(thing: Any, name: str) -> None:
@@ -131,12 +133,12 @@ def record(thing: Any, name: str) -> None:
 
 
 def _property(name: str, native: Any) -> property:
-    read, write = native.fget, native.fset
+    read, write, kept = native.fget, native.fset, name in private_versions.DEFAULTS
 
     def set_and_record(self: Any, value: Any) -> None:
         before = None if read is None else read(self)
         write(self, value)
-        if name in private_versions.DEFAULTS:
+        if kept:
             private_versions.forget_function(self, name, value)
         if read is None or read(self) != before:
             record(self, name)

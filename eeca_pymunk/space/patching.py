@@ -45,8 +45,8 @@ def _is_kept(new: ShapeRecord, old: ShapeRecord, jointed: bool) -> bool:
     """Whether a scene may go on with this other record of a shape. A new one is needed if the shape has losses now and
     had none (elasticity 1), or the reverse; and, where there are joints, if friction was or is 0: pivots hold disks
     that have none where they are."""
-    (_, e, mu, *_), (_, e0, mu0, *_) = new.numbers, old.numbers
-    return (e < 1.0) == (e0 < 1.0) and not (jointed and (mu > 0.0) != (mu0 > 0.0))
+    now, then = new.numbers, old.numbers
+    return (now[1] < 1.0) == (then[1] < 1.0) and not (jointed and (now[2] > 0.0) != (then[2] > 0.0))
 
 
 def _signed(word: int) -> int:
@@ -159,6 +159,5 @@ def patch_rows(world: World, surfaces: bool) -> Changes | None:
 
 def _moved_shapes(world: World) -> Changes:
     """The changes of the shapes of static bodies that were moved, after `accept_static`."""
-    moved = {i for i, flag in enumerate(world.IDS[FLAGS].tolist()) if flag == MOVED}
-    first, owner = world.packed.totals[CARRIED], world.owner.tolist()  # the rows before have the shapes of others
-    return [(OUTLINE, row) for row in range(first, len(owner)) if owner[row] in moved]
+    flags, first = world.IDS[FLAGS].tolist(), world.packed.totals[CARRIED]  # the rows before have the shapes of others
+    return [(OUTLINE, first + k) for k, i in enumerate(world.owner[first:].tolist()) if flags[i] == MOVED]
