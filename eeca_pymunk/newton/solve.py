@@ -148,10 +148,10 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
             return True
         # Next to the solution errors cannot fall by much.
         slow = not worst <= NEWTON_PROGRESS * last and (iteration > 2 or not worst <= JOINT_ROUND_OFF)
-        if worst < best:
-            best = worst
-        elif iteration > since + 3:
+        # Near round-off, redundant rows that contradict one another leave an error that falls by little each time.
+        if iteration > since + 3 and not worst < (0.5 * last if worst < NEWTON_FLOOR else best):
             stalls += 1
+        best = min(best, worst)
         if not worst < 1e100 or stalls > 6 or iteration == NEWTON_ITERATIONS or progress.effort > progress.limit:
             return False
         last = worst

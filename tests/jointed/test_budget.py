@@ -41,7 +41,9 @@ class Counting(ep.EECA):
 def test_a_cloth_that_falls_over_a_disk_stays_within_its_budget(side: int) -> None:
     """Its knots are almost in line when it folds, so that Newton's method is slow, and 196 of them are expensive. Past
     the budget only what ends a step is solved, six tenths of the budget at most (four budgets, .18 s, if each attempt
-    at an interval may take 40 iterations, and becomes shorter by a factor of 4). Steps are cut, but time goes on."""
+    at an interval may take 40 iterations, and becomes shorter by a factor of 4). Steps are cut, but time goes on, also
+    where knots in line are apart by 1e-12, which no motion closes (100 knots stood still from the 50th step on, if
+    Newton's method repeats iterations of which each makes the error smaller by 2e-4 of it)."""
     space = linkages.draped(side)
     matter(space, 0.5)
     stepper = Counting(space)
@@ -49,7 +51,7 @@ def test_a_cloth_that_falls_over_a_disk_stays_within_its_budget(side: int) -> No
         stepper.step(DT)
     assert 0.5 < max(stepper.works) <= 1.6
     assert np.mean(stepper.parts) >= 0.4
-    assert min(stepper.parts) > 0.0
+    assert min(stepper.parts) > 0.0 and sum(part < 1e-6 for part in stepper.parts) <= (15 if side == 7 else 1)
 
 
 @pytest.mark.parametrize(("seed", "least"), [(51050106, 0.6), (51050051, 0.8), (51050114, 0.85)])
