@@ -140,7 +140,7 @@ def close_joints(W: Workspace, h: float, ledger: JointLedger) -> bool:
         taken = springs_of(W) - stored
         cost = taken + closing_work(local, W.bodies)
         # Closing what a step left apart is paid from the motion.
-        locked = lock_energy(local, W.bodies, cost) if own and cost > 0.0 else 0.0
+        locked = lock_energy(W, cost) if own and cost > 0.0 else 0.0
         # Contradictory rows are not closed.
         if not farthest(W) <= before or (own and locked < cost - 1e-9 * abs(cost)):
             go_back(local, W.bodies)

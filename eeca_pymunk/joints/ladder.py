@@ -24,9 +24,10 @@ from ..newton.solve import drop_impulses
 from .contradiction import contradicts
 from .correct import NOW, SAVED, kinetic_of_component
 from .foresight import PARTS, forget_parts, predict_part, recalls, remember_part
-from .ledger import clear_ledger
+from .ledger import clear_ledger, close_ledger, unexplained
 from .limits import step_with_limits
-from .lock import lock_energy, supports_rest
+from .lock import lock_energy, restore_momenta, supports_rest
+from .start import load_of
 
 SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
 ORDER_4, WHOLE_STEP, ELASTIC_RUNG, RUNGS = -1, 0, 4, 10
@@ -104,24 +105,47 @@ def take_parts(W: Workspace, h: float, length: float, rung: int, parts: int, giv
 
 
 @nonallocating
-def repaid(W: Workspace, own: bool) -> bool:
+def gain_of_rows(W: Workspace, own: bool) -> float:
+    """The energy that exact rows have given in a step. What limits lose pays for round-off of joints that hold, but not
+    for closing what an earlier step left apart (`own`)."""
+    part = W.J.PART_LEDGER
+    return float(part.closed - (0.0 if own else max(part.limited, 0.0)))
+
+
+@nonallocating
+def settle(W: Workspace, h: float, length: float) -> None:
+    """Restore the momenta of a step, and close its ledger, where they are off by more than round-off of the energy and
+    of the work of forces over the size `length`: impulses that are large change both by their round-off, and their
+    works cancel only up to that."""
+    local, part = W.J.LOCAL, W.J.PART_LEDGER
+    least = kinetic_of_component(local, W.bodies, SAVED) + kinetic_of_component(local, W.bodies, NOW)
+    least = joints.JOINT_GAIN * (least + load_of(W, h, length))
+    part.closed += restore_momenta(W, h, least)
+    apart = unexplained(local, W.bodies, part) - (part.supports + part.closed - part.limited)
+    if not abs(apart) <= least:
+        close_ledger(local, W.bodies, part)
+
+
+@nonallocating
+def repaid(W: Workspace, h: float, length: float, own: bool) -> bool:
     """Whether exact rows have given no energy, or little, which is then taken from the motion.
 
     Joints that an earlier step left apart (`own`) close at once; if that gives much energy beside what was there, the
     step fails. Other rows hold to round-off e of their places, and give e times their impulse over h: more in shorter
-    steps.
+    steps. What is taken of a gain that is much larger than the energy has its round-off: the rest is taken again.
     """
-    part = W.J.PART_LEDGER
-    # What limits lose pays for round-off of joints that hold.
-    gain = part.closed - (0.0 if own else max(part.limited, 0.0))
-    if not gain > 0.0 or not supports_rest(W.J.LOCAL, W.bodies):
+    part, before = W.J.PART_LEDGER, kinetic_of_component(W.J.LOCAL, W.bodies, SAVED)
+    if not supports_rest(W.J.LOCAL, W.bodies):
         return True
-    had = kinetic_of_component(W.J.LOCAL, W.bodies, SAVED)
-    had += 0.0 if own else kinetic_of_component(W.J.LOCAL, W.bodies, NOW)
-    if own and not gain <= joints.REPAID * had:
-        return False
-    if own or gain > joints.JOINT_GAIN * had:
-        part.closed -= lock_energy(W.J.LOCAL, W.bodies, gain)
+    for turn in range(2):
+        settle(W, h, length)
+        gain = gain_of_rows(W, own)
+        known = joints.JOINT_GAIN * (before + kinetic_of_component(W.J.LOCAL, W.bodies, NOW))
+        if own and gain > 0.0 and not gain <= joints.REPAID * before:
+            return False
+        if not gain > 0.0 or not (gain > known or (own and turn == 0)):
+            break
+        part.closed -= lock_energy(W, gain)
     return True
 
 
@@ -169,7 +193,7 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
         compliance = compliance_on(rung, h, yields, first.compliance)
         clear_ledger(W.J.PART_LEDGER)
         outcome = take_parts(W, h, length, rung, parts, compliance / (h / parts) ** 2, cold)
-        if outcome == TAKEN and (rung >= ELASTIC_RUNG or repaid(W, own)):
+        if outcome == TAKEN and (rung >= ELASTIC_RUNG or repaid(W, h, length, own)):
             first.compliance = compliance
             return EXACT if rung <= WHOLE_STEP else HALVED if rung < ELASTIC_RUNG else ELASTIC
         # A rung that began with predicted values, or with impulses of redundant rows, is tried again without these.

@@ -100,13 +100,9 @@ def springs_hold(W: Workspace) -> float:
 
 
 @nonallocating
-def close_ledger(local: Rows[BodyStep], bodies: int, ledger: JointLedger) -> None:
-    """Close the ledger of a step whose joints did not hold, from the saved state to the present one: the change of
-    energy that springs, motors and losses do not explain is `closed` if it is a gain, else `limited`.
-
-    This includes the works of supports and limits: the impulses of contradictory rows grow without bound, and their
-    works cancel up to round-off, so that only the sum is known.
-    """
+def unexplained(local: Rows[BodyStep], bodies: int, ledger: JointLedger) -> float:
+    """The change of energy, from the saved state to the present one, that springs, motors and losses other than at
+    limits do not explain."""
     gained = 0.0
     for i in range(bodies):
         for c in range(3):
@@ -115,5 +111,16 @@ def close_ledger(local: Rows[BodyStep], bodies: int, ledger: JointLedger) -> Non
                 way = local[i].travel[c] - local[i].shift[c]
                 specific = 0.5 * (after * after - before * before) - local[i].acceleration[c] * way
                 gained += specific / local[i].mobility[c]
-    change = gained + ledger.stored + ledger.damped + ledger.clamped + ledger.projected - ledger.motors
+    return gained + ledger.stored + ledger.damped + ledger.clamped + ledger.projected - ledger.motors
+
+
+@nonallocating
+def close_ledger(local: Rows[BodyStep], bodies: int, ledger: JointLedger) -> None:
+    """Close the ledger of a step whose joints did not hold: the change of energy that is `unexplained` is `closed` if
+    it is a gain, else `limited`.
+
+    This includes the works of supports and limits: the impulses of contradictory rows grow without bound, and their
+    works cancel up to round-off, so that only the sum is known.
+    """
+    change = unexplained(local, bodies, ledger)
     ledger.supports, ledger.closed, ledger.limited = 0.0, max(change, 0.0), max(-change, 0.0)

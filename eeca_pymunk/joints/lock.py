@@ -2,8 +2,13 @@
 
 A step whose joints did not hold (elastic or linear rows), and closing what it left apart, may gain energy. Of all
 velocities with the same momentum and angular momentum, those of a rigid body have the least energy, and they satisfy
-all joints. So v = v_r + s (v - v_r), K = K_r + s^2 K_rel, with s such that the gain is gone; if the component has a
-partner at rest, v_r = 0.
+all joints. So v = v_r + s (v - v_r), K = K_r + s^2 K_rel, with s such that the gain is gone. Gears of another ratio
+than 1 do not keep angular momentum: v_r then is that of the centre of mass; if the component has a partner at rest,
+v_r = 0.
+
+The momenta are those of the start and of the accelerations. Impulses that are large, as those of joints that contradict
+one another, change them by their round-off, and turn what is held apart by the impulse times the distance: a component
+is turned as a whole, which no relative motion pays. So this is undone before (`restore_momenta`).
 """
 
 from __future__ import annotations
@@ -13,17 +18,18 @@ import math
 from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.joint_steps import BodyStep
+from ..model.joints import GEAR, Workspace
 from ..model.parameters.joints import LOCK_ITERATIONS
 
 
 @nonallocating
 def centre_of(local: Rows[BodyStep], bodies: int) -> tuple[bool, float, float, float, float, float, float]:
-    """Whether the component has a partner (`hangs`), and the centre of mass (x, y) of its moving bodies with its
-    velocity (vx, vy) and acceleration (ax, ay)."""
+    """Whether the component has a partner, or a body of infinite mass (`hangs`), and the centre of mass (x, y) of its
+    moving bodies with its velocity (vx, vy) and acceleration (ax, ay)."""
     mass = x = y = vx = vy = ax = ay = 0.0
     hangs = False
     for i in range(bodies):
-        hangs = hangs or local[i].freedoms == 0
+        hangs = hangs or not local[i].mobility[0] > 0.0
         if local[i].freedoms > 0 and local[i].mobility[0] > 0.0:
             m = 1.0 / local[i].mobility[0]
             mass += m
@@ -52,15 +58,74 @@ def spin_about(local: Rows[BodyStep], bodies: int, x: float, y: float, vx: float
 
 
 @nonallocating
-def lock_energy(local: Rows[BodyStep], bodies: int, gain: float) -> float:
+def turns_freely(W: Workspace) -> bool:
+    """Whether no joint changes the angular momentum of the component: it has no partner, no body of infinite mass or
+    moment, and no gear whose torques, -T/ratio and T, are not opposite."""
+    for i in range(W.bodies):
+        for c in range(3):
+            if not W.J.LOCAL[i].mobility[c] > 0.0:
+                return False
+    for k in range(W.joints):
+        if W.link[k].kind == GEAR and W.J.JOINT[W.link[k].joint].ratio != 1.0:
+            return False
+    return True
+
+
+@nonallocating
+def restore_momenta(W: Workspace, h: float, least: float) -> float:
+    """Change the velocities v0 at the end of the step h by those of a rigid body, so that the momentum of a component
+    without partners, and its angular momentum if it `turns_freely`, are those of the start and of the accelerations.
+    Returns the change of the kinetic energy; nothing changes if the largest possible one is less than `least`.
+
+    L1 = L0 + sum m x_m x a h + I alpha h with the means x_m of the places over the time h, as the arms of joints are
+    those of the middle.
+    """
+    local = W.J.LOCAL
+    hangs, x, y, vx, vy, _, _ = centre_of(local, W.bodies)
+    if hangs:
+        return 0.0
+    mass = px = py = turning = 0.0
+    for i in range(W.bodies):
+        body = local[i]
+        m = 1.0 / body.mobility[0]
+        mass += m
+        px += m * (body.v0[0] - body.saved_velocity[0] - h * body.acceleration[0])
+        py += m * (body.v0[1] - body.saved_velocity[1] - h * body.acceleration[1])
+        turning += m * ((body.pose[0] - x) * body.v0[1] - (body.pose[1] - y) * body.v0[0])
+        turning -= m * (body.saved_pose[0] - x) * body.saved_velocity[1]
+        turning += m * (body.saved_pose[1] - y) * body.saved_velocity[0]
+        turning -= m * (body.mean[0] - h * x) * body.acceleration[1]
+        turning += m * (body.mean[1] - h * y) * body.acceleration[0]
+        if body.freedoms > 2 and body.mobility[2] > 0.0:
+            turning += (body.v0[2] - body.saved_velocity[2] - h * body.acceleration[2]) / body.mobility[2]
+    was, inertia = spin_about(local, W.bodies, x, y, vx, vy)
+    spin = -turning / inertia if inertia > 0.0 and turns_freely(W) else 0.0
+    ux, uy = -px / mass, -py / mass
+    gained = mass * (ux * (vx + 0.5 * ux) + uy * (vy + 0.5 * uy)) + inertia * spin * (was + 0.5 * spin)
+    size = mass * math.hypot(ux, uy) * (math.hypot(vx, vy) + 0.5 * math.hypot(ux, uy))
+    size += inertia * abs(spin) * (abs(was) + 0.5 * abs(spin))
+    if not size > least:
+        return 0.0
+    for i in range(W.bodies):
+        local[i].v0[0] += ux - spin * (local[i].pose[1] - y)
+        local[i].v0[1] += uy + spin * (local[i].pose[0] - x)
+        local[i].v0[2] += spin if local[i].freedoms > 2 else 0.0
+    return gained
+
+
+@nonallocating
+def lock_energy(W: Workspace, gain: float) -> float:
     """Take the energy `gain` > 0 from the velocities v0; returns how much was taken. Nothing if partners move: they do
     work."""
+    local, bodies = W.J.LOCAL, W.bodies
     if not supports_rest(local, bodies):
         return 0.0
     hangs, x, y, vx, vy, _, _ = centre_of(local, bodies)
     spin, _ = spin_about(local, bodies, x, y, vx, vy)
     if hangs:
-        vx = vy = spin = 0.0
+        vx = vy = 0.0
+    if not turns_freely(W):
+        spin = 0.0
     apart = relative_energy(local, bodies, x, y, vx, vy, spin, -1.0)
     s = math.sqrt(max(0.0, 1.0 - gain / apart)) if apart > 0.0 else 0.0
     relative_energy(local, bodies, x, y, vx, vy, spin, s)
@@ -100,17 +165,19 @@ def relative_energy(
 
 
 @nonallocating
-def move_rigidly(local: Rows[BodyStep], bodies: int, h: float) -> None:
-    """Move all bodies over a step h as one rigid body under their accelerations, or stop them if the component has a
-    partner: joints keep their shape, and energy does not rise except by the work of the accelerations.
+def move_rigidly(W: Workspace, h: float) -> None:
+    """Move all bodies over a step h as one rigid body under their accelerations, without turning if gears do not let
+    it, or stop them if the component has a partner: joints keep their shape, and energy does not rise except by the
+    work of the accelerations.
 
     r1 - r0 = chi z x r_m for the arms r about the common centre: with torques about r_m that work is exact. Bodies that
     joints do not turn keep their own spin.
     """
+    local, bodies = W.J.LOCAL, W.bodies
     hangs, x, y, vx, vy, ax, ay = centre_of(local, bodies)
     spin, inertia = spin_about(local, bodies, x, y, vx, vy)
     chi, after = 0.0, 0.0
-    for _ in range(0 if hangs else LOCK_ITERATIONS):
+    for _ in range(LOCK_ITERATIONS if turns_freely(W) else 0):
         torque, over = 0.0, 1.0 / (1.0 + 0.25 * chi * chi)
         for i in range(bodies):
             if local[i].freedoms > 0 and local[i].mobility[0] > 0.0:

@@ -31,6 +31,35 @@ def mark_bounded(W: Workspace) -> None:
 
 
 @nonallocating
+def spring_torque(W: Workspace, k: int, length: float) -> float:
+    """The scale of the torque of joint k, a spring, with arms of the size `length` of the component."""
+    joint, link = W.J.JOINT[W.link[k].joint], W.link[k]
+    if link.kind == SPRING:
+        return float(length * (abs(joint.push) + joint.stiffness * length))
+    turned = W.J.LOCAL[link.body[0]].pose[2] - W.J.LOCAL[link.body[1]].pose[2] - joint.rest
+    return float(abs(joint.push) + joint.stiffness * abs(turned))
+
+
+@nonallocating
+def load_of(W: Workspace, h: float, length: float) -> float:
+    """The scale of the work of forces on a component over its size `length`, and of torques: of accelerations, springs,
+    and bounded joints in a step h."""
+    total = 0.0
+    for i in range(W.bodies):
+        for c in range(3):
+            if W.J.LOCAL[i].mobility[c] > 0.0:
+                arm = 1.0 if c == 2 else length
+                total += arm * abs(W.J.LOCAL[i].acceleration[c]) / W.J.LOCAL[i].mobility[c]
+    for k in range(W.joints):
+        if W.link[k].kind in (SPRING, ROTARY_SPRING):
+            total += spring_torque(W, k, length)
+        elif W.link[k].bounded != 0:
+            arm = 1.0 if W.link[k].kind >= GEAR else length
+            total += arm * (abs(W.J.HINGE[k].total[0]) + abs(W.J.HINGE[k].total[1])) / h
+    return total
+
+
+@nonallocating
 def most_impulse(W: Workspace, h: float, length: float) -> float:
     """The scale of angular momentum in a component over a step h, with arms of its size `length`: the sum of the
     magnitudes of momenta, of those by accelerations, springs and bounded joints, and of what motors, or partners with
@@ -52,10 +81,8 @@ def most_impulse(W: Workspace, h: float, length: float) -> float:
     for k in range(W.joints):
         joint, kind, turning = W.J.JOINT[W.link[k].joint], W.link[k].kind, 0.0
         a, b = W.J.LOCAL[W.link[k].body[0]], W.J.LOCAL[W.link[k].body[1]]
-        if kind == SPRING:
-            turning = abs(h) * length * (abs(joint.push) + joint.stiffness * length)
-        elif kind == ROTARY_SPRING:
-            turning = abs(h) * (abs(joint.push) + joint.stiffness * abs(a.pose[2] - b.pose[2] - joint.rest))
+        if kind in (SPRING, ROTARY_SPRING):
+            turning = abs(h) * spring_torque(W, k, length)
         elif joint.bounded != 0:
             turning = abs(h) * joint.max_force * (1.0 if kind >= GEAR else length)
         elif kind == MOTOR and a.mobility[2] + b.mobility[2] > 0.0:

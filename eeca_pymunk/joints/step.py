@@ -22,7 +22,7 @@ from .ladder import climb, limit_work
 from .ledger import add_part, clear_ledger, close_ledger
 from .start import bounded_targets, compute_rows, read_joints
 from .taut import is_taut
-from .unheld import step_linearly, take_gain
+from .unheld import keeps_gain, step_linearly, stop_joints, take_gain
 
 
 @nonallocating
@@ -94,7 +94,10 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
     status = climb(W, h, order, length, touched, own)
     before = step_linearly(W, h, length) if status == LINEAR else 0.0
     if status >= ELASTIC:
-        status = take_gain(W, h, status, before)
+        status = take_gain(W, h, length, status, before)
+    elif keeps_gain(W, h, length, own):
+        stop_joints(W, h)
+        status = LINEAR
     elif abs(W.J.PART_LEDGER.closed) > kinetic_of_component(local, W.bodies, NOW):  # but for round-off they cancel
         close_ledger(local, W.bodies, W.J.PART_LEDGER)
     ledger.gave = max(farthest(W) - ledger.apart, 0.0) if status >= ELASTIC else 0.0

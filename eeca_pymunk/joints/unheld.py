@@ -5,17 +5,17 @@ from __future__ import annotations
 from ..compiled import nonallocating
 from ..model.joint_steps import LINEAR
 from ..model.joints import Workspace
-from ..model.parameters.joints import JOINT_GAIN, LINEAR_APART
+from ..model.parameters.joints import GAIN_KEPT, JOINT_GAIN, JOINT_TOLERANCE, LINEAR_APART
 from ..newton.motion import accept_part, go_back, move
 from ..newton.solve import drop_impulses
 from .closing import farthest
 from .correct import NOW, SAVED, kinetic_of_component
 from .foresight import forget_parts
-from .ladder import restore_start, undo_impulses
-from .ledger import clear_ledger, close_ledger
+from .ladder import gain_of_rows, restore_start, settle, undo_impulses
+from .ledger import clear_ledger, close_ledger, unexplained
 from .limits import step_with_limits
 from .lock import lock_energy, move_rigidly, supports_rest
-from .start import springs_of
+from .start import load_of, springs_of
 
 
 @nonallocating
@@ -46,7 +46,7 @@ def stop_joints(W: Workspace, h: float) -> None:
     local, part = W.J.LOCAL, W.J.PART_LEDGER
     go_back(local, W.bodies)
     stored = springs_of(W)
-    move_rigidly(local, W.bodies, h)
+    move_rigidly(W, h)
     clear_ledger(part)
     part.stored = springs_of(W) - stored
     close_ledger(local, W.bodies, part)
@@ -55,7 +55,25 @@ def stop_joints(W: Workspace, h: float) -> None:
 
 
 @nonallocating
-def take_gain(W: Workspace, h: float, status: int, before: float) -> int:
+def keeps_gain(W: Workspace, h: float, length: float, own: bool) -> bool:
+    """Whether bodies keep energy that exact rows have given in a step, as their relative motion has too little to pay
+    it: more than GAIN_KEPT of what they had and of the work of forces over the size `length` of the component, and more
+    than that of the velocities which round-off of places is over h. Not where joints need not be exact yet."""
+    local, mass = W.J.LOCAL, 0.0
+    if W.J.PROGRESS.near > 0.0:
+        return False
+    gain = min(gain_of_rows(W, own), unexplained(local, W.bodies, W.J.PART_LEDGER))
+    if not gain > 0.0 or not supports_rest(local, W.bodies):
+        return False
+    for i in range(W.bodies):
+        mass += 1.0 / local[i].mobility[0] if local[i].mobility[0] > 0.0 else 0.0
+    noise = mass * (JOINT_TOLERANCE * length / h) ** 2
+    had = kinetic_of_component(local, W.bodies, SAVED) + load_of(W, h, length)
+    return bool(gain > noise + GAIN_KEPT * had)
+
+
+@nonallocating
+def take_gain(W: Workspace, h: float, length: float, status: int, before: float) -> int:
     """Close the ledger of an ELASTIC or LINEAR step, and take its gain from the motion; returns the status. If that is
     not enough, or joints are farther apart than `before`, all bodies move as one.
 
@@ -63,9 +81,10 @@ def take_gain(W: Workspace, h: float, status: int, before: float) -> int:
     energies before and after are both the gain, and what is left of it: the work done on the way.
     """
     local, part, stopped = W.J.LOCAL, W.J.PART_LEDGER, False
+    settle(W, h, length)
     close_ledger(local, W.bodies, part)
     if part.closed > 0.0:
-        lock_energy(local, W.bodies, part.closed)
+        lock_energy(W, part.closed)
         close_ledger(local, W.bodies, part)
         had = kinetic_of_component(local, W.bodies, SAVED) + kinetic_of_component(local, W.bodies, NOW)
         if part.closed > JOINT_GAIN * had and supports_rest(local, W.bodies):

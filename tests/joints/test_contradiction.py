@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+from random import Random
 from typing import Any
 
 import pymunk
@@ -142,3 +144,44 @@ def test_errors_are_a_contradiction_if_they_are_in_balance_and_do_not_arise_from
     misfits = iter((end, (start, 0.0, 1.0)))
     monkeypatch.setattr(contradiction, "misfit", lambda W, h: next(misfits))
     assert contradiction.contradicts(workspace(J, 0), STEP) == found
+
+
+# Masses; moments over them; joints of neighbours: ratios of gears, half-widths of limits, 0 for none.
+CHAINS = {
+    "elastic": ((2.0, 3e-4, 3e-3, 1e-5, 1.2), (0.01, 0.01, 0.1, 0.1, 0.1), (1.0, 0.0, 1.0, 1.0), (0.0, 0.1, 0.0, 0.0)),
+    "limits": (
+        (28.0, 1e-4, 1.6e-3, 2e-5, 1.2), (0.01, 0.01, 0.01, 0.01, 0.1), (-1.0, 1.0, 0.0, 0.0), (0.0, 0.05, 0.15, 0.08),
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("name", list(CHAINS))
+def test_joints_that_contradict_one_another_turn_no_chain_of_light_bodies(name: str, seed: int) -> None:
+    """A gear and a limit between the ends of a chain: what impulses of thousands of N s leave by round-off turned it as
+    a whole, by up to 1.6 J in a step."""
+    masses, moments, gears, limits = CHAINS[name]
+    chance, space = Random(seed), pymunk.Space()
+    space.gravity = 0.0, -9.81
+    chain = [pymunk.Body(m, m * part) for m, part in zip(masses, moments, strict=True)]
+    for k, body in enumerate(chain):
+        body.position, body.velocity = (float(k), 0.0), (chance.uniform(-1.0, 1.0), chance.uniform(-1.0, 1.0))
+        body.angular_velocity = chance.uniform(-2.0, 2.0)
+        space.add(body)
+    for k, (a, b) in enumerate(pairwise(chain)):
+        space.add(pymunk.PivotJoint(a, b, (k + 0.5, 0.0)))
+        if gears[k] != 0.0:
+            space.add(pymunk.GearJoint(a, b, 0.0, gears[k]))
+        if limits[k] != 0.0:
+            space.add(pymunk.RotaryLimitJoint(a, b, -limits[k], limits[k]))
+    ends = chain[0], chain[-1]
+    space.add(pymunk.RotaryLimitJoint(*ends, 0.1, 0.2), pymunk.GearJoint(*ends, 0.0, 1.0))
+    if name == "elastic":
+        space.add(pymunk.PivotJoint(*ends, (2.5, 0.4)))
+    stepper, last = ep.EECA(space), ep.measure(space).energy
+    scale = ep.measure(space).kinetic + 9.81 * sum(masses)
+    for _ in range(30):
+        stepper.step(STEP)
+        now = ep.measure(space).energy
+        assert now <= last + 1e-7 * scale
+        last = now

@@ -73,6 +73,8 @@ REPAID = accuracy(1e-3, "of the kinetic energy",
     "Gain of closing joints that an earlier step left apart, up to which it is locked.")
 JOINT_GAIN = round_off(1e-12, "of the kinetic energy before and after",
     "Gain of joints that hold in a step, above which it is taken from what moves.")
+GAIN_KEPT = round_off(1e-10, "of the kinetic energy, and of the work of forces over the size",
+    "Gain of joints that hold which the relative motion of bodies is too little to pay: with more they move as one.")
 STALLED = accuracy(100.0, "of all momenta, loads and forces of a component, as angular momentum",
     "Impulse that a motor of unlimited force may have in a step: what drives against a limit stalls.")
 TAUT = heuristic(0.5, "of a body's inertia",
