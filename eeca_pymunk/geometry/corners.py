@@ -17,7 +17,7 @@ from ..compiled.records import Rows
 from ..model.parameters.detection import CORNER_MEET, SLENDER
 from ..model.shapes import Corner, Link
 
-_SIDES, _MANY = 64, 1 << 16  # pairs whose sides are remembered: of each thin shape that moves; of all, at most
+_SIDES, _MANY = 64, 1 << 16  # pairs whose sides are remembered: of each thin shape that may move; of all, at most
 
 
 def core_room(LINK: Rows[Link]) -> FloatArray:
@@ -26,22 +26,12 @@ def core_room(LINK: Rows[Link]) -> FloatArray:
 
 
 def side_rows(few: int, shapes: int) -> int:
-    """Rows of SIDE, a power of 2, for so many moving thin shapes among so many shapes; 0 if no thin shapes may meet."""
+    """Rows of SIDE, a power of 2, for so many thin shapes that move or sleep among so many shapes; 0 if no thin shapes
+    may meet."""
     rows = _SIDES if few else 0
     while few and rows < max(4 * shapes, min(_SIDES * few, _MANY)):
         rows *= 2
     return rows
-
-
-@nonallocating
-def moving_thin(LINK: Rows[Link], VERTEX: FloatArray, moving: int) -> int:
-    """How many of the first `moving` shapes, those that move, are thin; 0 if no thin shapes may meet."""
-    few, many = 0, 0
-    for s in range(LINK.shape[0]):
-        if thin(LINK[s], VERTEX):
-            few += 1 if s < moving else 0
-            many += 1
-    return few if many > 1 else 0
 
 
 @kernel

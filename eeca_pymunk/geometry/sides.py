@@ -67,11 +67,16 @@ def side_row(A: Scene, key: int) -> int:
     replaced."""
     SIDE, mask = A.SIDE, len(A.SIDE) - 1
     first = ((key - 1) * _SCATTER >> 3) & mask
+    free = first
     for k in range(_PROBES):
         row = (first + k) & mask
-        if SIDE[row].key == key or SIDE[row].key == 0:
+        if SIDE[row].key == key:
             return row
-    return first
+        if SIDE[row].key <= 0 and SIDE[free].key > 0:
+            free = row
+        if SIDE[row].key == 0:
+            break
+    return free
 
 
 @nonallocating
@@ -138,7 +143,16 @@ def forget_sides(A: Scene, i: int, way: float) -> None:
             continue
         thick = half_width(A, a) + half_width(A, b)
         if way > max(thick, INTERVAL_DEPTH_LEAST * A.BODY[i].extent):
-            SIDE[row].key = -1  # deleted, not free: rows after it may belong to other pairs
+            SIDE[row].key = -1  # deleted: rows behind it may belong to other pairs
+
+
+@nonallocating
+def forget_pair(A: Scene, a: int, b: int) -> None:
+    """Forget the side of shapes a and b."""
+    key = side_key(A, a, b)
+    side = A.SIDE[side_row(A, key)]
+    if side.key == key:
+        side.key = -1
 
 
 @nonallocating

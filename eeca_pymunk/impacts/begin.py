@@ -8,13 +8,14 @@ from ..arrays import IntArray
 from ..compiled import nonallocating
 from ..contacts.single import kinetic
 from ..geometry.flight import has_velocity
-from ..geometry.sides import forget_sides
+from ..geometry.sides import forget_pair, forget_sides
 from ..islands.accounting import flag_pairs
 from ..islands.at_rest import stays_at_rest, unchanged
 from ..layout import BODY_ROW, FLAGS, PLACED, SHIFTED, STEERED
 from ..model.bodies import AT_REST, AWAKE, CHANGED, MOVED, UNMOVED
 from ..model.parameters.events import BUSY_STEPS
 from ..model.scene import Scene
+from ..prediction.sides import find_sides
 
 
 @nonallocating
@@ -41,10 +42,21 @@ def unsteered(A: Scene, IDS: IntArray) -> float:
 
 
 @nonallocating
+def note_placed(A: Scene, i: int) -> None:
+    """Let body i count as placed by the program, with the sides of its shapes forgotten if it was moved far."""
+    due, member = A.BODY[i].due, A.MEMBER[i]
+    if due < SHIFTED:
+        forget_sides(A, i, (SHIFTED - due) * A.BODY[i].extent)
+    member.placed = MOVED if due <= SHIFTED else max(member.placed, UNMOVED)
+    A.COUNT.any_placed = max(A.COUNT.any_placed, 1)
+
+
+@nonallocating
 def begin(A: Scene, IDS: IntArray) -> None:
     """Reset counters and ledger for a new step, and count `Body.due` from its start; compute the energy there, and the
     flags of the step (`even`, `closing`, `may_support`). Edited bodies begin a new path version, and the islands at
-    rest for which something has changed are set CHANGED."""
+    rest for which something has changed are set CHANGED. The sides of thin shapes that pass through each other are
+    forgotten, and those of placed ones noted."""
     BODY, STATE, PAR, COUNT = A.BODY, A.STATE, A.PAR, A.COUNT
     COUNT.heap, COUNT.logged, COUNT.blocks, COUNT.room = 0, 0, 0, 0
     COUNT.solves, COUNT.solved, COUNT.direct, COUNT.work = 0, 0, 0, 0.0
@@ -76,6 +88,8 @@ def begin(A: Scene, IDS: IntArray) -> None:
         may_support = may_support and A.MEMBER[i].tied < 0
         if not quiet:
             A.MEMBER[i].busy = max(A.MEMBER[i].busy - 1, 0)
+        if BODY[i].due <= PLACED:
+            note_placed(A, i)
         if not quiet and A.MEMBER[i].rest == AT_REST and stays_at_rest(A, i, last):
             pulled = max(pulled, A.PULL[i, 0] * A.PULL[i, 0] + A.PULL[i, 1] * A.PULL[i, 1])
             even = False
@@ -91,16 +105,16 @@ def begin(A: Scene, IDS: IntArray) -> None:
         A.BEGAN[i, 0], A.BEGAN[i, 1], A.BEGAN[i, 2] = BODY[i].x, BODY[i].y, BODY[i].angle
         if BODY[i].due < 0.0:
             STATE[i].version += 1
-            if BODY[i].due < SHIFTED:
-                forget_sides(A, i, (SHIFTED - BODY[i].due) * BODY[i].extent)
-            if BODY[i].due <= SHIFTED:
-                A.MEMBER[i].placed, COUNT.any_placed = MOVED, 1
-            elif BODY[i].due <= PLACED:
-                A.MEMBER[i].placed, COUNT.any_placed = max(A.MEMBER[i].placed, UNMOVED), 1
         else:
             BODY[i].due = max(BODY[i].due - last, 0.0)
         alike = BODY[i].inv_mass == 0.0 or (ax == BODY[0].ax and ay == BODY[0].ay)
         even = even and alike and STATE[i].island < 0
+    if A.SIDE.shape[0] > 0:
+        for r in range(A.RULE.shape[0]):
+            if A.RULE[r, 2] < 0.0:
+                forget_pair(A, int(A.RULE[r, 0]), int(A.RULE[r, 1]))
+        if COUNT.any_placed > 0:
+            find_sides(A, COUNT.any_placed > 1)
     PAR.pulled = math.sqrt(pulled)
     if fixed < 2:
         COUNT.closing = 0

@@ -3,7 +3,6 @@ the islands at rest that they concern are solved again."""
 
 from __future__ import annotations
 
-import math
 import zlib
 from collections.abc import Mapping
 from typing import NamedTuple, TypeAlias
@@ -18,12 +17,12 @@ from ..geometry.corners import find_corners
 from ..geometry.sides import shapes_of_pair
 from ..islands.accounting import flag_pairs
 from ..islands.at_rest import disturb
-from ..layout import PLACED
+from ..layout import PLACED, SHIFTED
 from ..model.bodies import CHANGED, MOBILITY
 from ..model.scene import Scene, scene_of
 from ..model.shapes import SURFACE as SURFACE_FIELDS
 from ..pairs.grid import relist
-from ..pairs.lists import far_apart, may_collide
+from ..pairs.lists import allowed, far_apart, may_collide
 
 # Kinds of changes: none; another mass or moment of a body; another elasticity, friction or surface velocity of a shape,
 # another filter, or another outline or place, by which results of earlier steps are lost.
@@ -86,15 +85,14 @@ def edit_filter(table: Table, s: int, group: int, categories: int, mask: int) ->
 @nonallocating
 def place_beside(A: Scene, STATUS: IntArray) -> None:
     """Let bodies with shapes whose STATUS (k,) is FILTER or OUTLINE, and those that such shapes of bodies without
-    mobility may overlap, count as placed by the program. The sides of a body's shapes are forgotten only for
-    OUTLINE."""
+    mobility may overlap, count as placed by the program; the sides of their other shapes are kept."""
     others = False
     for s in range(A.SHAPE.shape[0]):
         if STATUS[s] != SAME:
             i = A.LINK[s].owner
             others = others or A.BODY[i].inv_mass == 0.0
             if i < A.BODY.shape[0] - 1:
-                A.BODY[i].due = min(A.BODY[i].due, PLACED if STATUS[s] == FILTER else -math.inf)
+                A.BODY[i].due = min(A.BODY[i].due, PLACED if STATUS[s] == FILTER else SHIFTED)
                 disturb(A, i)
     for s in range(A.LIST.shape[0] if others else 0):
         i = A.LINK[s].owner
@@ -119,8 +117,8 @@ def disturb_changed(A: Scene, CHANGES: IntArray) -> None:
 
 @nonallocating
 def drop_changed(A: Scene, STATUS: IntArray) -> None:
-    """Drop the contacts, forces and sides of shapes whose STATUS is OUTLINE, and contacts that filters no longer allow.
-    Islands at rest that lose one are CHANGED."""
+    """Drop the contacts, forces and sides of shapes whose STATUS is OUTLINE, and contacts and sides of pairs that
+    filters no longer allow. Islands at rest that lose one are CHANGED."""
     k, pushes = A.SHAPE.shape[0], 0
     for c in range(A.COUNT.pushes):
         a, b, root = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, A.PUSHED_BY[c].root
@@ -142,7 +140,7 @@ def drop_changed(A: Scene, STATUS: IntArray) -> None:
     for row in range(A.SIDE.shape[0]):
         if A.SIDE[row].key > 0:
             a, b = shapes_of_pair(k, A.SIDE[row].key - 1)
-            if STATUS[a] == OUTLINE or STATUS[b] == OUTLINE:
+            if STATUS[a] == OUTLINE or STATUS[b] == OUTLINE or not allowed(A.LINK, a, b):
                 A.SIDE[row].key = -1
 
 
@@ -167,7 +165,7 @@ def renew(TABLE: Table, CHANGES: IntArray) -> bool:
         find_corners(A.LINK, A.VERTEX, A.CORNER)
     A.FLAG[:] = 0
     A.COUNT.unmet = 0
-    A.COUNT.any_placed = 1
+    A.COUNT.any_placed = 2
     for i in range(A.BODY.shape[0] - 1):
         A.BODY[i].due, A.RESTING[i].rest_due = -1.0, 0.0
     drop_changed(A, STATUS)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from ..compiled import Table, kernel, nonallocating
-from ..geometry.corners import find_corners, moving_thin
+from ..geometry.corners import find_corners, thin
 from ..model.bodies import AT_REST, CHANGED
 from ..model.joints import joints_of
 from ..model.parameters.impulses import AUGMENTATION
@@ -20,14 +20,18 @@ from ..pairs.margins import begin_lists
 def measure_scene(reading: Table) -> None:
     """Write MEASURED."""
     R = reading_of(reading)
-    M, LINK = R.MEASURED, R.LINK
-    M.moving, M.vertices, M.lossy = 0, 2, 0
+    M, LINK, ground = R.MEASURED, R.LINK, R.BODY.shape[0] - 1
+    M.moving, M.vertices, M.lossy, few, many = 0, 2, 0, 0, 0
     for s in range(LINK.shape[0]):
-        M.moving += 1 if LINK[s].owner < R.BODY.shape[0] - 1 else 0
+        M.moving += 1 if LINK[s].owner < ground else 0
+        if thin(LINK[s], R.VERTEX):
+            # A scene remembers the sides of what sleeps, for when it wakes.
+            few += 1 if LINK[s].owner < ground or R.BODIES[R.SHAPES[R.ORDER[s]].owner].asleep > 0 else 0
+            many += 1
         M.vertices = max(M.vertices, LINK[s].vertices)
         if R.SHAPE[s].elasticity < 1.0:
             M.lossy = 1
-    M.thin = moving_thin(LINK, R.VERTEX, M.moving)
+    M.thin = few if many > 1 else 0
 
 
 @kernel

@@ -70,7 +70,7 @@ class SceneMemory:
     Attributes:
         joints: for their joints.
         log, contacts: numbers of rows that LOG and PUSHED have at least, as an earlier scene needed them.
-        thin: number of thin shapes that move in the last scene, 0 if no thin shapes may meet.
+        thin: number of thin shapes that move or sleep in the last scene, 0 if no thin shapes may meet.
     """
 
     thin: int

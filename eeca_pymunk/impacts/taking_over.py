@@ -22,7 +22,7 @@ from ..islands.accounting import flag_pairs
 from ..islands.at_rest import disturb
 from ..model.contacts import LASTED
 from ..model.scene import Scene, scene_of
-from ..pairs.lists import may_collide
+from ..pairs.lists import allowed, may_collide
 from .edits import FILTER, OUTLINE, SAME, Changes, disturb_changed, place_beside
 
 
@@ -152,7 +152,7 @@ def take_over(
     """
     P, A = scene_of(BEFORE), scene_of(PRESENT)
     A.PAR.stamp, A.PAR.last, A.PAR.rules, A.COUNT.quiet = P.PAR.stamp, P.PAR.last, P.PAR.rules, P.COUNT.quiet
-    A.COUNT.any_placed = 1  # so that islands are built in the next step, even where no contact remains
+    A.COUNT.any_placed = 2  # so that islands are built in the next step, even where no contact remains
     take_bodies(P, A, BODIES)
     take_islands(P, A, BODIES)
     take_contacts(P, A, BODIES, SHAPES)
@@ -169,3 +169,7 @@ def take_over(
     flag_pairs(A)
     if A.SIDE.shape[0] > 0 and P.SIDE.shape[0] > 0:
         keep_sides(A, P.SIDE, OUTLINES)
+        for row in range(A.SIDE.shape[0]):
+            if A.SIDE[row].key > 0:
+                a, b = shapes_of_pair(A.SHAPE.shape[0], A.SIDE[row].key - 1)
+                A.SIDE[row].key = A.SIDE[row].key if allowed(A.LINK, a, b) else -1

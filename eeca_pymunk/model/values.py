@@ -31,6 +31,7 @@ class BodyValues(Record):
     angle: float
     row: int  # of BODY, -1 of static bodies
     shapes: int  # scratch of `..world_rows`: 1 for one disk about the centre of mass, 2 or more otherwise
+    asleep: int  # 1 if it sleeps
 
 
 class ShapeValues(Record):
@@ -56,7 +57,7 @@ class Measures(Record):
 
     moving: int  # shapes that move
     vertices: int  # the most of a shape, at least 2
-    thin: int  # thin shapes that move, 0 if no thin shapes may meet
+    thin: int  # thin shapes that move or sleep, 0 if no thin shapes may meet
     lossy: int  # 1 if any elasticity is below 1
 
 

@@ -8,8 +8,10 @@ circles, and the pair is in no list. A pair of moving shapes is in both lists, a
 from __future__ import annotations
 
 from ..compiled import nonallocating
+from ..compiled.records import Rows
 from ..geometry.flight import norm, pose, rate, rotated
 from ..model.scene import Scene
+from ..model.shapes import Link
 
 
 @nonallocating
@@ -38,17 +40,22 @@ def direction_of_motion(A: Scene, s: int, t: float) -> tuple[float, float]:
 
 
 @nonallocating
+def allowed(LINK: Rows[Link], a: int, b: int) -> bool:
+    """Whether pymunk's filters let two shapes collide."""
+    if LINK[a].group != 0 and LINK[a].group == LINK[b].group:
+        return False
+    return bool((LINK[a].categories & LINK[b].mask) != 0 and (LINK[b].categories & LINK[a].mask) != 0)
+
+
+@nonallocating
 def may_collide(A: Scene, a: int, b: int) -> bool:
-    """Whether two shapes may collide: they belong to two bodies, impulses move one of these, and pymunk's filters allow
-    it."""
+    """Whether two shapes may collide: they belong to two bodies, impulses move one of these, and filters allow it."""
     BODY, LINK = A.BODY, A.LINK
     i, j = LINK[a].owner, LINK[b].owner
     still = BODY[i].inv_mass == 0.0 and BODY[i].inv_inertia == 0.0
     if i == j or (still and BODY[j].inv_mass == 0.0 and BODY[j].inv_inertia == 0.0):
         return False
-    if LINK[a].group != 0 and LINK[a].group == LINK[b].group:
-        return False
-    return bool((LINK[a].categories & LINK[b].mask) != 0 and (LINK[b].categories & LINK[a].mask) != 0)
+    return allowed(LINK, a, b)
 
 
 @nonallocating

@@ -6,5 +6,5 @@ in a heap. Open `next_event.py` first: the next event of a body, from `impact_ti
 `bounding_circles.py`). `disks.py` does the same for single disks, `scheduling.py` selects the bodies to predict,
 `heap.py` is the queue, `work.py` limits the work of a step.
 
-Side effect: searches for thin shapes note the side on which they are (`..geometry.sides`).
+Side effect: searches for thin shapes note the side on which they are (`sides.py`, `..geometry.sides`).
 """

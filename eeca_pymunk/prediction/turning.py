@@ -9,7 +9,7 @@ Shapes meet if, along each of these axes some point touches and approaches.
 
 A look is one evaluation of the gap in a search.
 
-Side effect: `begin_side` and `search` note the sides of thin shapes in SIDE; of these notes only those of
+Side effect: `sides.begin_side` and `search` note the sides of thin shapes in SIDE; of these notes only those of
 `begin_side` are left when `general` has ended.
 """
 
@@ -17,11 +17,10 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import inlined, nonallocating
+from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..geometry import sides
 from ..geometry.convex import place_vertices
-from ..geometry.flight import pose
 from ..geometry.gap import gap_round_off
 from ..geometry.manifold import face_points
 from ..model.bodies import Body
@@ -31,14 +30,8 @@ from ..model.scene import Scene
 from ..pairs.rules import face_tolerance
 from .axes import Closing, MotionState, bends, fixed_axis, motion, pulled_along, speed_bound, turning_axis
 from .bounding_circles import carried_circles_meet, circles_meet
+from .sides import begin_side, closing_rate, opening
 from .work import most_work
-
-
-@nonallocating
-def opening(a: MotionState, b: MotionState, nx: float, ny: float, px: float, py: float) -> float:
-    """Velocity (length/time) of b less that of a at the point p along n."""
-    u = nx * (b.vx - b.spin * (py - b.y) - a.vx + a.spin * (py - a.y))
-    return u + ny * (b.vy + b.spin * (px - b.x) - a.vy - a.spin * (px - a.x))
 
 
 @nonallocating
@@ -48,57 +41,10 @@ def time_to_contact_again(
     """Time after which bodies that touch at the point p and part there along n with u >= 0 touch again: 2 u / a_n if
     the acceleration of the points closes the gap with a_n > 0, else infinite."""
     a, b = motion(BODY, i, t), motion(BODY, j, t)
-    rx_a, ry_a, rx_b, ry_b = px - a.x, py - a.y, px - b.x, py - b.y
-    q_a, q_b = BODY[i].angular, BODY[j].angular
     u = opening(a, b, nx, ny, px, py)
-    ax = BODY[j].ax - q_b * ry_b - b.spin * b.spin * rx_b - (BODY[i].ax - q_a * ry_a - a.spin * a.spin * rx_a)
-    ay = BODY[j].ay + q_b * rx_b - b.spin * b.spin * ry_b - (BODY[i].ay + q_a * rx_a - a.spin * a.spin * ry_a)
-    closing = -(nx * ax + ny * ay)
+    one, two = BODY[i], BODY[j]
+    closing = closing_rate(a, b, one.ax, one.ay, one.angular, two.ax, two.ay, two.angular, nx, ny, px, py)
     return 2.0 * max(u, 0.0) / closing if closing > 0.0 else math.inf
-
-
-@inlined
-def in_one_island(A: Scene, i: int, j: int) -> bool:
-    """Whether forces may hold bodies i and j in contact: both are in one island, or one is and impulses do not move the
-    other."""
-    one, two = A.STATE[i].island, A.STATE[j].island
-    if one >= 0:
-        return bool(one == two or A.BODY[j].inv_mass == 0.0)
-    return bool(two >= 0 and A.BODY[i].inv_mass == 0.0)
-
-
-@nonallocating
-def begin_side(A: Scene, a: int, b: int, start: float, duration: float, tolerance: float) -> None:
-    """Note on which side of each other thin shapes a < b are at the beginning of a search.
-
-    For segments that touch and have no remembered side: if they move by less than `tolerance` (length) in the time
-    `duration`, they are on the side against which they are pressed; else, if their distance is round-off, on the side
-    to which they part. For all other shapes the side follows from the geometry. Shapes that touch without overlap, and
-    that no forces hold, part: they keep their side up to `near_side` only, not up to `held_side`, as the bodies may
-    turn by any angle before they come near again.
-    """
-    i, j, P, Q = A.LINK[a].owner, A.LINK[b].owner, A.CORE[0], A.CORE[1]
-    x_a, y_a, angle_a = pose(A.BODY, i, start)
-    x_b, y_b, angle_b = pose(A.BODY, j, start)
-    p = place_vertices(A, a, x_a, y_a, angle_a, P)
-    q = place_vertices(A, b, x_b, y_b, angle_b, Q)
-    near = sides.closest_on_side(A, P, p, Q, q, a, b)
-    d, nx, ny, px, py = near.distance, near.nx, near.ny, near.x, near.y
-    key = sides.side_key(A, a, b)
-    side = A.SIDE[sides.side_row(A, key)]
-    held = d < -sides.near_side(A, a, b) or in_one_island(A, i, j)
-    if d > sides.near_side(A, a, b):
-        sides.note_side(A, a, b, nx, ny, False)
-    elif side.key != key:
-        parting = opening(motion(A.BODY, i, start), motion(A.BODY, j, start), nx, ny, px, py)
-        pressing = nx * (A.BODY[i].ax - A.BODY[j].ax) + ny * (A.BODY[i].ay - A.BODY[j].ay)
-        resting = abs(parting) * duration <= tolerance
-        other = (resting and pressing < 0.0) or (not resting and d <= tolerance and parting < 0.0)
-        sign = -1.0 if p == 2 and q == 2 and other else 1.0
-        sides.note_side(A, a, b, sign * nx, sign * ny, held)
-    else:
-        side.nx, side.ny = nx, ny  # it turns with the shapes
-        side.deep = side.deep if held else 0.0
 
 
 @nonallocating

@@ -93,7 +93,7 @@ class Bodies:
         self.arranged = self.items == everyone
         if sleeps:
             self.asleep[:] = private_sleep.sleeping(self.items)
-            self.VALUES["kind"][self.asleep] = STATIC
+            self.VALUES["kind"][self.asleep], self.VALUES["asleep"] = STATIC, self.asleep
             put(
                 self.VALUES,
                 np.where(self.asleep[:, None], body_values.FIXED, columns(self.VALUES, *_OF_MASS)),

@@ -37,7 +37,7 @@ def read(body: pymunk.Body) -> bytes:
                 "set body.mass and body.moment, or the mass or density of its shapes"
             )
         masses = mass, moment, 1.0 / mass, 1.0 / moment
-    return _VALUES.pack(kind, 0, steered, moved, *masses, x, y, 0.0, 0.0, 0.0, -1, 0)
+    return _VALUES.pack(kind, 0, steered, moved, *masses, x, y, 0.0, 0.0, 0.0, -1, 0, 0)
 
 
 def masses(values: bytes) -> tuple[float, ...]:

@@ -13,7 +13,7 @@ from eeca_pymunk.contacts.correction import lifting
 from eeca_pymunk.contacts.interval import make_contacts, step_island
 from eeca_pymunk.contacts.memory import copy_recent
 from eeca_pymunk.contacts.works import external_work
-from eeca_pymunk.geometry.corners import moving_thin
+from eeca_pymunk.geometry.corners import thin as is_thin
 from eeca_pymunk.impacts.scene import EventLoop
 from eeca_pymunk.impacts.scene_memory import Laid
 from eeca_pymunk.model.bodies import POSE, VELOCITY
@@ -65,7 +65,9 @@ class Pile:
         self.m = 0
         self.contacts = make_contacts(0, k)
         # The scene of these bodies: its shapes, its memory of forces.
-        thin = moving_thin(world.link, world.vertex, moving := int((owner < len(world.body) - 1).sum()))
+        moving = int((owner < len(world.body) - 1).sum())
+        thin_ones = [s for s in range(len(owner)) if is_thin(world.link[s], world.vertex)]
+        thin = sum(s < moving for s in thin_ones) if len(thin_ones) > 1 else 0
         measured = moving, max(2, int(world.link["vertices"].max())), thin, int((world.shape["elasticity"] < 1.0).any())
         laid = Laid(world.body, world.shape, world.link, world.vertex, world.disks, measured)
         self.scene = EventLoop(laid, 0).scene

@@ -11,7 +11,7 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk.compiled.records import rows
-from eeca_pymunk.geometry.corners import find_corners, moving_thin, thin
+from eeca_pymunk.geometry.corners import find_corners, thin
 from eeca_pymunk.model.shapes import Corner, Link
 
 G = 9.81
@@ -142,7 +142,7 @@ def test_corners_are_found_where_segments_of_one_body_meet() -> None:
     VERTEX = np.zeros((2 * len(lines), 4))
     VERTEX[:, :2] = np.array(lines, float).reshape(-1, 2)
     CORNER = rows(Corner, 4 * len(lines))
-    assert moving_thin(LINK, VERTEX, len(lines)) == len(lines)
+    assert all(thin(link, VERTEX) for link in LINK)
     find_corners(LINK, VERTEX, CORNER)
     angles = {row: math.degrees(math.atan2(z, c)) for row, (k, c, z, _) in enumerate(CORNER.tolist()) if k > 0}
     assert {row: CORNER[row].other - 1 for row in angles} == {

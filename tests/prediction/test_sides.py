@@ -9,8 +9,8 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk.geometry.gap import gap
-from eeca_pymunk.geometry.sides import near_side, note_side
-from eeca_pymunk.prediction.turning import begin_side
+from eeca_pymunk.geometry.sides import forget_pair, near_side, note_side, side_of
+from eeca_pymunk.prediction.sides import begin_side
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
@@ -38,3 +38,27 @@ def test_the_remembered_side_turns_with_the_shapes(turn: float, unit: float) -> 
         row.x, row.y = -(half + apart) * math.sin(angle), (half + apart) * math.cos(angle)
         begin_side(scene, a, b, 0.0, 0.1, 1e-12 * unit)
         assert gap(scene, a, b, 0.0)[0] == pytest.approx(apart, rel=1e-6)
+
+
+def test_the_memory_of_sides_has_room_again_for_what_was_forgotten() -> None:
+    """Pairs that were forgotten leave their rows to others, which had replaced each other before."""
+    space = pymunk.Space()
+    for k in range(40):
+        body = pymunk.Body(1.0, 1.0)
+        body.position = 0.0, 10.0 * k
+        space.add(body, pymunk.Segment(body, (-1.0, 0.0), (1.0, 0.0), 0.0))
+    stepper = ep.EECA(space)
+    stepper.step(1e-6)
+    loop = stepper.event_loop
+    assert loop is not None
+    scene = loop.scene
+    pairs = [(a, b) for a in range(40) for b in range(a + 1, 40)]
+    for _ in range(5):
+        for a, b in pairs:
+            note_side(scene, a, b, 1.0, 0.0, False)
+        for a, b in pairs:
+            forget_pair(scene, a, b)
+    some = pairs[::7]
+    for a, b in some:
+        note_side(scene, a, b, 0.0, 1.0, False)
+    assert all(side_of(scene, a, b) == (0.0, 1.0) for a, b in some)

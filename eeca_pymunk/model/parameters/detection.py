@@ -19,6 +19,11 @@ FACE_WIDTH = accuracy(1e-06, "of the larger shape",
     "Width of a common face below which it is one point. Smaller: two contacts at one place, singular.")
 SLENDER = heuristic(0.5, "area over (length / 2)^2",
     "Polygons below it are thin and remember sides as segments do: planks in a container that turns stay inside.")
+FLUSH = heuristic(0.0005, "of the smaller shape",
+    "Distance, and overlap on either side, up to which thin shapes of which nothing is known lie flush: the geometry "
+    "does not tell their side. Smaller: what rests, deeper than that after a long step, falls through when it is set "
+    "back. Larger: what a program places at rest below a wall, closer than that, sticks to it.")
+SAME_SIDE = heuristic(0.9, "cosine", "Normals above which the shapes of a body are on the same side of another shape.")
 CORNER_MEET = round_off(1e-9, "of the segments' size", "Distance within which ends of segments form a corner.")
 STRAIGHT = round_off(1e-6, "sine", "Angle between segments that meet below which they form one straight wall.")
 MARGIN_OF_FAST = work(2.0, "times the displacement in a step",
