@@ -137,9 +137,15 @@ def drop_changed(A: Scene, STATUS: IntArray) -> None:
             a, b = shapes_of_pair(k, A.KEYS[row] >> 1)
             if STATUS[a] == OUTLINE or STATUS[b] == OUTLINE:
                 A.FORCES[row].stamp = -1.0
+    drop_sides(A, STATUS)
+
+
+@nonallocating
+def drop_sides(A: Scene, STATUS: IntArray) -> None:
+    """Forget the sides of shapes whose STATUS (k,) is OUTLINE, and of pairs that filters do not allow."""
     for row in range(A.SIDE.shape[0]):
         if A.SIDE[row].key > 0:
-            a, b = shapes_of_pair(k, A.SIDE[row].key - 1)
+            a, b = shapes_of_pair(A.SHAPE.shape[0], A.SIDE[row].key - 1)
             if STATUS[a] == OUTLINE or STATUS[b] == OUTLINE or not allowed(A.LINK, a, b):
                 A.SIDE[row].key = -1
 

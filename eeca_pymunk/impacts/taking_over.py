@@ -22,8 +22,8 @@ from ..islands.accounting import flag_pairs
 from ..islands.at_rest import disturb
 from ..model.contacts import LASTED
 from ..model.scene import Scene, scene_of
-from ..pairs.lists import allowed, may_collide
-from .edits import FILTER, OUTLINE, SAME, Changes, disturb_changed, place_beside
+from ..pairs.lists import may_collide
+from .edits import FILTER, OUTLINE, SAME, Changes, disturb_changed, drop_sides, place_beside
 
 
 class Kept(NamedTuple):
@@ -169,7 +169,4 @@ def take_over(
     flag_pairs(A)
     if A.SIDE.shape[0] > 0 and P.SIDE.shape[0] > 0:
         keep_sides(A, P.SIDE, OUTLINES)
-        for row in range(A.SIDE.shape[0]):
-            if A.SIDE[row].key > 0:
-                a, b = shapes_of_pair(A.SHAPE.shape[0], A.SIDE[row].key - 1)
-                A.SIDE[row].key = A.SIDE[row].key if allowed(A.LINK, a, b) else -1
+        drop_sides(A, STATUS)
