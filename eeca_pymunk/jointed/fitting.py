@@ -9,6 +9,7 @@ from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..contacts.works import kinetic_energy
 from ..joints.correct import fitting_loss
+from ..joints.workspace import workspace
 from ..model.contacts import JointedProblem, Row
 from ..model.joints import Joints
 from ..model.parameters.joints import COLUMN_CONTACTS, FIT_CLOSING, FIT_ENERGY, FIT_RESIDUAL
@@ -51,9 +52,7 @@ def project_velocities(A: Scene, J: Joints, interval: Interval, L: FloatArray, e
         payer = s if payer < 0 else payer
         length = gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, end, interval.h)
         fit_speeds(J, s, length)
-        J.STEPPED[s].projected += fitting_loss(
-            J.LOCAL, J.COMPONENT[s].end_body - J.COMPONENT[s].first_body, J.STEPPED[s]
-        )
+        J.STEPPED[s].projected += fitting_loss(workspace(J, s), J.STEPPED[s])
         for w in range(J.COMPONENT[s].end_body - J.COMPONENT[s].first_body):
             body = J.JOINED[J.COMPONENT[s].first_body + w].body
             if body < A.PLACE.shape[0] and A.PLACE[body] >= 0:

@@ -14,6 +14,7 @@ from ..newton.motion import go_back, save
 from ..newton.rows import joint_rows
 from .bounds import inactive, limit_gap, passed_side
 from .correct import fitting_loss, project, restore_speeds, speeds_fit, steps_left
+from .frame import work_of_shift
 from .lock import lock_energy
 from .start import closing_share, compute_rows, springs_of
 
@@ -135,25 +136,28 @@ def close_joints(W: Workspace, h: float, ledger: JointLedger) -> bool:
     stored = springs_of(W)
     edited, unknown, apart, own = find_apart(W, h)
     if apart:
-        before = farthest(W)
+        before, supports, carried = farthest(W), ledger.supports, ledger.carried
         project(W, POSES)
         taken = springs_of(W) - stored
         cost = taken + closing_work(local, W.bodies)
+        turned = work_of_shift(W) if own else 0.0
         # Closing what a step left apart is paid from the motion.
-        locked = lock_energy(W, cost) if own and cost > 0.0 else 0.0
+        locked = lock_energy(W, cost - turned, ledger) if own and cost > turned else 0.0
         # Contradictory rows are not closed.
-        if not farthest(W) <= before or (own and locked < cost - 1e-9 * abs(cost)):
+        if not farthest(W) <= before or (own and locked < cost - turned - 1e-9 * abs(cost)):
             go_back(local, W.bodies)
             compute_rows(W)
-            taken, cost, locked = 0.0, 0.0, 0.0
+            taken = cost = turned = locked = 0.0
+            ledger.supports, ledger.carried = supports, carried
         keep_closed(W)
-        ledger.closed += cost - locked
+        ledger.closed += cost - turned - locked
+        ledger.supports, ledger.carried = ledger.supports + turned, ledger.carried + turned
         ledger.stored += taken
         save(local, W.bodies)
     if (edited or unknown) and not speeds_fit(W):
         project(W, SPEEDS)
         if not edited and steps_left(local, W.bodies):
             restore_speeds(W)
-        ledger.projected += fitting_loss(local, W.bodies, ledger)
+        ledger.projected += fitting_loss(W, ledger)
         save(local, W.bodies)
     return own

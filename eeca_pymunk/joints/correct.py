@@ -13,6 +13,7 @@ from ..model.parameters import joints
 from ..newton.entries import acts
 from ..newton.systems import apply, back, factorise, first_iterate, linearise
 from .bounds import inactive, limit_gap, limit_gap_rate
+from .frame import work_of_change
 
 NOW, KEPT, SAVED = 0, 1, 2  # velocities of a kinetic energy
 
@@ -84,12 +85,13 @@ def kinetic_of_change(local: Rows[BodyStep], bodies: int) -> float:
 
 
 @nonallocating
-def fitting_loss(local: Rows[BodyStep], bodies: int, ledger: JointLedger) -> float:
+def fitting_loss(W: Workspace, ledger: JointLedger) -> float:
     """The energy lost by the projection of velocities from `v_kept` to `v0`.
 
     It is (1/2) dv.M dv, as the projection is orthogonal. The rest of the change of kinetic energy is the work of
     supports, 0 unless they move, and enters the ledger.
     """
+    local, bodies = W.J.LOCAL, W.bodies
     gained = kinetic_of_component(local, bodies, NOW) - kinetic_of_component(local, bodies, KEPT)
     lost, moves = kinetic_of_change(local, bodies), False
     for i in range(bodies):
@@ -97,6 +99,7 @@ def fitting_loss(local: Rows[BodyStep], bodies: int, ledger: JointLedger) -> flo
             moves = moves or (not local[i].mobility[c] > 0.0 and local[i].v0[c] != 0.0)
     if moves:
         ledger.supports += gained + lost
+        ledger.carried += work_of_change(W)
     return lost if moves else -gained
 
 

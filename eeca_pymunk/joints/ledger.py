@@ -11,13 +11,14 @@ from ..model.joint_steps import BodyStep, JointLedger
 from ..model.joints import MOTOR, ROTARY_SPRING, SPRING, Workspace
 from ..newton.entries import acts
 from ..newton.springs import potential
+from .frame import account_frame
 
 
 @inlined
 def clear_ledger(ledger: JointLedger) -> None:
     """Set the energies of a step to 0."""
     ledger.stored = ledger.damped = ledger.limited = ledger.clamped = ledger.projected = 0.0
-    ledger.motors = ledger.supports = ledger.closed = 0.0
+    ledger.motors = ledger.supports = ledger.carried = ledger.closed = 0.0
 
 
 @inlined
@@ -38,6 +39,7 @@ def add_part(ledger: JointLedger, part: JointLedger) -> None:
     ledger.projected += part.projected
     ledger.motors += part.motors
     ledger.supports += part.supports
+    ledger.carried += part.carried
     ledger.closed += part.closed
 
 
@@ -49,6 +51,7 @@ def account_part(W: Workspace, h: float, ledger: JointLedger) -> None:
     part on bodies that joints move; the rest is on supports.
     """
     hinge, link = W.J.HINGE, W.link
+    account_frame(W, h, ledger)
     per = 1.0 / h
     for k in range(W.joints):
         kind, j = link[k].kind, link[k].joint
@@ -117,10 +120,10 @@ def unexplained(local: Rows[BodyStep], bodies: int, ledger: JointLedger) -> floa
 @nonallocating
 def close_ledger(local: Rows[BodyStep], bodies: int, ledger: JointLedger) -> None:
     """Close the ledger of a step whose joints did not hold: the change of energy that is `unexplained` is `closed` if
-    it is a gain, else `limited`.
+    it is a gain, else `limited`. The work of supports is that by the balance of momentum (`frame`).
 
-    This includes the works of supports and limits: the impulses of contradictory rows grow without bound, and their
-    works cancel up to round-off, so that only the sum is known.
+    This includes the works of limits, and of supports without a frame: the impulses of contradictory rows grow without
+    bound, and their works cancel up to round-off, so that only the sum is known.
     """
-    change = unexplained(local, bodies, ledger)
-    ledger.supports, ledger.closed, ledger.limited = 0.0, max(change, 0.0), max(-change, 0.0)
+    change = unexplained(local, bodies, ledger) - ledger.carried
+    ledger.supports, ledger.closed, ledger.limited = ledger.carried, max(change, 0.0), max(-change, 0.0)

@@ -55,7 +55,7 @@ def stop_at(W: Workspace, k: int, side: int, at_once: bool, stays: bool, ledger:
     bounds.begin_part(link, W.joints)
     if at_once:
         link[k].side = side  # a velocity that released it is round-off: forces press it to its bound at once
-    ledger.limited += fitting_loss(W.J.LOCAL, W.bodies, ledger)
+    ledger.limited += fitting_loss(W, ledger)
     drop_impulses(W)
     bounds.hold_present_gaps(W)
 

@@ -3,8 +3,8 @@
 A step whose joints did not hold (elastic or linear rows), and closing what it left apart, may gain energy. Of all
 velocities with the same momentum and angular momentum, those of a rigid body have the least energy, and they satisfy
 all joints. So v = v_r + s (v - v_r), K = K_r + s^2 K_rel, with s such that the gain is gone. Gears of another ratio
-than 1 do not keep angular momentum: v_r then is that of the centre of mass; if the component has a partner at rest,
-v_r = 0.
+than 1 do not keep angular momentum: v_r then is that of the centre of mass. If the component has supports, v_r is the
+velocity of their frame (`frame`): 0 if they are at rest.
 
 The momenta are those of the start and of the accelerations. Impulses that are large, as those of joints that contradict
 one another, change them by their round-off, and turn what is held apart by the impulse times the distance: a component
@@ -17,9 +17,10 @@ import math
 
 from ..compiled import nonallocating
 from ..compiled.records import Rows
-from ..model.joint_steps import BodyStep
-from ..model.joints import GEAR, Workspace
+from ..model.joint_steps import BodyStep, JointLedger
+from ..model.joints import Workspace
 from ..model.parameters.joints import LOCK_ITERATIONS
+from .frame import frame_of, has_ratio, relative_energy, spin_about
 
 
 @nonallocating
@@ -42,22 +43,6 @@ def centre_of(local: Rows[BodyStep], bodies: int) -> tuple[bool, float, float, f
 
 
 @nonallocating
-def spin_about(local: Rows[BodyStep], bodies: int, x: float, y: float, vx: float, vy: float) -> tuple[float, float]:
-    """Spin of a rigid body with the angular momentum of the component about its centre of mass (x, y), of velocity (vx,
-    vy), and its moment of inertia; 0 if that is 0."""
-    turning, inertia = 0.0, 0.0
-    for i in range(bodies):
-        if local[i].freedoms > 0 and local[i].mobility[0] > 0.0:
-            m, dx, dy = 1.0 / local[i].mobility[0], local[i].pose[0] - x, local[i].pose[1] - y
-            turning += m * (dx * (local[i].v0[1] - vy) - dy * (local[i].v0[0] - vx))
-            inertia += m * (dx * dx + dy * dy)
-        if local[i].freedoms > 2 and local[i].mobility[2] > 0.0:
-            turning += local[i].v0[2] / local[i].mobility[2]
-            inertia += 1.0 / local[i].mobility[2]
-    return turning / inertia if inertia > 0.0 else 0.0, inertia
-
-
-@nonallocating
 def turns_freely(W: Workspace) -> bool:
     """Whether no joint changes the angular momentum of the component: it has no partner, no body of infinite mass or
     moment, and no gear whose torques, -T/ratio and T, are not opposite."""
@@ -65,10 +50,7 @@ def turns_freely(W: Workspace) -> bool:
         for c in range(3):
             if not W.J.LOCAL[i].mobility[c] > 0.0:
                 return False
-    for k in range(W.joints):
-        if W.link[k].kind == GEAR and W.J.JOINT[W.link[k].joint].ratio != 1.0:
-            return False
-    return True
+    return not has_ratio(W)
 
 
 @nonallocating
@@ -114,70 +96,36 @@ def restore_momenta(W: Workspace, h: float, least: float) -> float:
 
 
 @nonallocating
-def lock_energy(W: Workspace, gain: float) -> float:
-    """Take the energy `gain` > 0 from the velocities v0; returns how much was taken. Nothing if partners move: they do
-    work."""
-    local, bodies = W.J.LOCAL, W.bodies
-    if not supports_rest(local, bodies):
+def lock_energy(W: Workspace, gain: float, ledger: JointLedger) -> float:
+    """Take the energy `gain` > 0 from the velocities v0; returns how much was taken. Supports that move do work in
+    this, which enters `ledger`. Nothing if they have no frame."""
+    F = frame_of(W)
+    if not F.rigid:
         return 0.0
-    hangs, x, y, vx, vy, _, _ = centre_of(local, bodies)
-    spin, _ = spin_about(local, bodies, x, y, vx, vy)
-    if hangs:
-        vx = vy = 0.0
-    if not turns_freely(W):
-        spin = 0.0
-    apart = relative_energy(local, bodies, x, y, vx, vy, spin, -1.0)
+    apart, work = relative_energy(W, F, -1.0)
     s = math.sqrt(max(0.0, 1.0 - gain / apart)) if apart > 0.0 else 0.0
-    relative_energy(local, bodies, x, y, vx, vy, spin, s)
+    relative_energy(W, F, s)
+    ledger.supports, ledger.carried = ledger.supports + (1.0 - s) * work, ledger.carried + (1.0 - s) * work
     return (1.0 - s * s) * apart
-
-
-@nonallocating
-def supports_rest(local: Rows[BodyStep], bodies: int) -> bool:
-    """Whether all partners of the component are at rest."""
-    for i in range(bodies):
-        for c in range(3):
-            if local[i].freedoms == 0 and local[i].v0[c] != 0.0:
-                return False
-    return True
-
-
-@nonallocating
-def relative_energy(
-    local: Rows[BodyStep], bodies: int, x: float, y: float, vx: float, vy: float, spin: float, s: float
-) -> float:
-    """Kinetic energy of the motion relative to a rigid body with velocity (vx, vy) at (x, y) and `spin`; s >= 0: scale
-    this motion by s."""
-    total = 0.0
-    for i in range(bodies):
-        for c in range(local[i].freedoms):
-            if local[i].mobility[c] > 0.0:
-                rigid = spin
-                if c == 0:
-                    rigid = vx - spin * (local[i].pose[1] - y)
-                elif c == 1:
-                    rigid = vy + spin * (local[i].pose[0] - x)
-                off = local[i].v0[c] - rigid
-                total += 0.5 * off * off / local[i].mobility[c]
-                if s >= 0.0:
-                    local[i].v0[c] = rigid + s * off
-    return total
 
 
 @nonallocating
 def move_rigidly(W: Workspace, h: float) -> None:
     """Move all bodies over a step h as one rigid body under their accelerations, without turning if gears do not let
-    it, or stop them if the component has a partner: joints keep their shape, and energy does not rise except by the
-    work of the accelerations.
+    it, or with the frame of their supports: joints keep their shape, and energy does not rise except by the work of the
+    accelerations, and of supports that move.
 
     r1 - r0 = chi z x r_m for the arms r about the common centre: with torques about r_m that work is exact. Bodies that
     joints do not turn keep their own spin.
     """
-    local, bodies = W.J.LOCAL, W.bodies
-    hangs, x, y, vx, vy, ax, ay = centre_of(local, bodies)
-    spin, inertia = spin_about(local, bodies, x, y, vx, vy)
-    chi, after = 0.0, 0.0
-    for _ in range(LOCK_ITERATIONS if turns_freely(W) else 0):
+    local, bodies, F = W.J.LOCAL, W.bodies, frame_of(W)
+    held, x, y, vx, vy, spin = F.hangs or F.turns, F.x, F.y, F.vx, F.vy, F.spin
+    _, _, _, _, _, ax, ay = centre_of(local, bodies)
+    if F.hangs:
+        ax = ay = 0.0
+    _, inertia = spin_about(local, bodies, x, y, vx, vy)
+    chi, after = (2.0 * math.tan(0.5 * h * spin), spin) if held else (0.0, 0.0)
+    for _ in range(0 if held or has_ratio(W) else LOCK_ITERATIONS):
         torque, over = 0.0, 1.0 / (1.0 + 0.25 * chi * chi)
         for i in range(bodies):
             if local[i].freedoms > 0 and local[i].mobility[0] > 0.0:
@@ -192,24 +140,18 @@ def move_rigidly(W: Workspace, h: float) -> None:
     turned = 2.0 * math.atan(0.5 * chi)
     for i in range(bodies):
         local[i].mean[0], local[i].mean[1] = h * local[i].pose[0], h * local[i].pose[1]
-        if local[i].freedoms == 0:
-            continue
-        if hangs:
-            for c in range(local[i].freedoms):
-                local[i].v0[c] = 0.0
+        dx, dy = local[i].pose[0] - x, local[i].pose[1] - y
+        mx, my = over * (dx - 0.5 * chi * dy), over * (dy + 0.5 * chi * dx)
+        wx, wy = h * (vx + 0.5 * h * ax) - chi * my, h * (vy + 0.5 * h * ay) + chi * mx
+        local[i].pose[0], local[i].pose[1] = local[i].pose[0] + wx, local[i].pose[1] + wy
+        local[i].mean[0], local[i].mean[1] = local[i].mean[0] + 0.5 * h * wx, local[i].mean[1] + 0.5 * h * wy
+        local[i].travel[0], local[i].travel[1] = local[i].travel[0] + wx, local[i].travel[1] + wy
+        rx, ry = 2.0 * mx - dx, 2.0 * my - dy
+        local[i].v0[0], local[i].v0[1] = vx + h * ax - after * ry, vy + h * ay + after * rx
+        if local[i].freedoms != 2:
+            local[i].pose[2], local[i].v0[2] = local[i].pose[2] + turned, after
+            local[i].travel[2] += chi
         else:
-            dx, dy = local[i].pose[0] - x, local[i].pose[1] - y
-            mx, my = over * (dx - 0.5 * chi * dy), over * (dy + 0.5 * chi * dx)
-            wx, wy = h * (vx + 0.5 * h * ax) - chi * my, h * (vy + 0.5 * h * ay) + chi * mx
-            local[i].pose[0], local[i].pose[1] = local[i].pose[0] + wx, local[i].pose[1] + wy
-            local[i].mean[0], local[i].mean[1] = local[i].mean[0] + 0.5 * h * wx, local[i].mean[1] + 0.5 * h * wy
-            local[i].travel[0], local[i].travel[1] = local[i].travel[0] + wx, local[i].travel[1] + wy
-            rx, ry = 2.0 * mx - dx, 2.0 * my - dy
-            local[i].v0[0], local[i].v0[1] = vx + h * ax - after * ry, vy + h * ay + after * rx
-            if local[i].freedoms > 2:
-                local[i].pose[2], local[i].v0[2] = local[i].pose[2] + turned, after
-                local[i].travel[2] += chi
-        if local[i].freedoms < 3:
             way = h * (local[i].saved_velocity[2] + 0.5 * h * local[i].acceleration[2])
             local[i].pose[2] = local[i].saved_pose[2] + way
             local[i].v0[2] = local[i].saved_velocity[2] + h * local[i].acceleration[2]

@@ -83,7 +83,7 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
     if stands and closes_on_limit(W, h):
         # An impact has left velocities into a bound on which a joint stands: it is met at once.
         project(W, SPEEDS)
-        ledger.limited += fitting_loss(local, W.bodies, ledger)
+        ledger.limited += fitting_loss(W, ledger)
         save(local, W.bodies)
     if stands:
         hold_present_gaps(W)

@@ -11,10 +11,11 @@ from ..newton.solve import drop_impulses
 from .closing import farthest
 from .correct import NOW, SAVED, kinetic_of_component
 from .foresight import forget_parts
+from .frame import frame_of, relative_energy, supports_rest
 from .ladder import gain_of_rows, restore_start, settle, undo_impulses
 from .ledger import clear_ledger, close_ledger, unexplained
 from .limits import step_with_limits
-from .lock import lock_energy, move_rigidly, supports_rest
+from .lock import lock_energy, move_rigidly
 from .start import load_of, springs_of
 
 
@@ -23,10 +24,10 @@ def step_linearly(W: Workspace, h: float, length: float) -> float:
     """Take the step h by linear systems, one for each limit that is released, or in free flight if they have no
     solution. Returns `farthest` at its start. PART_LEDGER has the energy that springs have stored."""
     local, part = W.J.LOCAL, W.J.PART_LEDGER
-    stored, apart = springs_of(W), farthest(W)
+    stored, apart, carried = springs_of(W), farthest(W), 0.0
     drop_impulses(W)
     if step_with_limits(W, True, h, length, True, 0.0, False, part):
-        W.J.JOINT[W.link[0].joint].compliance = 0.0
+        W.J.JOINT[W.link[0].joint].compliance, carried = 0.0, part.carried
     else:
         restore_start(W)
         forget_parts(W)
@@ -36,21 +37,24 @@ def step_linearly(W: Workspace, h: float, length: float) -> float:
         move(local, W.bodies, h)
         accept_part(local, W.bodies, h)
     clear_ledger(part)
-    part.stored = springs_of(W) - stored
+    part.stored, part.carried = springs_of(W) - stored, carried
     return apart
 
 
 @nonallocating
 def stop_joints(W: Workspace, h: float) -> None:
-    """Take the step h again by `move_rigidly`, which needs no solution; the loss is `projected` in PART_LEDGER."""
+    """Take the step h again by `move_rigidly`, which needs no solution; the loss is `limited` in PART_LEDGER: with
+    supports, all of the motion relative to their frame."""
     local, part = W.J.LOCAL, W.J.PART_LEDGER
     go_back(local, W.bodies)
     stored = springs_of(W)
+    lost, _ = relative_energy(W, frame_of(W), -1.0)
     move_rigidly(W, h)
     clear_ledger(part)
     part.stored = springs_of(W) - stored
+    if not supports_rest(local, W.bodies):
+        part.carried = unexplained(local, W.bodies, part) + lost
     close_ledger(local, W.bodies, part)
-    part.projected, part.closed = max(-part.closed, 0.0), max(part.closed, 0.0)
     undo_impulses(W)
 
 
@@ -62,8 +66,9 @@ def keeps_gain(W: Workspace, h: float, length: float, own: bool) -> bool:
     local, mass = W.J.LOCAL, 0.0
     if W.J.PROGRESS.near > 0.0:
         return False
-    gain = min(gain_of_rows(W, own), unexplained(local, W.bodies, W.J.PART_LEDGER))
-    if not gain > 0.0 or not supports_rest(local, W.bodies):
+    part = W.J.PART_LEDGER
+    gain = min(gain_of_rows(W, own), unexplained(local, W.bodies, part) - part.carried)
+    if not gain > 0.0 or not frame_of(W).rigid:
         return False
     for i in range(W.bodies):
         mass += 1.0 / local[i].mobility[0] if local[i].mobility[0] > 0.0 else 0.0
@@ -84,13 +89,13 @@ def take_gain(W: Workspace, h: float, length: float, status: int, before: float)
     settle(W, h, length)
     close_ledger(local, W.bodies, part)
     if part.closed > 0.0:
-        lock_energy(W, part.closed)
+        lock_energy(W, part.closed, part)
         close_ledger(local, W.bodies, part)
         had = kinetic_of_component(local, W.bodies, SAVED) + kinetic_of_component(local, W.bodies, NOW)
-        if part.closed > JOINT_GAIN * had and supports_rest(local, W.bodies):
+        if part.closed > JOINT_GAIN * had and frame_of(W).rigid:
             status, stopped = LINEAR, True
     if status == LINEAR and not farthest(W) <= before + LINEAR_APART:
-        stopped = supports_rest(local, W.bodies)
+        stopped = frame_of(W).rigid
     if stopped:
         stop_joints(W, h)
     return status

@@ -132,6 +132,7 @@ class JointLedger(Record):
     projected: float  # loss >= 0 of velocities that violated joints
     motors: float  # work of motors, and of joints with a finite max_force where it is positive
     supports: float  # work of bodies that move without being moved
+    carried: float  # the same by the balance of momentum (`..joints.frame`)
     closed: float  # work of closing joints that were apart at the start, of elastic stand-ins, of linear steps
     turned_work: float  # with contacts: work of torques beyond that along the angle
     lifted: float  # energy that separating overlapping bodies costs, paid from the losses of contacts

@@ -105,17 +105,23 @@ def reach(joint: pymunk.Constraint) -> float:
 
 
 def may_contradict(joint: pymunk.Constraint) -> bool:
-    """Whether a body that the program turns or moves holds two joints of this component, which others may not follow:
-    two gears on it, and a limit between what they turn."""
+    """Whether this component has two joints that hold exactly on what joints do not move, or do not turn, of which the
+    program turns or moves something: others may not follow, as a limit between what two gears turn, or between what a
+    ratchet turns and a body of infinite moment."""
     seen = component(joint)
     springs = pymunk.DampedSpring, pymunk.DampedRotarySpring
+    angles = pymunk.GearJoint, pymunk.RotaryLimitJoint, pymunk.RatchetJoint
+    exact = {c for body in seen for c in body.constraints if {c.a, c.b} <= seen}
+    exact = {c for c in exact if math.isinf(c.max_force) and not isinstance(c, springs)}
+    led = fixed = 0
     for body in seen:
-        led = body.velocity.length > 0.0 or body.angular_velocity != 0.0
-        if body.body_type == pymunk.Body.KINEMATIC and led:
-            exact = [c for c in body.constraints if math.isinf(c.max_force) and not isinstance(c, springs)]
-            if sum({c.a, c.b} <= seen for c in exact) > 1:
-                return True
-    return False
+        if body.body_type != pymunk.Body.DYNAMIC:
+            held = sum(body in (c.a, c.b) for c in exact)
+            moves = body.velocity.length > 0.0 or body.angular_velocity != 0.0
+            led, fixed = led + (held if moves else 0), fixed + held
+        elif math.isinf(body.moment):
+            fixed += sum(body in (c.a, c.b) and isinstance(c, angles) for c in exact)
+    return led > 0 and fixed > 1
 
 
 def overdone(joint: pymunk.Constraint, dt: float) -> float:

@@ -1,0 +1,187 @@
+"""The frame of a component: the rigid motion of its supports, to which joints hold the other bodies.
+
+Supports are partners, and what has infinite mass or moment. If they move as one rigid body, of velocity u(r) = V + w z
+x (r - c), what joints between it and the other bodies do in its frame is no work. The work of the supports then is sum
+p . u, of the impulses p = M (v1 - v0 - h a) of all joints on each body. It needs no impulse of a joint, whose works
+cancel only up to round-off if joints contradict one another. What is gained beside it, sum p . (v_m - u), is no work of
+supports, and is taken from the motion relative to the frame: Jacobi's integral K - V . P - w L does not grow. Supports
+at rest are such a frame; without supports it is that of the momenta. Supports that move apart have none: they can do
+any work.
+
+Over a part h bodies move by h v_m, so u is that at the mean place r_m, with 2 tan(w h/2)/h for w: then r1 - r0 = h
+u(r_m). Bodies that turn by chi itself (`BodyStep`) have w.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from ..compiled import inlined, nonallocating
+from ..compiled.records import Rows
+from ..model.joint_steps import BodyStep, JointLedger
+from ..model.joints import GEAR, Workspace
+
+
+class Frame(NamedTuple):
+    """Place (x, y), velocity (vx, vy) and spin of a frame."""
+
+    rigid: bool  # whether supports move as one
+    hangs: bool  # whether a support has a place: then (x, y) is its, else the centre of mass
+    turns: bool  # whether a support has the spin; else it is that of the momenta, or 0 if these are not kept
+    x: float
+    y: float
+    vx: float
+    vy: float
+    spin: float
+
+
+@inlined
+def supports(body: BodyStep, c: int) -> bool:
+    """Whether joints act on this unknown of a body, and do not change it."""
+    return bool(body.freedoms == 0 or (c < body.freedoms and not body.mobility[c] > 0.0))
+
+
+@nonallocating
+def supports_rest(local: Rows[BodyStep], bodies: int) -> bool:
+    """Whether all supports of the component are at rest."""
+    for i in range(bodies):
+        for c in range(3):
+            if local[i].v0[c] != 0.0 and supports(local[i], c):
+                return False
+    return True
+
+
+@nonallocating
+def has_ratio(W: Workspace) -> bool:
+    """Whether a gear has another ratio than 1: its torques, -T/ratio and T, are not opposite."""
+    for k in range(W.joints):
+        if W.link[k].kind == GEAR and W.J.JOINT[W.link[k].joint].ratio != 1.0:
+            return True
+    return False
+
+
+@nonallocating
+def frame_of(W: Workspace) -> Frame:
+    """The frame of a component at its present poses and velocities v0."""
+    local, rigid, hangs, turns = W.J.LOCAL, True, False, False
+    mass = x = y = vx = vy = spin = 0.0
+    for i in range(W.bodies):
+        body = local[i]
+        if supports(body, 2):
+            rigid = rigid and not (turns and body.v0[2] != spin)
+            spin, turns = body.v0[2], True
+    for i in range(W.bodies):
+        body = local[i]
+        if supports(body, 0):
+            rigid = rigid and not (hangs and (body.v0[0] != vx or body.v0[1] != vy))
+            rigid = rigid and not (hangs and spin != 0.0 and (body.pose[0] != x or body.pose[1] != y))
+            x, y, vx, vy, hangs = body.pose[0], body.pose[1], body.v0[0], body.v0[1], True
+    if hangs or not rigid:
+        return Frame(rigid and not (spin != 0.0 and has_ratio(W)), hangs, turns, x, y, vx, vy, spin)
+    for i in range(W.bodies):
+        body = local[i]
+        if body.mobility[0] > 0.0:
+            m = 1.0 / body.mobility[0]
+            mass, x, y = mass + m, x + m * body.pose[0], y + m * body.pose[1]
+            vx, vy = vx + m * body.v0[0], vy + m * body.v0[1]
+    if mass > 0.0:
+        x, y, vx, vy = x / mass, y / mass, vx / mass, vy / mass
+    if not turns and not has_ratio(W):
+        spin, _ = spin_about(local, W.bodies, x, y, vx, vy)
+    return Frame(not (turns and spin != 0.0 and has_ratio(W)), False, turns, x, y, vx, vy, spin)
+
+
+@nonallocating
+def spin_about(local: Rows[BodyStep], bodies: int, x: float, y: float, vx: float, vy: float) -> tuple[float, float]:
+    """Spin of a rigid body with the angular momentum of the component about its centre of mass (x, y), of velocity (vx,
+    vy), and its moment of inertia; 0 if that is 0."""
+    turning, inertia = 0.0, 0.0
+    for i in range(bodies):
+        if local[i].freedoms > 0 and local[i].mobility[0] > 0.0:
+            m, dx, dy = 1.0 / local[i].mobility[0], local[i].pose[0] - x, local[i].pose[1] - y
+            turning += m * (dx * (local[i].v0[1] - vy) - dy * (local[i].v0[0] - vx))
+            inertia += m * (dx * dx + dy * dy)
+        if local[i].freedoms > 2 and local[i].mobility[2] > 0.0:
+            turning += local[i].v0[2] / local[i].mobility[2]
+            inertia += 1.0 / local[i].mobility[2]
+    return turning / inertia if inertia > 0.0 else 0.0, inertia
+
+
+@nonallocating
+def account_frame(W: Workspace, h: float, ledger: JointLedger) -> None:
+    """Add the work of moving supports in a solved part h, by the balance of momentum, to `ledger`: 0 without a
+    frame."""
+    local = W.J.LOCAL
+    if supports_rest(local, W.bodies):
+        return
+    F = frame_of(W)
+    if not (F.rigid and (F.hangs or F.turns)):
+        return
+    wide = 2.0 * math.tan(0.5 * F.spin * h) / h
+    x, y = F.x + 0.5 * h * F.vx, F.y + 0.5 * h * F.vy
+    for i in range(W.bodies):
+        body = local[i]
+        for c in range(body.freedoms):
+            if body.mobility[c] > 0.0:
+                speed = wide if body.cayley > 0 else F.spin
+                if c == 0:
+                    speed = F.vx - wide * (body.pose[1] + 0.5 * body.way[1] - y)
+                elif c == 1:
+                    speed = F.vy + wide * (body.pose[0] + 0.5 * body.way[0] - x)
+                impulse = (body.v1[c] - body.v0[c] - h * body.acceleration[c]) / body.mobility[c]
+                ledger.carried += impulse * speed
+
+
+@nonallocating
+def velocity_in(F: Frame, body: BodyStep, c: int) -> float:
+    """Velocity of a frame at the place of a body."""
+    if c == 2:
+        return F.spin
+    return float(F.vx - F.spin * (body.pose[1] - F.y) if c == 0 else F.vy + F.spin * (body.pose[0] - F.x))
+
+
+@nonallocating
+def work_of_change(W: Workspace) -> float:
+    """The work of moving supports while velocities change from `v_kept` to v0 by impulses of joints."""
+    F, work = frame_of(W), 0.0
+    if not (F.rigid and (F.hangs or F.turns)):
+        return 0.0
+    for i in range(W.bodies):
+        body = W.J.LOCAL[i]
+        for c in range(body.freedoms):
+            if body.mobility[c] > 0.0:
+                work += (body.v0[c] - body.v_kept[c]) * velocity_in(F, body, c) / body.mobility[c]
+    return work
+
+
+@nonallocating
+def work_of_shift(W: Workspace) -> float:
+    """The work of supports that turn while bodies move from their saved places without a change of velocity: what holds
+    them there in the frame is the change of their angular momentum about it."""
+    F, turning = frame_of(W), 0.0
+    if not (F.rigid and F.hangs):
+        return 0.0
+    for i in range(W.bodies):
+        body = W.J.LOCAL[i]
+        if body.freedoms > 0 and body.mobility[0] > 0.0:
+            x, y = body.pose[0] - body.saved_pose[0], body.pose[1] - body.saved_pose[1]
+            turning += (x * (body.v0[1] - F.vy) - y * (body.v0[0] - F.vx)) / body.mobility[0]
+    return F.spin * turning
+
+
+@nonallocating
+def relative_energy(W: Workspace, F: Frame, s: float) -> tuple[float, float]:
+    """Kinetic energy of the motion relative to a frame; s >= 0: scale this motion by s. Also the work that supports do
+    if it vanishes."""
+    local, total, work = W.J.LOCAL, 0.0, 0.0
+    for i in range(W.bodies):
+        for c in range(local[i].freedoms):
+            if local[i].mobility[c] > 0.0:
+                rigid = velocity_in(F, local[i], c)
+                off = local[i].v0[c] - rigid
+                total += 0.5 * off * off / local[i].mobility[c]
+                work -= off * rigid / local[i].mobility[c]
+                if s >= 0.0:
+                    local[i].v0[c] = rigid + s * off
+    return total, work if F.hangs or F.turns else 0.0

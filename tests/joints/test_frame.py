@@ -1,0 +1,113 @@
+"""Joints that hang on a body which the program moves or turns: what energy it can give them, whatever converges.
+
+In the frame of a body of constant velocity V and spin w, joints between it and other bodies do no work: Jacobi's
+integral K - V . P - w L, with L about its place, does not rise. Gears of other ratios than 1 would change L.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from random import Random
+
+import pymunk
+import pytest
+
+import eeca_pymunk as ep
+
+from ..programs.joined import HOLDS, apart, reach
+from .test_pairs import drawn
+
+
+def scene(seed: int) -> tuple[pymunk.Space, pymunk.Body, float]:
+    """Bodies of masses up to 1 : 10^4 without weight, some of their joints on a body that moves, turns or both; that
+    body; and a length of steps. On one that turns no joint is apart at the start: the forces of such joints act at both
+    anchors, and turn what they hold."""
+    chance, space = Random(f"driven {seed}"), pymunk.Space()
+    shape, count = chance.choice(("one", "two", "chain", "loop")), chance.randint(2, 5)
+    wheel, count = pymunk.Body(body_type=pymunk.Body.KINEMATIC), {"one": 1, "two": 2}.get(shape, count)
+    wheel.position, way = (-1.0, 0.0), chance.choice(("turns", "moves", "both"))
+    if way != "turns":
+        wheel.velocity = chance.uniform(-1.0, 1.0), chance.uniform(-1.0, 1.0)
+    if way != "moves":
+        wheel.angular_velocity = chance.choice((0.1, 1.0, 3.0)) * chance.choice((-1.0, 1.0))
+    line = [wheel]
+    for k in range(count):
+        mass = 10.0 ** chance.uniform(-4.0, 0.0)
+        body = pymunk.Body(mass, mass * 10.0 ** chance.uniform(-3.0, 0.0))
+        body.position, body.velocity = (float(k), 0.0), (chance.uniform(-1.0, 1.0), chance.uniform(-1.0, 1.0))
+        body.angular_velocity = chance.uniform(-2.0, 2.0)
+        line.append(body)
+    space.add(*line)
+    long = shape in ("chain", "loop")
+    for a, b in [*pairwise(line), *([(line[-1], wheel)] if shape == "loop" else [])]:
+        if long:
+            space.add(pymunk.PivotJoint(a, b, (a.position + b.position) / 2))
+        for _ in range(chance.choice((0, 1)) if long else chance.choice((1, 2, 3))):
+            space.add(drawn(chance, a, b))
+    if shape in ("chain", "two"):
+        for _ in range(chance.choice((1, 2))):
+            space.add(drawn(chance, wheel, line[-1]))
+    for joint in list(space.constraints):
+        if isinstance(joint, pymunk.GearJoint) and wheel.angular_velocity != 0.0:
+            joint.ratio = 1.0
+        if wheel.angular_velocity != 0.0 and off(joint) > HOLDS:
+            space.remove(joint)
+    return space, wheel, chance.choice((1 / 240, 1 / 60, 1 / 30, 0.1))
+
+
+def off(joint: pymunk.Constraint) -> float:
+    """How far a joint is apart, over its component, whose size in steps is also a way in them: up to a tenth more."""
+    return apart(joint, max(1.0, reach(joint)))
+
+
+def energies(space: pymunk.Space, wheel: pymunk.Body, dt: float) -> tuple[float, float]:
+    """Jacobi's integral, and the scale of its terms: kinetic energy, and that of the motion with the frame. Over a step
+    an impulse acts along 2 tan(w dt/2)."""
+    w, jacobi, scale = 2.0 * math.tan(0.5 * wheel.angular_velocity * dt) / dt, 0.0, 0.0
+    for body in space.bodies:
+        if body is not wheel:
+            v, r, spin = body.velocity - wheel.velocity, body.position - wheel.position, body.angular_velocity
+            led = wheel.velocity + w * r.perpendicular()
+            jacobi += 0.5 * body.mass * v.dot(v) + 0.5 * body.moment * spin * spin
+            jacobi -= w * (body.mass * r.cross(v) + body.moment * spin)
+            scale += 0.5 * body.mass * (body.velocity.dot(body.velocity) + led.dot(led))
+            scale += 0.5 * body.moment * (spin * spin + w * w)
+    return jacobi, scale
+
+
+@pytest.mark.parametrize("seed", [*range(120), 167, 199, 211])
+def test_a_body_that_moves_or_turns_gives_joints_no_more_energy_than_its_motion_can(seed: int) -> None:
+    """But for torques, which act along w dt: by (w dt)²/12 of their work. Joints of converged steps hold."""
+    space, wheel, dt = scene(seed)
+    stepper = ep.EECA(space)
+    turned, (last, before) = wheel.angular_velocity * dt, energies(space, wheel, dt)
+    apart_before = max(map(off, space.constraints), default=0.0)
+    for _ in range(20):
+        report = stepper.step(dt)
+        ledger = report.ledger
+        now, scale = energies(space, wheel, dt)
+        assert ledger is not None
+        assert now - last <= (1e-9 + turned**2 / 12.0) * (scale + before)
+        assert abs(ledger.residual) <= 1e-9 * (scale + before)
+        assert min(ledger.restitution, ledger.friction, ledger.damping) >= -1e-9 * (scale + before)
+        apart_now = max(map(off, space.constraints), default=0.0)
+        assert apart_now <= 1.1 * HOLDS or apart_before > HOLDS or not report.converged
+        last, before, apart_before = now, scale, apart_now
+
+
+@pytest.mark.parametrize("spin", [0.0, 2.0])
+def test_the_work_of_a_support_is_the_same_by_impulses_and_by_the_balance_of_momentum(spin: float) -> None:
+    """A pendulum and a spring on a body that moves and turns."""
+    space, wheel, body = pymunk.Space(), pymunk.Body(body_type=pymunk.Body.KINEMATIC), pymunk.Body(1.0, 0.1)
+    space.gravity, wheel.velocity, wheel.angular_velocity = (0.0, -9.81), (1.0, 0.5), spin
+    body.position = 1.0, 0.0
+    space.add(wheel, body, pymunk.PivotJoint(wheel, body, (0.3, 0.2)))
+    space.add(pymunk.DampedSpring(wheel, body, (0.0, 1.0), (0.2, 0.0), 0.5, 20.0, 0.3))
+    stepper = ep.EECA(space)
+    for _ in range(5):
+        assert stepper.step(1 / 60).converged
+        assert stepper.event_loop is not None
+        part = stepper.event_loop.joints.PART_LEDGER
+        assert abs(part.supports) > 1e-3
+        assert part.carried == pytest.approx(part.supports, rel=1e-11)
