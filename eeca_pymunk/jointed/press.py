@@ -72,6 +72,15 @@ def accelerations(interval: Interval, L: FloatArray, B: Bounded) -> tuple[FloatA
 
 
 @kernel
+def begin_laws(interval: Interval, L: FloatArray, B: Bounded, FORESEEN: FloatArray) -> FloatArray:
+    """The impulses with which the solution of the contacts' laws begins: L, without contacts that are left out, and
+    those of the bounded rows. FORESEEN becomes the velocities by the columns under these."""
+    copy(FORESEEN, interval.motion.MEAN)
+    leave_out(interval.C, L, interval.m, FORESEEN)
+    return with_bounded(B, L, interval.m)
+
+
+@kernel
 def solve_contacts(
     A: Scene, J: Joints, interval: Interval, L: FloatArray, EXPECTED: FloatArray, slow: float, fast: float, pull: float,
     owed: float,
@@ -182,13 +191,11 @@ def solve_contacts(
         if outer == 0:
             scale, agree, fine = aims(pull * h, slow, fast, elastic)
             target(ROWS, m, EFFECT, EXPECTED, pull, h)
-        copy(FORESEEN, motion.MEAN)
         copy(PREVIOUS, motion.MEAN)
         copy(USED, L)
         for i in range(B.USED[0]):
             NOW[i] = B.ROWS[i].now
-        leave_out(C, L, m, FORESEEN)
-        BOTH = with_bounded(B, L, m)
+        BOTH = begin_laws(interval, L, B, FORESEEN)
         work = J.PROGRESS.share - J.PROGRESS.effort
         sweeps = joints.COLUMN_SWEEPS if build else 0
         worst = solve_columns(problem, BOTH, FORESEEN, fine, sweeps, most, work)
@@ -198,9 +205,7 @@ def solve_contacts(
         if rough:
             # Far from the solution laws may contradict one another, by as much as the columns are wrong.
             copy(L, USED)
-            copy(FORESEEN, motion.MEAN)
-            leave_out(C, L, m, FORESEEN)
-            BOTH = with_bounded(B, L, m)
+            BOTH = begin_laws(interval, L, B, FORESEEN)
             worst = sweep(problem, BOTH, FORESEEN)
             worst = sweep_conjugate(problem, BOTH, FORESEEN, joints.LAWS_ROUGH * worst, most)[1]
         if not exactly:
