@@ -335,6 +335,28 @@ MUTATIONS = (
              "contacts/test_piles.py", "stack_stands_still"),
     Mutation("operator: tangents answer as normals do", "rows/dense.py", "C.T[w, k] if kind[j] == 1 else",
              "C.N[w, k] if kind[j] == 1 else", "rows/test_columns.py", "sweeps_and_matrices"),
+    # Joints and contacts whose solutions are not unique, and joints that contradict one another.
+    Mutation("jointed: laws are solved exactly though impulses are excessive", "jointed/press.py",
+             "rough = outer == 0 and exactly and excessive(", "rough = False and excessive(",
+             "jointed/test_budget.py", "solved_at_once and 1.0-1.0-True"),
+    Mutation("joints: an error that has stalled is no round-off", "newton/solve.py",
+             "NEWTON_FLOOR if stalls > 1 else", "JOINT_ROUND_OFF if stalls > 1 else",
+             "joints/test_redundant.py", "knots"),
+    Mutation("joints: momenta are off by the round-off of large impulses", "joints/ladder.py",
+             "part.closed += restore_momenta(W, h, least)", "pass", "joints/test_pairs.py",
+             "[61]"),
+    Mutation("joints: a gain that nothing pays is kept", "joints/step.py", "elif keeps_gain(",
+             "elif False and keeps_gain(", "joints/test_pairs.py", "[803]"),
+    Mutation("joints: gears of any ratio keep angular momentum", "joints/lock.py",
+             "W.link[k].kind == GEAR and W.J.JOINT[W.link[k].joint].ratio != 1.0", "False",
+             "joints/test_kinds.py", "free_wheels"),
+    Mutation("sides: geometry tells the side of what is flush", "prediction/sides.py",
+             "d <= most and flush(P, p, Q, q, nx, ny, most)", "False", "impacts/test_flush.py",
+             "stays_on_it and step_by_another and size0"),
+    Mutation("sides: other shapes of the body tell none", "prediction/sides.py", "if abs(along) > SAME_SIDE and",
+             "if False and", "impacts/test_flush.py", "leaves_it and add_flush and size0"),
+    Mutation("sides: additions forget them", "impacts/taking_over.py", "keep_sides(A, P.SIDE, OUTLINES)", "pass",
+             "impacts/test_flush.py", "leaves_it and add_far and size0"),
 )  # fmt: skip
 
 

@@ -114,6 +114,22 @@ def test_a_step_converges_if_its_gears_hold_by_their_own_formula(ratio: float) -
     assert seen == {True, False}
 
 
+@pytest.mark.parametrize("ratio", [2.0, -0.5])
+def test_a_torque_on_free_wheels_turns_them_by_their_gear_and_moves_neither(ratio: float) -> None:
+    """turned_b = turned_a / ratio. The torques of a gear are -T/ratio and T: it is held by what is not modelled."""
+    space = empty()
+    space.gravity = 0.0, 0.0
+    a, b = body(space, 1.0, 2.0, (0.0, 0.0), 0.0), body(space, 3.0, 5.0, (4.0, 0.0), 0.0)
+    space.add(pymunk.GearJoint(a, b, 0.0, ratio))
+    driven = Driven(space)
+    for _ in range(10):
+        a.torque = 7.0
+        driven.step(0.02)
+    spin = 0.2 * 7.0 / (2.0 + 5.0 / ratio**2)
+    assert (a.angular_velocity, b.angular_velocity) == pytest.approx((spin, spin / ratio), rel=1e-12)
+    assert (a.position, b.position) == ((0.0, 0.0), (4.0, 0.0))
+
+
 @pytest.mark.parametrize("ratio", [1.0, 4.0, -0.25])
 def test_a_gear_closes_as_fast_as_native(ratio: float) -> None:
     """At `max_bias` rad of its formula in a second, then by `error_bias`; pymunk begins one step later."""

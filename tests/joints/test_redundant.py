@@ -9,6 +9,7 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk.model.joint_steps import EXACT
+from scenes.linkages import body, empty
 
 from .driving import Driven, error
 
@@ -36,3 +37,22 @@ def test_a_heavy_load_on_welds_that_are_redundant_is_solved_in_whole_steps(load:
         energies.append(ep.measure(space).energy)
     assert error(space) < 3e-11  # round-off of 1e-14 of momenta, times the load's mass over that of a light body
     assert max(energies) - min(energies) < 1e-11 * load * 9.81 * 5.0
+
+
+@pytest.mark.parametrize("off", [1e-13, 1e-12, 1e-11])
+def test_knots_in_line_that_are_apart_by_round_off_are_solved_in_whole_steps(off: float) -> None:
+    """A knot between two ends of a rod, on pins that are too short together: no motion closes them, and each iteration
+    makes the error only a little smaller."""
+    space = empty(0.0)
+    rod, knot = body(space, 2.0, 1.0, (0.0, 0.0), 0.0), body(space, 1.0, 0.3, (0.0, 0.0), 0.0)
+    for one in (rod, knot):
+        one.velocity, one.angular_velocity = (1.0, 2.0), 1.0
+    for x in (-1.0, 1.0):
+        pin = pymunk.PinJoint(rod, knot, (x, 0.0), (0.0, 0.0))
+        pin.distance = 1.0 - off
+        space.add(pin)
+    driven = Driven(space, 2)
+    for _ in range(3):
+        driven.step(1 / 60)
+        assert driven.status == EXACT
+    assert error(space) <= off + 1e-15
