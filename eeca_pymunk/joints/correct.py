@@ -10,7 +10,7 @@ from ..compiled.records import Rows
 from ..model.joint_steps import POSES, SPEEDS, STEP, BodyStep, JointLedger
 from ..model.joints import DUAL, Workspace
 from ..model.parameters import joints
-from ..newton.entries import acts
+from ..newton.entries import acts, along, size_of_terms
 from ..newton.systems import apply, back, factorise, first_iterate, linearise
 from .bounds import inactive, limit_gap, limit_gap_rate
 from .frame import work_of_change
@@ -154,17 +154,8 @@ def release(W: Workspace, what: int) -> bool:
 def noise(W: Workspace, k: int, r: int) -> float:
     """The impulse that changes the rate of row r of joint k by the round-off of the velocities before. A limit that
     pulls no more is not released: it would be met again at once."""
-    return float(joints.JOINT_SPEED_ROUND_OFF * terms(W, k, r) * W.J.HINGE[k].scale[r] ** 2)
-
-
-@nonallocating
-def terms(W: Workspace, k: int, r: int) -> float:
-    """The sum of the magnitudes of the terms of J v, for row r of joint k and the velocities before the projection."""
-    a, b, total = W.J.LOCAL[W.link[k].body[0]], W.J.LOCAL[W.link[k].body[1]], 0.0
-    for c in range(3):
-        total += abs(W.J.HINGE[k].rows[r, c] * a.v_kept[c])
-        total += abs(W.J.HINGE[k].rows[r, c + 3] * b.v_kept[c])
-    return total
+    hinge, a, b = W.J.HINGE[k], W.J.LOCAL[W.link[k].body[0]], W.J.LOCAL[W.link[k].body[1]]
+    return float(joints.JOINT_SPEED_ROUND_OFF * size_of_terms(hinge, r, a.v_kept, b.v_kept) * hinge.scale[r] ** 2)
 
 
 @nonallocating
@@ -183,7 +174,7 @@ def hold_closing(W: Workspace, kept: bool) -> bool:
             if kept:
                 closes = limit_gap_rate(hinge[k], rows, side, a.v_kept, b.v_kept) < 0.0
             else:
-                least = terms(W, k, rows - 1) * joints.JOINT_SPEED_ROUND_OFF
+                least = size_of_terms(hinge[k], rows - 1, a.v_kept, b.v_kept) * joints.JOINT_SPEED_ROUND_OFF
                 closes = limit_gap_rate(hinge[k], rows, side, a.v0, b.v0) < -least
             if closes:
                 link[k].side = side
@@ -197,16 +188,10 @@ def speeds_fit(W: Workspace) -> bool:
     their velocities have errors of second or fourth order, whose projection would cost energy in every second step.
     Rows are those of the present poses."""
     link = W.link
-    well = True
     for k in range(W.joints):
-        for r in range(link[k].rows):
-            if link[k].bounded != 0 or not acts(link, k, r):
-                continue
-            rate, total = 0.0, 0.0
-            for c in range(3):
-                one = W.J.HINGE[k].rows[r, c] * W.J.LOCAL[link[k].body[0]].v0[c]
-                two = W.J.HINGE[k].rows[r, c + 3] * W.J.LOCAL[link[k].body[1]].v0[c]
-                rate += one + two
-                total += abs(one) + abs(two)
-            well = well and abs(rate) <= joints.JOINT_SPEED_LEFT * total
-    return well
+        joint, a, b = W.J.HINGE[k], W.J.LOCAL[link[k].body[0]].v0, W.J.LOCAL[link[k].body[1]].v0
+        for r in range(link[k].rows if link[k].bounded == 0 else 0):
+            least = joints.JOINT_SPEED_LEFT * size_of_terms(joint, r, a, b)
+            if acts(link, k, r) and not abs(along(joint, r, a, b)) <= least:
+                return False
+    return True

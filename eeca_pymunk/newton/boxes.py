@@ -31,7 +31,7 @@ from ..model.parameters import joints as parameters
 from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, on_half_disc, on_interval
 from .condensed import factor, substitute
 from .dual import STRIDE
-from .entries import acting_rows, interval_of, put_free
+from .entries import acting_rows, interval_of, put_free, size_of_terms
 
 
 @nonallocating
@@ -93,9 +93,8 @@ def measure_boxes(W: Workspace, w: int, u: int, n: int, h: float, fresh: bool) -
                     more[w + row * n + c] = rate_along(W, k, r, more, cols + c * size)
             more[u + row] = hinge[k].value[r] * 2.0 / h + rate_along(W, k, r, W.J.RIGHT, 0)
             if not more[w + row * n + row] > 0.0:
-                speeds = abs(hinge[k].target[r])  # whose sum u is
-                for c in range(6):
-                    speeds += abs(hinge[k].rows[r, c] * W.J.LOCAL[link[k].body[c // 3]].v1[c % 3])
+                a, b = W.J.LOCAL[link[k].body[0]], W.J.LOCAL[link[k].body[1]]
+                speeds = abs(hinge[k].target[r]) + size_of_terms(hinge[k], r, a.v1, b.v1)  # whose sum u is
                 if abs(more[u + row]) <= parameters.MOTOR_OFF * speeds:
                     more[u + row] = 0.0  # no impulse changes round-off
             more[u + n + row] = hinge[k].lam[r]

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import inlined
+from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.joint_steps import STIFF_ALL, JointStep
 from ..model.joints import DUAL, GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, WHOLE, Coupling, Workspace
@@ -61,6 +61,16 @@ def along(joint: JointStep, r: int, v_a: FloatArray, v_b: FloatArray) -> float:
     total = 0.0
     for c in range(3):
         total += joint.rows[r, c] * v_a[c] + joint.rows[r, 3 + c] * v_b[c]
+    return total
+
+
+@nonallocating
+def size_of_terms(joint: JointStep, r: int, v_a: FloatArray, v_b: FloatArray) -> float:
+    """The sum of the magnitudes of the terms of `along`, whose round-off is relative to it."""
+    total = 0.0
+    for c in range(3):
+        total += abs(joint.rows[r, c] * v_a[c])
+        total += abs(joint.rows[r, 3 + c] * v_b[c])
     return total
 
 

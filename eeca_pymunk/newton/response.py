@@ -147,11 +147,11 @@ def respond(W: Workspace, system: int, push: FloatArray, gives: bool) -> None:
             right[local[i].column + c] = push[i, c] * local[i].root[c]
     back(W, system, 1 if gives else CONDENSED_PASSES, right)
     # (A + epsilon) x = b leaves b - A x = epsilon x in the rows, and each correction d leaves epsilon d.
-    for turn in range(0 if system == CONDENSED or component.loops == 0 or gives else RESPONSE_PASSES):
-        rest = right[size : 2 * size] if turn > 0 else right[:size]
-        for i in range(size):
-            right[size + i] = rest[i]
-        rest = right[size : 2 * size]
+    passes = 0 if system == CONDENSED or component.loops == 0 or gives else RESPONSE_PASSES
+    rest = right[size : 2 * size]
+    for i in range(size if passes > 0 else 0):
+        rest[i] = right[i]
+    for _ in range(passes):
         for i in range(W.bodies):
             for c in range(local[i].freedoms):
                 rest[local[i].column + c] = 0.0
