@@ -31,7 +31,7 @@ class HookedStepper(PackedSpace):
             if joints.replan or joints.ends_moved:
                 loop = self.event_loop
                 assert loop is not None  # other methods refuse joints
-                world.read_states(*world.gravity, world.damped ** (0.5 * dt))
+                world.read_states(*world.gravity, world.half_damping(dt))
                 loop.rejoin(world.BODY, world.SHAPE, world.LINK, joints.linkage, joints.replan)
                 joints.planned(loop.held)
             parted = world.find_parted()
@@ -105,7 +105,7 @@ class HookedStepper(PackedSpace):
         | write the states, and call `post_solve` of constraints | `_write_hooked_end` |
         """
         world = self._start_hooked(world)
-        half_damping: float = world.damped ** (0.5 * dt)
+        half_damping = world.half_damping(dt)
         try:
             if world.joints is not None:
                 world.joints.refresh()

@@ -155,7 +155,7 @@ class PackedStepper(HookedStepper):
 
     def _step(self, world: World, dt: float) -> StepReport:
         """A step of the awake bodies, of the kind that the functions of the space require."""
-        half_damping: float = world.damped ** (0.5 * dt)
+        half_damping = world.half_damping(dt)
         if not world.plain and self._calls(world):
             known = self._sleep is None and not self.decisions.laws
             if known and world.only_handlers and world.rehearsal.is_silent_again(dt, half_damping, self._sync):

@@ -77,7 +77,7 @@ class Copy:
         """Compute rollouts [first, last) in one call of the kernel; returns as `roll`."""
         T, world = job.frames.shape[1], self.world
         buffers = RunBuffers(
-            job.dt, world.gravity, world.damped ** (0.5 * job.dt), 0.0, self.rows, (last - first) * T, job.every,
+            job.dt, world.gravity, world.half_damping(job.dt), 0.0, self.rows, (last - first) * T, job.every,
             job.full, job.states[first:last], None if job.push is None else job.push[first:last],
             job.frames[first:last],
         )  # fmt: skip

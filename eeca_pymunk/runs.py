@@ -111,7 +111,7 @@ class RunningStepper(PackedStepper):
         loop = self.event_loop
         if loop is None or world.joints is not None or self._sleep is not None:
             self.refresh()
-        elif not hasattr(loop, "fresh"):
+        elif len(loop.fresh) == 0:
             # Keep the memory of a new scene, so that later calls only copy it.
             self.refresh()
             self.current()
@@ -167,7 +167,7 @@ class RunningStepper(PackedStepper):
         world = self.adjusted(dt)
         rows = np.array([world.bodies.row[body] for body in kept], np.int64)
         moments = 1 + steps // every if every else 0
-        buffers = RunBuffers(dt, world.gravity, world.damped ** (0.5 * dt), self.time, rows, moments, every, events)
+        buffers = RunBuffers(dt, world.gravity, world.half_damping(dt), self.time, rows, moments, every, events)
         if every:
             buffers.frames[0] = world.STATES[READ, rows, :6]
             buffers.progress.frame = 1

@@ -37,11 +37,14 @@ class Remembering:
     Attributes:
         log: the memory of LOG; another object once that is elsewhere.
         own, fresh: after `keep_fresh`, the memory of the arrays that steps change (`memory.OF_SCENE`), as integers, and
-            a copy of it from before the first step, to which `reset_to` returns.
+            a copy of it from before the first step, to which `reset_to` returns; empty before.
     """
 
     joint: Rows[Joint]
     partner: Rows[Body]
+    table: Table = None
+    fresh: IntArray = np.empty(0, np.int64)
+    _laid: Table = None
     _memory: SceneMemory  # of the table that was made first, `_laid`
     _listed: bool | None
 
@@ -57,7 +60,7 @@ class Remembering:
 
     @scene.setter
     def scene(self, arrays: Scene) -> None:
-        self.table = table_of(arrays, self.__dict__.get("table"))
+        self.table = table_of(arrays, self.table)
         self._bound: tuple[Table, Callable[..., int]] = UNBOUND  # with the reading to which it is bound
         # These are read in every step. Fields of records take thirty times as long, entries of arrays three times.
         self._par: memoryview = numbers(arrays.PAR).data
@@ -66,7 +69,7 @@ class Remembering:
 
     def exchange(self, name: str, array: AnyArray) -> None:
         """Use another array of this name, which steps only read."""
-        laid = self.table is self.__dict__.get("_laid")
+        laid = self.table is self._laid
         self.table, self._bound = replaced(self.table, Scene, name, array), UNBOUND
         if laid:
             self._laid = self.table
@@ -113,7 +116,7 @@ class Remembering:
     def keep_fresh(self) -> None:
         """Before the first step: store what steps change, apart from poses and velocities, for `reset_to`."""
         self.own = self._gather()
-        self.fresh: IntArray = self.own.copy()
+        self.fresh = self.own.copy()
         self._first, self._listed = self.table, None  # the table whose values `fresh` has
 
     @property
@@ -155,13 +158,13 @@ class Remembering:
         write_edits(
             self.table, edits_since(self.scene, *(take(then.dtype, then.shape) for then in values_of(self.scene)))
         )
-        self.__dict__.pop("fresh", None)
+        self.fresh = self.fresh[:0]
         now = lists_key(self.scene)
         return bool((now == take(now.dtype, now.shape)).all())
 
     def _gather(self) -> IntArray:
         """Put what steps change, apart from poses and velocities, into one piece of memory; returns it as integers."""
-        if not self.jointed and self.table is self.__dict__.get("_laid"):
+        if not self.jointed and self.table is self._laid:
             return self._memory.own()
         if not self.jointed:
             (self.scene,), memory = gathered((self.scene, OF_SCENE))

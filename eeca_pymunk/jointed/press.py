@@ -115,12 +115,9 @@ def solve_contacts(
     SLIP, limited, quick = take_slips(ROWS, m), False, fast + pull * h
     elastic = conserves(ROWS, m)
     scale, agree, fine = aims(pull * h, slow, fast, elastic)
-    most = (
-        joints.PRESS_SWEEPS_ELASTIC
-        if elastic
-        else (joints.PRESS_SWEEPS_FEW if m <= joints.COLUMN_CONTACTS else joints.PRESS_SWEEPS)
-    )
-    exactly, rounds = elastic or m <= joints.COLUMN_CONTACTS, joints.OUTER
+    few = m <= joints.COLUMN_CONTACTS
+    most = joints.PRESS_SWEEPS_ELASTIC if elastic else joints.PRESS_SWEEPS_FEW if few else joints.PRESS_SWEEPS
+    exactly, rounds = elastic or few, joints.OUTER
     if not exactly:
         rounds = joints.OUTER_PART if before_end(A, interval.t + h) else joints.OUTER_MANY
         if n >= LARGE_ISLAND:
@@ -130,11 +127,12 @@ def solve_contacts(
         rounds, most = joints.OUTER_PART, min(most, joints.PRESS_SWEEPS)
     J.PROGRESS.near = 0.0 if exactly or slow < pull * h else joints.JOINTS_NEAR
     # off: difference between the velocities of contacts and components, best: its smallest value since contacts last
-    # gained energy, reached: of all; worst: residual of the laws; bent: error of the arms.
+    # gained energy (in iteration `better`), reached: of all; worst: residual of the laws; bent: error of the arms;
+    # limited: friction is limited by energy; rough: laws are solved by sweeps, as exact impulses are excessive.
     VELOCITIES, k = np.empty((2 * len(isle.IM), 3)), len(isle.IM)
     PREVIOUS, FORESEEN, UNKNOWN = VELOCITIES[:k], VELOCITIES[k:], VELOCITIES[:0]
     converged, best, worst, LEAST, USED, agreed = False, np.inf, 0.0, L.copy(), L.copy(), False
-    better, bent, rough, reached, B = 0, 0.0, False, np.inf, make_bounded(J, groups, m <= joints.COLUMN_CONTACTS)
+    better, bent, rough, reached, B = 0, 0.0, False, np.inf, make_bounded(J, groups, few)
     NOW = np.empty(len(B.OF))
     problem = JointedProblem(ROWS, C, B, m)
     free, begun = is_free(isle, groups, n, J), J.PROGRESS.effort
@@ -199,7 +197,7 @@ def solve_contacts(
         work = J.PROGRESS.share - J.PROGRESS.effort
         sweeps = joints.COLUMN_SWEEPS if build else 0
         worst = solve_columns(problem, BOTH, FORESEEN, fine, sweeps, most, work)
-        if worst > WEDGED * scale and m <= joints.COLUMN_CONTACTS and rubs(ROWS, m):
+        if worst > WEDGED * scale and few and rubs(ROWS, m):
             worst = solve_wedged(problem, BOTH, FORESEEN, fine, most, work)
         rough = outer == 0 and exactly and excessive(BOTH, m, isle.IM, n, quick)
         if rough:
@@ -232,7 +230,7 @@ def solve_contacts(
         converged = (converged and off <= agree) or (best <= joints.AGREE * scale and some_give(J, groups))
     # Impulses that are no solution may let walls do any work.
     quick = fast + pull * h
-    if excessive(L, m, isle.IM, n, quick) or (not converged and m <= joints.COLUMN_CONTACTS):
+    if excessive(L, m, isle.IM, n, quick) or (not converged and few):
         solve_gently(A, J, interval, L, B, free)
         converged, bent = False, np.inf if free else 0.0
         if excessive(L, m, isle.IM, n, quick):

@@ -20,5 +20,6 @@ Names of arguments: k a joint of the component, r one of its rows, i a body, c i
 about its centre of mass). `link`, `hinge`, `local` are the component's COUPLING, HINGE and LOCAL. `what` is solved for:
 STEP, POSES, SPEEDS or LINEAR_STEP; `system`: WHOLE, CONDENSED or DUAL; `build`: whether the matrix is built, or the
 right side alone; `give`: compliance of the joints over h², 0 if they hold exactly. `loops`: whether rows may be
-redundant. A row *acts* unless it is that of a limit on which its joint does not stand (`entries.acts`).
+redundant, and begin without impulses. A row *acts* unless it is that of a limit on which its joint does not stand
+(`entries.acts`).
 """

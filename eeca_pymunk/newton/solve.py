@@ -103,8 +103,10 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
     """Solve the implicit step h of a component of size `length` from the present `lam` and `lead`, for v1 and `lam`.
 
     At convergence g is within JOINT_TOLERANCE of that size (or at round-off) of its targets, or within PROGRESS.near if
-    that is more, and the balance of momentum holds to round-off. False if there is none after NEWTON_ITERATIONS, after
-    more than 6 in which the error did not fall, or beyond PROGRESS.limit. The factors of an iteration:
+    that is more, and the balance of momentum holds to round-off. False if there is none after NEWTON_ITERATIONS,
+    beyond PROGRESS.limit, or after more than 6 that have `stalled`: the error has come to no smaller one than before,
+    or, below NEWTON_FLOOR, not to half of the last one. After two of these an error below NEWTON_FLOOR is round-off, as
+    bodies in line leave it. The factors of an iteration:
 
     | state | `lasting`, `ready` | factors | next |
     |---|---|---|---|
@@ -119,7 +121,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
     iteration, else new. Entering full, redundant rows begin again without impulses.
 
     Args:
-        loops: whether rows may be redundant.  give: compliance over h², see `systems`.
+        loops: whether rows may be redundant, and begin without impulses.  give: compliance over h², see `systems`.
     """
     local, component, progress = W.J.LOCAL, W.J.COMPONENT[W.s], W.J.PROGRESS
     first_iterate(W, STEP, h)
@@ -148,7 +150,6 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
             return True
         # Next to the solution errors cannot fall by much.
         slow = not worst <= NEWTON_PROGRESS * last and (iteration > 2 or not worst <= JOINT_ROUND_OFF)
-        # Near round-off, redundant rows that contradict one another leave an error that falls by little each time.
         if iteration > since + 3 and not worst < (0.5 * last if worst < NEWTON_FLOOR else best):
             stalls += 1
         best = min(best, worst)

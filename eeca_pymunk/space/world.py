@@ -125,6 +125,10 @@ class World(BodyStates):
         self.plain = not self.hooked and self.joints is None
         self.current = private.watch(self.space, self._edits, self._seen)
 
+    def half_damping(self, dt: float) -> float:
+        """The factor of half a step's damping on velocities."""
+        return float(self.damped ** (0.5 * dt))
+
     def _read_joints(self, anew: bool) -> None:
         past = self.joints
         if not self.space.constraints:

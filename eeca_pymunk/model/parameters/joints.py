@@ -44,7 +44,7 @@ JOINT_ROUND_OFF_KEPT = round_off(2e-15, "of the component",
 NEWTON_PROGRESS = work(0.03, "ratio of errors",
     "Progress of an iteration with earlier factors below which they are computed again; it ends at JOINT_TOLERANCE "
     "with either.")
-NEWTON_FLOOR = round_off(1e-11, "of the component", "Error below which one that has not fallen twice is round-off.")
+NEWTON_FLOOR = round_off(1e-11, "of the component", "Error below which one that twice has not halved is round-off.")
 ELASTIC_ROUND_OFF = round_off(1e-12, "of the component",
     "Error by round-off of the impulses of elastic joints above which these have to be softer.")
 SPACING = round_off(2.2e-16, "of a number", "Spacing of floating-point numbers.")
