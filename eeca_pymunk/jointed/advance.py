@@ -60,6 +60,20 @@ class Interval(NamedTuple):
 
 
 @kernel
+def motion_at_start(isle: Island, k: int) -> Motion:
+    """The motion of the k bodies of an island over an interval of length 0, with arrays of its own."""
+    STATES = np.zeros((5 * k, 3))
+    motion = Motion(
+        STATES[:k], STATES[k : 2 * k], STATES[2 * k : 3 * k], STATES[3 * k : 4 * k], np.zeros((k, 2)), STATES[4 * k :]
+    )
+    copy(motion.V, isle.V)
+    copy(motion.MEAN, isle.V)
+    copy(motion.END, isle.POSE)
+    motion.PUSHED[:] = math.nan
+    return motion
+
+
+@kernel
 def find_hit(groups: Groups, ROWS: Rows[Row], m: int) -> IntArray:
     """(groups,) 1 for each group that one of the m contacts acts on, else 0."""
     HIT = np.zeros(len(groups.COMPONENT) + 1, np.int64)  # the first entry is for GROUP -1

@@ -23,7 +23,7 @@ from ..rows.bounded import room_for_rows
 from ..rows.build import conserves, normal_rate
 from ..rows.inplace import copy
 from ..rows.lifting import lift_above_walls
-from .advance import Interval, Motion
+from .advance import Interval, motion_at_start
 from .columns import fill_free, fill_group, make_columns, set_effective_masses
 from .component import close_at_poses, ready_at_poses
 from .gathered import find_places, gather_component
@@ -64,8 +64,7 @@ def lift_at_cut(A: Scene, J: Joints, root: int, t: float) -> None:
     isle, contacts, MINE, m = contacts_at(A, root, t)
     n, k, ROWS = len(MINE), len(isle.WHO), contacts.ROWS
     if not conserves(ROWS, m):
-        groups, NOTHING = find_groups(isle.WHO, isle.IM, J), np.zeros((k, 3))
-        motion = Motion(isle.V.copy(), isle.V, NOTHING, isle.POSE.copy(), np.zeros((k, 2)), NOTHING)
+        groups, motion = find_groups(isle.WHO, isle.IM, J), motion_at_start(isle, k)
         interval = Interval(isle, groups, ROWS, motion, make_columns(groups, ROWS, m), m, n, t, 0.0)
         fill_free(groups, interval.C, ROWS, isle.IM, isle.II, m)
         lift_island(A, J, interval, contacts.L, root, t, 0.0, True)

@@ -102,8 +102,9 @@ def solve_contacts(
     | iterations or work are used up | no | as that solution, if it agrees | L, or LEAST if these agreed better |
     | of few contacts, CHORD iterations have come no nearer, or nowhere near | no | likewise | likewise |
 
-    Impulses that are excessive, or have not converged, are replaced by gentle ones (`gentle`). The energy lock comes
-    last.
+    Where the exact solution of the first iteration is excessive, sweeps take its place (`rough`), and iterations go on.
+    Impulses that are excessive in the end, or have not converged, are replaced by gentle ones (`gentle`). The energy
+    lock comes last.
 
     Args:
         slow, fast, pull: see `..contacts.interval.speeds`.  owed: energy >= 0 that the island has to lose at least.

@@ -15,7 +15,6 @@ from ..contacts.memory import remember_loads, shapes_of
 from ..islands import local
 from ..islands.candidates import pairs_within
 from ..islands.membership import lossy
-from ..model.islands import Island
 from ..model.joints import Joints
 from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, LARGE_ISLAND, REACH_ROUND_OFF, UNSOLVED_PART
@@ -24,8 +23,7 @@ from ..model.scene import Scene
 from ..model.step import AGAIN, CONTACTS, DONE, PUSHES_FULL, SPENT
 from ..rows.bounded import room_for_rows
 from ..rows.build import conserves, normal_rate
-from ..rows.inplace import copy
-from .advance import Interval, Motion, advance
+from .advance import Interval, advance, motion_at_start
 from .alone import account_turning, begin_alone, is_component, meets_no_other, set_path
 from .columns import make_columns
 from .fitting import project_velocities
@@ -72,20 +70,6 @@ def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
                     rest_if_still(A, J, root)
             return status
     return DONE
-
-
-@kernel
-def motion_at_start(isle: Island, k: int) -> Motion:
-    """The motion of the k bodies of an island over an interval of length 0, with arrays of its own."""
-    STATES = np.zeros((5 * k, 3))
-    motion = Motion(
-        STATES[:k], STATES[k : 2 * k], STATES[2 * k : 3 * k], STATES[3 * k : 4 * k], np.zeros((k, 2)), STATES[4 * k :]
-    )
-    copy(motion.V, isle.V)
-    copy(motion.MEAN, isle.V)
-    copy(motion.END, isle.POSE)
-    motion.PUSHED[:] = math.nan
-    return motion
 
 
 @kernel

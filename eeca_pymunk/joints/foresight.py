@@ -71,8 +71,8 @@ def extrapolate(past: FloatArray, c: int, w0: float, w1: float, w2: float, w3: f
 
 
 @nonallocating
-def predict_part(W: Workspace, part: int, piece: float, loops: bool) -> None:
-    """Set `lead` and, unless rows are redundant (`loops`), `lam` of this part (0 to 4) of length `piece`."""
+def predict_part(W: Workspace, part: int, piece: float, cold: bool) -> None:
+    """Set `lead` of this part (0 to 4) of length `piece`, and `lam` unless it begins without (`cold`)."""
     joint, link = W.J.JOINT, W.link
     last = (joint[link[0].joint].known_parts - 1) % DEPTH
     w0, w1, w2 = weight_of(part, last, 0), weight_of(part, last, 1), weight_of(part, last, 2)
@@ -82,7 +82,7 @@ def predict_part(W: Workspace, part: int, piece: float, loops: bool) -> None:
         for c in range(6):
             i = link[k].body[0] if c < 3 else link[k].body[1]
             W.J.LOCAL[i].lead[c % 3] = extrapolate(joint[j].past_led, c, w0, w1, w2, w3, w4, w5)
-        for r in range(0 if loops else link[k].rows):
+        for r in range(0 if cold else link[k].rows):
             W.J.HINGE[k].lam[r] = piece * extrapolate(joint[j].past_push, r, w0, w1, w2, w3, w4, w5)
 
 

@@ -82,8 +82,8 @@ def take_gain(W: Workspace, h: float, length: float, status: int, before: float)
     """Close the ledger of an ELASTIC or LINEAR step, and take its gain from the motion; returns the status. If that is
     not enough, or joints are farther apart than `before`, all bodies move as one.
 
-    Joints that close within a short h make bodies fast, and the lock then takes most of this. Compared with the kinetic
-    energies before and after are both the gain, and what is left of it: the work done on the way.
+    Joints that close within a short h make bodies fast, and the lock then takes most of this: it is enough if what is
+    left of the gain is round-off of the kinetic energies before and after.
     """
     local, part, stopped = W.J.LOCAL, W.J.PART_LEDGER, False
     settle(W, h, length)

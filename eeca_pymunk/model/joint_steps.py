@@ -127,9 +127,9 @@ class JointLedger(Record):
 
     stored: float  # change of what springs hold
     damped: float  # loss >= 0 in damped springs
-    limited: float  # loss >= 0 at limits
+    limited: float  # loss >= 0 at limits, and all of a step whose joints did not hold
     clamped: float  # loss >= 0 in joints that slip at their max_force
-    projected: float  # loss >= 0 of velocities that violated joints
+    projected: float  # loss >= 0 of velocities that violated joints, or of bodies that were made to move as one
     motors: float  # work of motors, and of joints with a finite max_force where it is positive
     supports: float  # work of bodies that move without being moved
     carried: float  # the same by the balance of momentum (`..joints.frame`)
@@ -142,5 +142,6 @@ class JointLedger(Record):
 
 
 # Status of a component's step: joints hold to round-off; the step was taken in parts; joints gave way elastically in
-# some part; rows of the start held at mid-velocity in some part: energy conserved, joints to O(h^2).
+# some part; rows of the start held at mid-velocity in some part (energy conserved, joints to O(h^2)), or all bodies
+# moved as one (`..joints.lock.move_rigidly`).
 EXACT, HALVED, ELASTIC, LINEAR = 0, 1, 2, 3

@@ -1,4 +1,5 @@
-"""Impulses of contacts whose problem has no solution, or only one of excessive impulses: a few sweeps from none.
+"""Impulses of contacts whose problem has no solution, or only one of excessive impulses: those without friction, else
+a few sweeps from none.
 
 Where rows contradict one another (a body jammed between walls), or friction alone holds (a body wedged in a corner),
 impulses grow without bound, and with them the work of moving walls and its round-off. Sweeps from no impulses decrease

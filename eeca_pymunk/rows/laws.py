@@ -32,7 +32,8 @@ def solved_exactly(n: int, m: int) -> bool:
 def solve_columns(
     problem: JointedProblem, L: FloatArray, V: FloatArray, tolerance: float, sweeps: int, most: int, work: float
 ) -> float:
-    """Impulses L (m contacts, then the bounded rows) and velocities V.
+    """Impulses L (m contacts, then the bounded rows) and velocities V: by homotopies and sweeps in turn, of which the
+    best is kept, then by sweeps alone; of more than COLUMN_CONTACTS contacts by these at once.
 
     Args:
         tolerance: velocity by which laws may be broken, or contacts change in a sweep.  sweeps: before a homotopy.
