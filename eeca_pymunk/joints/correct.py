@@ -8,10 +8,10 @@ from __future__ import annotations
 from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.joint_steps import POSES, SPEEDS, STEP, BodyStep, JointLedger
-from ..model.joints import DUAL, Workspace
+from ..model.joints import Workspace
 from ..model.parameters import joints
 from ..newton.entries import acts, along, size_of_terms
-from ..newton.systems import apply, back, factorise, first_iterate, linearise
+from ..newton.systems import apply, back, factorise, first_iterate, first_system, linearise
 from .bounds import inactive, limit_gap, limit_gap_rate
 from .frame import work_of_change
 
@@ -33,7 +33,7 @@ def project(W: Workspace, what: int) -> None:
     if what == SPEEDS:
         keep_speeds(W)
     component.factored = 0
-    system = DUAL if component.rigid > 0 else component.system
+    system = first_system(component, what)
     # Rows that contradict each other must not move bodies far.
     epsilon = joints.CLOSING_EPSILON if what == POSES else joints.REDUNDANT_EPSILON
     for turn in range(joints.REDUNDANT_PASSES + 3 * W.joints):

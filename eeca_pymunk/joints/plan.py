@@ -13,7 +13,7 @@ from ..arrays import IntArray
 from ..compiled import kernel
 from ..compiled.records import Rows, empty
 from ..model.bodies import BODIES, Body
-from ..model.joints import GEAR, GROOVE, MOTOR, Component, ComponentBody, Coupling, Joint
+from ..model.joints import GEAR, GROOVE, INSTANTS, MOTOR, NOTHING, STEPS, Component, ComponentBody, Coupling, Joint
 from ..model.parameters.joints import BOXES_DIRECT, CONDENSE_BAND
 from ..newton.rows import row_count
 from .ordering import order_rows, order_unknowns
@@ -153,7 +153,7 @@ def make_plan(
             if joint[link[k].joint].kind == MOTOR or joint[link[k].joint].bounded != 0:
                 bounded += link[k].rows
         component[s].boxes = bounded if bounded <= BOXES_DIRECT else 0
-        component[s].rigid = 0 if not pays else 2 if hard(joint, link, component, s) else 1
+        component[s].dual_for = NOTHING if not pays else STEPS if hard(joint, link, component, s) else INSTANTS
         component[s].loops = cycles(bodies, joint, link, member, component, s)
     return count
 

@@ -11,7 +11,7 @@ from ..compiled import Table, inlined, kernel, nonallocating
 from ..compiled.layouts import COUNT, Layout, Plan
 from ..compiled.records import Rows
 from ..model.bodies import Body
-from ..model.joints import Joint, Joints, Workspace, joints_of
+from ..model.joints import NOTHING, Joint, Joints, Workspace, joints_of
 from ..newton.boxes import room_for_boxes
 from ..newton.dual import STRIDE
 from .plan import make_plan, together
@@ -41,7 +41,7 @@ def measure_plan(J: Joints, ROOM: IntArray) -> bool:
         ROOM[0] = max(ROOM[0], C.end_body - C.first_body)
         ROOM[1] = max(ROOM[1], C.end_joint - C.first_joint)
         ROOM[2] = max(ROOM[2], 2 * C.unknowns, C.dual_size)
-        ROOM[3] = max(ROOM[3], whole, dual if C.rigid > 0 else 0)
+        ROOM[3] = max(ROOM[3], whole, dual if C.dual_for != NOTHING else 0)
         ROOM[4] = max(ROOM[4], 2 * (C.unknowns + C.impulses))
         ROOM[5] = max(ROOM[5], STRIDE * C.dual_size + room_for_boxes(C.boxes, C.unknowns + C.impulses))
     ROOM[4] = max(ROOM[4], 2)

@@ -90,7 +90,7 @@ class Component(Record):
     dual_size: int  # of its matrix in the rows alone: size and half-width
     dual_band: int
     dual_rows: int  # of its rows those that act, in the last factors
-    rigid: int  # what a dual system is taken for: 2 everything, 1 what happens at an instant, 0 nothing
+    dual_for: int  # what its dual system is taken for: NOTHING, INSTANTS (POSES, SPEEDS) or STEPS too
     taut: int  # 1 if impulses of the last step pull so hard that this one begins with them (`..joints.taut`)
     boxes: int  # most rows of bounded impulses that may act, if few enough for `..newton.boxes`; else 0
     factored: int  # 1 if the matrix holds factors of an earlier part of the present step
@@ -103,6 +103,7 @@ class Component(Record):
 
 # Linear systems: of bodies and rows; of bodies alone (`..newton.condensed`); of rows alone (`..newton.dual`).
 WHOLE, CONDENSED, DUAL = 0, 1, 2
+NOTHING, INSTANTS, STEPS = 0, 1, 2  # uses of a dual one: `Component.dual_for`
 
 
 class ComponentBody(Record):

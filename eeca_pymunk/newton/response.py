@@ -20,7 +20,7 @@ from .entries import acts
 from .motion import move
 from .rows import joint_rows, start_joint
 from .saturation import bound_otherwise
-from .systems import assemble, back, decompose, first_iterate
+from .systems import assemble, back, decompose, first_iterate, first_system
 
 
 @nonallocating
@@ -112,7 +112,7 @@ def factor_response(W: Workspace, what: int, h: float) -> int:
                 bend_rows(W, k, h)
     else:
         first_iterate(W, what, h)
-    system = DUAL if component.rigid > (1 if what == STEP else 0) else component.system
+    system = first_system(component, what)
     give = W.J.JOINT[link[0].joint].compliance / h**2 if what == STEP else 0.0
     epsilon = REDUNDANT_EPSILON if component.loops > 0 and give == 0.0 else 0.0
     while True:

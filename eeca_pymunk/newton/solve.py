@@ -25,7 +25,7 @@ from ..model.parameters.joints import (
 from .boxes import bound_impulses, boxed_rows, rows_of, unit_impulse
 from .dual import STRIDE, refresh
 from .motion import balance_velocities, move
-from .systems import apply, back, factorise, first_iterate, linearise
+from .systems import apply, back, factorise, first_iterate, first_system, linearise
 
 
 @nonallocating
@@ -126,7 +126,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
     local, component, progress = W.J.LOCAL, W.J.COMPONENT[W.s], W.J.PROGRESS
     first_iterate(W, STEP, h)
     best, last, stalls = 1e300, 1e300, 0
-    system = DUAL if component.rigid > 1 else component.system
+    system = first_system(component, STEP)
     lasting = system == DUAL or not has_bounded(W.link, W.joints)
     # ready: factors can be used again; fresh: those of the last iteration were new; since: iteration from which on each
     # has new ones (full Newton).
@@ -191,7 +191,7 @@ def solve_linearly(W: Workspace, h: float, length: float) -> bool:
     hinge, link, local, component = W.J.HINGE, W.link, W.J.LOCAL, W.J.COMPONENT[W.s]
     first_iterate(W, LINEAR_STEP, h)
     component.factored = 0
-    system = DUAL if component.rigid > 1 else component.system
+    system = first_system(component, LINEAR_STEP)
     linearise(W, LINEAR_STEP, h, length, 0.0, True, system, True)
     system = factorise(W, LINEAR_STEP, h, length, 0.0, system, REDUNDANT_EPSILON)
     if system < 0:

@@ -26,7 +26,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import inlined
 from ..model.joint_steps import LINEAR_STEP, POSES, SPEEDS, STEP, STIFF_NONE
-from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, GEAR, WHOLE, Workspace
+from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, GEAR, INSTANTS, STEPS, WHOLE, Component, Workspace
 from ..model.parameters.joints import STIFFEST
 from .banded import back_banded, factor_banded
 from .boxes import leave_box
@@ -37,6 +37,13 @@ from .entries import acts, along, idle, put_free, put_idle, put_stiffness, scale
 from .motion import move
 from .rows import joint_rows, start_joint
 from .saturation import put_bounded
+
+
+@inlined
+def first_system(component: Component, what: int) -> int:
+    """The system to begin with for `what`: the dual one if that is taken for it."""
+    least = INSTANTS if what in (POSES, SPEEDS) else STEPS
+    return DUAL if component.dual_for >= least else int(component.system)
 
 
 @inlined

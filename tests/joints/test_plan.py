@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pymunk
 
-from eeca_pymunk.model.joints import CONDENSED
+from eeca_pymunk.model.joints import CONDENSED, STEPS
 from scenes import linkages
 from scenes.linkages import body, empty
 
@@ -41,7 +41,7 @@ def test_bands_are_as_narrow_as_their_graphs() -> None:
     for name, make in (("chain", lambda: linkages.chain(30)), ("cloth", lambda: linkages.cloth(12))):
         spans[name] = Driven(make()).joints.COMPONENT[0]
     chain, cloth = spans["chain"], spans["cloth"]
-    assert (chain.unknowns, chain.band, chain.rigid) == (150, 4, 2)
+    assert (chain.unknowns, chain.band, chain.dual_for) == (150, 4, STEPS)
     assert (chain.dual_size, chain.dual_band) == (60, 3)
     assert cloth.system == CONDENSED
     assert cloth.unknowns == 288

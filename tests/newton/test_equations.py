@@ -13,6 +13,7 @@ from eeca_pymunk.compiled.records import kind_of, zeros
 from eeca_pymunk.joints.ordering import order_unknowns
 from eeca_pymunk.joints.workspace import workspace
 from eeca_pymunk.model.joint_steps import STIFF_NONE, STIFF_TURNS, BodyStep, JointStep
+from eeca_pymunk.model.joints import NOTHING, STEPS
 from eeca_pymunk.newton.angles import shared_turn
 from eeca_pymunk.newton.banded import back_banded, factor_banded
 from eeca_pymunk.newton.condensed import factor, substitute
@@ -270,11 +271,11 @@ def linked() -> pymunk.Space:
 
 def test_all_systems_step_an_island_alike() -> None:
     ends = []
-    for rigid in (0, 2):
+    for dual_for in (NOTHING, STEPS):
         space = linked()
         stepper = Driven(space)
-        assert stepper.joints.COMPONENT[0].rigid == 2
-        stepper.joints.COMPONENT[0].rigid = rigid
+        assert stepper.joints.COMPONENT[0].dual_for == STEPS
+        stepper.joints.COMPONENT[0].dual_for = dual_for
         for _ in range(60):
             stepper.step(1 / 60)
             assert stepper.status <= 1
