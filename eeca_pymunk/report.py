@@ -146,6 +146,11 @@ class StepReport:
         return self._iterations
 
     @property
+    def substeps(self) -> int:
+        """Always 1: no stepper splits a step."""
+        return 1
+
+    @property
     def lock(self) -> float:
         """Factor of the energy lock on impulses, of all its uses the one farthest from 1; 1.0 if it was not used.
         |lock - 1| estimates the solver's relative error."""

@@ -404,7 +404,7 @@ def test_the_report_of_events_is_made_when_asked() -> None:
     assert contacts.bodies[contacts.body_a[1]] is world.shapes[first].body
     assert contacts.bodies[contacts.body_b[1]] is world.shapes[second].body
     assert report.contacts is contacts
-    assert (report.iterations, report.lock, report.converged) == (0, 1.0, True)
+    assert (report.iterations, report.substeps, report.lock, report.converged) == (0, 1, 1.0, True)
     with pytest.raises(AttributeError):
         report.time = 1.0  # type: ignore[misc]
     assert copy.deepcopy(report).impulse.tolist() == [1.0, 2.0]
