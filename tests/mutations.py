@@ -347,7 +347,7 @@ MUTATIONS = (
              "[61]"),
     Mutation("joints: a gain that nothing pays is kept", "joints/step.py", "elif keeps_gain(",
              "elif False and keeps_gain(", "joints/test_pairs.py", "[803]"),
-    Mutation("joints: gears of any ratio keep angular momentum", "joints/lock.py",
+    Mutation("joints: gears of any ratio keep angular momentum", "joints/frame.py",
              "W.link[k].kind == GEAR and W.J.JOINT[W.link[k].joint].ratio != 1.0", "False",
              "joints/test_kinds.py", "free_wheels"),
     Mutation("sides: geometry tells the side of what is flush", "prediction/sides.py",
