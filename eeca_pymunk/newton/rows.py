@@ -26,7 +26,6 @@ import numpy as np
 from ..compiled import inlined, nonallocating
 from ..model.joints import GEAR, GROOVE, PIVOT, ROTARY_SPRING, SPRING, Joint, Workspace
 from .angles import angle_rows
-from .entries import along
 from .points import groove_rows, point_rows
 
 
@@ -49,9 +48,12 @@ def joint_rows(W: Workspace, k: int, h: float, stiffens: bool) -> int:
         filled = point_rows(kind, side, bounded, h, joint[j], hinge[k], local[a], local[b], stiffens, stiff)
     if bounded:
         for r in range(link[k].rows):
+            speed = -hinge[k].target[r]
+            for c in range(3):
+                speed += hinge[k].rows[r, c] * local[a].v1[c] + hinge[k].rows[r, c + 3] * local[b].v1[c]
             for c in range(6):
                 hinge[k].slopes[r, c] = hinge[k].rows[r, c]
-            hinge[k].value[r] = 0.5 * h * (along(hinge[k], r, local[a].v1, local[b].v1) - hinge[k].target[r])
+            hinge[k].value[r] = 0.5 * h * speed
     return filled
 
 
