@@ -32,7 +32,7 @@ def test_carom_keeps_energy_and_angles_for_ten_seconds(closure: ep.Closure, dt: 
     assert track.turned <= 1e-12  # degrees
 
 
-@pytest.mark.parametrize("dt", [0.0025, 0.0017])
+@pytest.mark.parametrize("dt", [0.0025])
 def test_carom_newmark_gains_and_loses(dt: float) -> None:
     # A trapezoidal impact gains or loses with the gap of its release; over many the gain wins, without a bound.
     for name, change in (("trapezoidal", 1.0), ("max_dissipation", -0.9)):

@@ -129,7 +129,7 @@ def wall(seed: int, courses: int, bricks: int) -> Pile:
     return Pile(pose, np.append(np.ones(n), 0.0), np.append(np.full(n, 2.4), 0.0), contacts, 0.3, start)
 
 
-@pytest.mark.parametrize("seed", [0, 1, 6, 18, 28, 78])
+@pytest.mark.parametrize("seed", [6, 18, 28, 78])
 def test_what_takes_long_to_balance_is_not_taken_for_what_nothing_holds(seed: int) -> None:
     pile = wall(seed, 6, 20)
     edges = pile.edges()
