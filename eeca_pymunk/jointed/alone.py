@@ -63,7 +63,7 @@ def begin_alone(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
             set_path(A, body, h, local.pose, local.pose, local.v0)
     A.COUNT.solves += 1
     open_until(A, root, t + h)
-    return DONE, h
+    return DONE, INTERVAL_RETRY * h
 
 
 @nonallocating

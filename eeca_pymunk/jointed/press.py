@@ -91,8 +91,8 @@ def solve_contacts(
     Each iteration steps the components under L, and ends if their velocities agree with FORESEEN, those that the
     contacts' laws gave before; else it solves these laws with the columns, for L and FORESEEN. Columns are computed
     again in every CHORD-th iteration, else updated (`secant`). A long interval (PROGRESS.long) is given up where a
-    component gives way or is not stepped as a whole, or CHORD iterations have not come near. Else iterations end in
-    five ways:
+    component gives way or is not stepped as a whole, or CHORD iterations have not come near; of many contacts only if
+    the step has work for many shorter intervals. Else iterations end in five ways:
 
     | because | `agreed` | `converged` | impulses |
     |---|---|---|---|
@@ -143,7 +143,8 @@ def solve_contacts(
         J.PROGRESS.effort += joints.CONTACT_WORK * (m + 2)
         build = outer % joints.CHORD == 0
         advance(A, J, interval, L, B, build, FORESEEN if outer > 0 else UNKNOWN)
-        if J.PROGRESS.long > 0 and some_refused(J, groups):
+        payable = RESOLUTION * (J.PROGRESS.effort - begun) <= J.PROGRESS.budget  # many shorter intervals
+        if J.PROGRESS.long > 0 and (exactly or payable) and some_refused(J, groups):
             J.PROGRESS.near = 0.0
             return GIVEN_UP
         bent = align(interval) if free else 0.0
@@ -168,8 +169,8 @@ def solve_contacts(
                 best, better = off, outer
                 copy(LEAST, L)
             if J.PROGRESS.long > 0 and exactly and outer >= joints.CHORD and off > joints.OUTER_FAR * scale:
-                if RESOLUTION * (J.PROGRESS.effort - begun) <= J.PROGRESS.budget:
-                    return GIVEN_UP  # the step has work for many shorter intervals
+                if payable:
+                    return GIVEN_UP
             if exactly and outer >= joints.CHORD and (off > scale or outer - better > joints.CHORD):
                 break  # new columns have not helped either
         if not build and not fit_columns(interval, B, L, USED, NOW, PREVIOUS):

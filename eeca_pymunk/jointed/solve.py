@@ -43,7 +43,8 @@ def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
     if joints do not hold, work is short, or bodies move too far (`lengths`).
 
     A length that was too long is not tried again at once: the next interval is at most INTERVAL_RETRY times as long as
-    one that was shortened, UNSOLVED_PART times after an impact (`Rest.longest`).
+    one that was shortened, UNSOLVED_PART times after an impact, or if it has many contacts and moves little
+    (`Rest.longest`).
 
     Returns DONE; or, with everything as before, PUSHES_FULL, or SPENT if the step has no work left.
     """
@@ -58,10 +59,10 @@ def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
         if t > 0.0 and work_left(A, J) < 0.0:
             rest.longest = h  # where the next step begins
             return SPENT
-        status, h = try_jointed(A, J, root, t, h, last)
+        status, then = try_jointed(A, J, root, t, h, last)
         if status != AGAIN:
             if status == DONE:
-                longer = max(INTERVAL_RETRY * h, 0.0 if h < longest else rest.longest)
+                longer = max(then, 0.0 if h < longest else rest.longest)
                 i = root
                 while i >= 0:
                     A.RESTING[i].longest = longer
@@ -69,6 +70,7 @@ def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
                 if t == 0.0 and h == longest:
                     rest_if_still(A, J, root)
             return status
+        h = then
     return DONE
 
 
@@ -83,7 +85,8 @@ def excess_length(
         solved: whether contacts are.  last: whether no other attempt follows, see `try_jointed`.
     """
     m, n = interval.m, interval.n
-    far = 2.0 if not solved and J.PROGRESS.effort > J.PROGRESS.share else 0.0
+    far = 2.0 if not solved and m <= COLUMN_CONTACTS and J.PROGRESS.effort > J.PROGRESS.share else 0.0
+    payable = RESOLUTION * effort <= J.PROGRESS.budget
     for s in interval.groups.JOINTED:
         if gave_way(J, s):
             far = 2.0
@@ -97,15 +100,14 @@ def excess_length(
     # A motion that is no solution does not tell how long the interval may be. Contacts that are not solved in a long
     # interval may be in a short one, if the step has work for many of these; and bodies that sink into others by
     # unsolved contacts would sink further in the next interval.
-    payable = RESOLUTION * effort <= J.PROGRESS.budget
     hard = (m <= COLUMN_CONTACTS and payable) or (n < LARGE_ISLAND and sinks(A, interval))
     return UNSOLVED_PART if hard and J.PROGRESS.long > 0 else min(far, UNSOLVED_PART)
 
 
 @kernel
 def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) -> tuple[int, float]:
-    """`begin_jointed` for one length h. Returns DONE and h; or, with nothing done, PUSHES_FULL, or AGAIN and the length
-    to try next, if h is too long and this is not the `last` attempt."""
+    """`begin_jointed` for one length h. Returns DONE and the length that the next interval may have; or, with nothing
+    done, PUSHES_FULL, or AGAIN and the length to try next, if h is too long and this is not the `last` attempt."""
     single, A.RESTING[root].strays = is_component(A, J, root), 0.0
     if single and meets_no_other(A, root):
         return begin_alone(A, J, root, t, h, last)
@@ -193,4 +195,6 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
         pushed.held = HELD[z]
     for q in range(n):
         set_path(A, MINE[q], h, WHERE[q], motion.END[q], motion.V[q])
-    return DONE, h
+    # Many contacts are solved roughly, so that the motion alone tells how long an interval may be.
+    grows = UNSOLVED_PART if m > COLUMN_CONTACTS and UNSOLVED_PART * far < INTERVAL_RETRY else INTERVAL_RETRY
+    return DONE, grows * h
