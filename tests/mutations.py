@@ -310,6 +310,8 @@ MUTATIONS = (
              "rows/test_lifting.py", "without_room"),
     Mutation("correction: none within a step", "islands/depths.py", "return 0.5 * intervals.CORRECTION_STEP",
              "return math.inf", "contacts/test_turning.py", "drum and True and 1.6"),
+    Mutation("correction: impacts do not pay for one body", "islands/payment.py", "== n or n == 1", "== n",
+             "islands/test_large_steps.py", "inside_the_floor and 3-3.0"),
     Mutation("correction: impacts do not pay in free islands", "islands/payment.py",
              "drives or jointed or len(isle.WHO) == n", "False",
              "contacts/test_turning.py", "drum and False and 0.4"),

@@ -4,6 +4,7 @@ A body without mobility that the program moves, or has placed into others, does 
 external. All else is deducted from what contacts have lost: in the interval, less what the island owes. What was lost
 before in the step pays too
 
+* in an island of one body, which would stay in the floor that it was dropped on by a long step;
 * in a free island: lifting costs kinetic energy there, as the angular momentum stays, and sinking has released it;
 * where a body without mobility is driven into others, which have also gone deeper by their own motion;
 * in an island with joints.
@@ -74,7 +75,7 @@ def payment(
         placed: whether it `was_placed` into.  jointed: whether the island has joints.
     """
     drives = driven(A, isle, ROWS, L, V, n, m)
-    counts = drives or jointed or len(isle.WHO) == n
+    counts = drives or jointed or len(isle.WHO) == n or n == 1
     # Elastic contacts have no losses; what they seem to lose is round-off.
     losses = -1.0 if conserves(ROWS, m) else lost + (before if counts else min(before, 0.0))
     payable = 0.0 if placed else max(losses, 0.0) if drives else math.inf
