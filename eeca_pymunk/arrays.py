@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from typing import Any, TypeAlias
 
 import _cffi_backend
@@ -26,15 +25,10 @@ _HUGE = 1 << 22  # bytes of an allocation from which numpy asks for huge pages
 _SPARE = 4  # memory is replaced if larger than this times the need plus a huge page
 
 
-def addresses_of(arrays: Iterable[Any]) -> list[int]:
-    """Memory addresses of arrays, or of records in some."""
-    # numpy's `ctypes` takes four times as long; `__array_interface__`, which describes all fields of records, forty.
-    return [int(_ffi.cast(_ADDRESS, _ffi.from_buffer(array))) for array in arrays]
-
-
 def address_of(array: Any) -> int:
     """Memory address of an array, or of a record in one."""
-    return addresses_of((array,))[0]
+    # numpy's `ctypes` takes four times as long; `__array_interface__`, which describes all fields of records, forty.
+    return int(_ffi.cast(_ADDRESS, _ffi.from_buffer(array)))
 
 
 def lengths(shape: tuple[int, ...]) -> tuple[int, ...]:

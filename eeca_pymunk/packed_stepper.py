@@ -164,7 +164,7 @@ class PackedStepper(HookedStepper):
         world.gather()
         before = [] if self._sleep is None else self._rewound_copy(world)
         status = self.advance(world, dt, half_damping)
-        if status in (OTHER_BODIES, MOVED_STATIC):
+        if status < 0 and status in (OTHER_BODIES, MOVED_STATIC):
             world = self._update_world(anew=True)
             world.gather()
             before, status = self._rewound_copy(world), self.advance(world, dt, half_damping)

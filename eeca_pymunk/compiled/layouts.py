@@ -16,7 +16,7 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
-from ..arrays import LINE, AnyArray, IntArray, Memory, addresses_of, lengths
+from ..arrays import LINE, AnyArray, IntArray, Memory, address_of, lengths
 from .backend import start
 from .entries import table_fields
 from .kernels import Kernel, nonallocating
@@ -104,7 +104,7 @@ class Layout(Generic[T]):
 
     def lay(self, counts: Mapping[str, int], *elsewhere: AnyArray) -> Table:
         """The table of arrays with so many rows each, 1 of records, also of those elsewhere; the last table is lost."""
-        self._put(self._into, 0, *map(counts.__getitem__, self._plan.names), *addresses_of(elsewhere))
+        self._put(self._into, 0, *map(counts.__getitem__, self._plan.names), *map(address_of, elsewhere))
         memory = self._memory
         address = memory.address
         total = self._write(address)

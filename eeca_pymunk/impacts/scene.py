@@ -147,7 +147,7 @@ class EventLoop(Remembering):
             call = stages.step.bind(self.table, self.ties, reading)
             self._bound = reading, call
         status = call(dt, gx, gy, half_damping)
-        while needs_memory(status):
+        while status < 0 and needs_memory(status):
             self._grow(result_of("step", status))
             status = stages.resume_step.bind(self.table, self.ties, reading)()
         return status

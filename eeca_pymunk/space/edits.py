@@ -3,8 +3,9 @@
 pymunk's setters write into Chipmunk at once without notification, and reading all shapes again takes longer than most
 steps. So the setters of properties that a `World` reads once are wrapped when the first space is watched. Each acts as
 before, and then adds one to the count of its space, or that of its shape or body, if that is watched and the value has
-changed. Getters, and properties that a `World` does not read (positions, velocities, forces, colours), are not changed.
-Calls of `Body.sleep` and `sleep_with_group`, which `sleep_groups.py` wraps, are counted.
+changed. So do the methods by which pymunk adds and removes things. Getters, and properties that a `World` does not read
+(positions, velocities, forces, colours), are not changed. Calls of `Body.sleep` and `sleep_with_group`, which
+`sleep_groups.py` wraps, are counted.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from weakref import WeakKeyDictionary
 
 import pymunk
 
+from .private import spaces as private
 from .private import versions as private_versions
 
 _PROPERTIES: tuple[tuple[type, tuple[str, ...]], ...] = (
@@ -31,6 +33,7 @@ _METHODS: tuple[tuple[type, tuple[str, ...]], ...] = (
     (pymunk.Circle, ("unsafe_set_radius", "unsafe_set_offset")),
     (pymunk.Segment, ("unsafe_set_radius", "unsafe_set_endpoints")),
     (pymunk.Poly, ("unsafe_set_radius", "unsafe_set_vertices")),
+    (pymunk.Space, private.CONTENTS),
 )
 _SURFACE = ("filter", "elasticity", "friction", "surface_velocity")  # these change neither masses nor outlines
 _VALUES = (*_SURFACE, "mass", "moment")  # nor sizes
@@ -44,7 +47,8 @@ _edited: deque[tuple[weakref.ref[Any], str]] = deque(maxlen=_KEPT)
 
 class Counts(list[int]):
     """Three counts of a space: [0] edits of its shapes and bodies, including bodies put to sleep; [1] bodies put to
-    sleep alone; [2] changes of its settings. A list, which `private.spaces.watch` compares fastest."""
+    sleep alone; [2] changes of its settings, additions and removals. A list, which `private.spaces.watch` compares
+    fastest."""
 
     def __init__(self) -> None:
         super().__init__((0, 0, 0))

@@ -30,9 +30,10 @@ from .rehearsal import Rehearsal
 class World(BodyStates):
     """The bodies and solid shapes of one space; ValueError or UnsupportedFeature if it cannot be stepped.
 
-    Masses, shapes and functions of bodies are read once. `current()` returns, within half a microsecond, whether
-    settings and contents of the space have not changed, and no shape or body was edited in place (`edits.py`). Moved
-    static bodies and exchanged bodies are found by `transfer.read_states` in the states that `gather` reads.
+    Masses, shapes and functions of bodies are read once. `current()` returns, within a tenth of a microsecond, whether
+    settings of the space have not changed, nothing was added or removed, and no shape or body was edited in place
+    (`edits.py`). Moved static bodies and exchanged bodies are found by `transfer.read_states` in the states that
+    `gather` reads.
 
     Args:
         space: any pymunk space.  ignore: features to leave out, see `check_ignored`.

@@ -255,7 +255,7 @@ def test_the_time_step_of_the_last_step_is_set() -> None:
 def test_watch_and_count_of_shapes() -> None:
     space, bodies = meeting()
     assert private.contents(space) == (2, 2, 2)
-    count = edits.counts(space)
+    count, spare = edits.counts(space), pymunk.Body(1.0, 1.0)
 
     def bump() -> None:
         count[0] += 1
@@ -271,7 +271,9 @@ def test_watch_and_count_of_shapes() -> None:
         lambda: setattr(space, "damping", 0.5),
         lambda: setattr(space, "sleep_time_threshold", 1.0),
         lambda: space.add(pymunk.PivotJoint(*bodies, (0.0, 0.0))),
-        lambda: space.add(pymunk.Body(1.0, 1.0)),
+        lambda: space.remove(*space.constraints),
+        lambda: space.add(spare),
+        lambda: space.remove(spare),
         lambda: space.remove(*bodies[0].shapes),
         # Removing what touches after this would crash pymunk 6.
         lambda: space.on_collision(begin=lambda *_: None),

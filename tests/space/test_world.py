@@ -300,7 +300,8 @@ def test_an_exchanged_body_and_a_moved_static_one_show_in_what_is_read() -> None
     world = World(space)
     space.remove(spare)
     space.add(other)
-    assert world.current()
+    assert not world.current()
+    assert world.same_things()
     world.gather()
     assert not world.is_current()
 

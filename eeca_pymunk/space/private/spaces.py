@@ -41,9 +41,11 @@ _OF_LIBRARY = (
     *private_joints.OF_LIBRARY, *private_sleep.OF_LIBRARY, *private_arbiters.OF_LIBRARY, *private_functions.OF_LIBRARY,
     *private_batch.OF_LIBRARY, *private_shapes.OF_LIBRARY,
 )  # fmt: skip
+# By these methods pymunk adds and removes one thing after the other, also those that wait for the end of a step.
+CONTENTS = ("_add_shape", "_add_body", "_add_constraint", "_remove_shape", "_remove_body", "_remove_constraint")
 _OF_SPACE = (
     "_space", "_bodies", "_shapes", "_constraints", "_handlers", "_get_arbiters", "_locked", "_add_later",
-    "_remove_later", "_removed_shapes", "_post_step_callbacks",
+    "_remove_later", "_removed_shapes", "_post_step_callbacks", *CONTENTS,
 )  # fmt: skip
 _OF_BODY = ("_body", "_velocity_func", "_position_func")
 _TYPES = (*private_batch.TYPES, *private_arbiters.TYPES)
@@ -196,29 +198,12 @@ def watch(space: pymunk.Space, edits: list[int], known: list[int]) -> Callable[[
     Args:
         edits: `edits.counts` of the space.  known: a list of one number, the value of edits[0] that counts as
             unchanged; the caller sets it after a patch.
-
-    Every addition of a shape changes pymunk's count of all shapes ever added, every removal the number of shapes. A
-    body that was exchanged for another one changes the ids that the batch call reads. Constraints are compared one by
-    one. The public properties take three times as long.
     """
-    c = space._space
-    bodies, shapes, constraints, handlers = space._bodies, space._shapes, space._constraints, space._handlers
-    body_count, shape_count, constraint_count = len(bodies), len(shapes), len(constraints)
-    handler_count = len(handlers)
-    counter, added = lib.cpSpaceGetShapeIDCounter, lib.cpSpaceGetShapeIDCounter(c)
-    joints, settings = list(constraints), edits[2]
+    handlers, changes = space._handlers, edits[2]
+    count = len(handlers)
 
     def unchanged() -> bool:
-        return (
-            edits[0] == known[0]
-            and edits[2] == settings
-            and counter(c) == added
-            and len(shapes) == shape_count
-            and len(bodies) == body_count
-            and len(constraints) == constraint_count
-            and len(handlers) == handler_count
-            and (constraint_count == 0 or list(constraints) == joints)
-        )
+        return edits[0] == known[0] and edits[2] == changes and len(handlers) == count
 
     return unchanged
 
