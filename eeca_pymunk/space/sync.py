@@ -84,13 +84,9 @@ class Sync:
         if dt != self._dt:
             self._dt = dt
             private.set_time_step(self.space, dt)
-        self.state, self.stamp = NO_REST_STEP, self._rested
-        self._be_late()
-
-    def _be_late(self) -> None:
-        """Let the shapes be moved to their bodies when they are read, and arbiters be those of this step."""
-        shapes = self._shapes
-        shapes.read, shapes.late, shapes.stamp, shapes.sync = False, True, self.stamp, self._reference
+        self.state, shapes = NO_REST_STEP, self._shapes
+        self.stamp = shapes.stamp = self._rested
+        shapes.read, shapes.late, shapes.sync = False, True, self._reference
 
     def renew(self, read: bool = True) -> None:
         """Make the arbiters of the last EECA step. `read`: whether the program reads them, so that the next step makes
@@ -116,14 +112,15 @@ class Sync:
     def finish_rehearsal(self, left_out: int) -> None:
         """The end of a step with handlers, whose rehearsal was taken or left out (`Rehearsal.left_out`): shapes are
         late, then `call_back`."""
-        self.stamp = self._timestamp()
+        shapes = self._shapes
+        self.stamp = shapes.stamp = self._timestamp()
         if left_out:
             self.state = NO_REHEARSAL
         else:
             self.state, self.arbiters_read = ARBITERS_CURRENT, False
-            self._shapes.reindexings = private_shapes.REINDEXINGS
+            shapes.reindexings = private_shapes.REINDEXINGS
             private_shapes.forget_corrections(self._world.movers)
-        self._be_late()
+        shapes.read, shapes.late, shapes.sync = False, True, self._reference
         self.call_back()
 
     def is_ours(self) -> bool:
