@@ -15,7 +15,7 @@ from weakref import WeakKeyDictionary, ref
 
 import pymunk
 
-from .edits import clock
+from .edits import clock, counts
 from .private import shapes as private_shapes
 from .private import spaces as private
 from .private import versions as private_versions
@@ -63,7 +63,7 @@ class Late:
         self.late = False
         if private.timestamp(space)() == self.stamp:
             self.reindexings -= 1
-            contents = *private.contents(space), clock()
+            contents = counts(space)[3], clock()
             if contents != self._contents:
                 self._bodies = [body for body in space.bodies if body.shapes and body.body_type != pymunk.Body.STATIC]
                 self._movers, self._contents = private.pointers(self._bodies), contents

@@ -69,9 +69,9 @@ class World(BodyStates):
 
     def __init__(self, space: pymunk.Space, ignore: Sequence[str] = (), past: World | None = None) -> None:
         self.space, self._edits = space, counts(space) if past is None else past._edits
-        self._known, self._contents = self._edits.in_place, self._count()
+        self._known, self._contents = self._edits.in_place, self._edits[1::2]
         self.sleeps = space.sleep_time_threshold < math.inf
-        stale = None if past is None else past.stale(self._contents)
+        stale = None if past is None else past.stale()
         known = None if stale is None else past
         self.read_at = clock()
         super().__init__(space, past)
@@ -171,12 +171,12 @@ class World(BodyStates):
             return private.pointers([items[i] for i in sorted(set(self.owner[: self._moving_shapes].tolist()))])
         return private.pointers(body for body, count in shape_counts(self.bodies, self.records).items() if count)
 
-    def stale(self, contents: tuple[int, ...]) -> set[Any] | None:
+    def stale(self) -> set[Any] | None:
         """Shapes and bodies to be read again: those edited, in the space or outside, and the bodies of shapes that were
-        added or removed, whose mass may have changed; None if unknown. `contents`: the result of `_count` now."""
+        added or removed, whose mass may have changed; None if unknown."""
         edited = edited_since(self.read_at)
         found = None if edited is None else edited.things
-        if found is None or contents == self._contents:
+        if found is None or self.same_things():
             return found
         for shape in self.records.keys() ^ set(self.space.shapes):
             record = self.records.get(shape)
@@ -235,13 +235,9 @@ class World(BodyStates):
         """The laws of pairs of rows of SHAPE by handlers and joints, see `Rules.of_pairs`."""
         return self.rules.of_pairs(self.SHAPE, self.parted)
 
-    def _count(self) -> tuple[int, int, int, int]:
-        """Numbers by which additions and removals are found: see `private.contents`, and of bodies put to sleep."""
-        return *private.contents(self.space), self._edits[1]
-
     def same_things(self) -> bool:
-        """Whether no shape was added or removed, and the number of bodies is the same: the bodies may be others."""
-        return self._contents == self._count()
+        """Whether no shape or body was added, removed or put to sleep."""
+        return self._contents == self._edits[1::2]
 
     def edited(self) -> bool:
         """Whether a shape or body was edited in place."""

@@ -301,7 +301,7 @@ def test_an_exchanged_body_and_a_moved_static_one_show_in_what_is_read() -> None
     space.remove(spare)
     space.add(other)
     assert not world.current()
-    assert world.same_things()
+    assert not world.same_things()
     world.gather()
     assert not world.is_current()
 

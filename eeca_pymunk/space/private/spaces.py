@@ -37,15 +37,15 @@ _OF_LIBRARY = (
     "cpSpaceGetIterations", "cpSpaceSetIterations", "cpSpaceGetCollisionBias",
     "cpSpaceSetCollisionBias", "cpBodyGetForce", "cpBodySetForce", "cpBodyGetTorque", "cpBodySetTorque",
     "cpBodyGetMass", "cpBodyGetMoment", "cpShapeGetSensor", "cpSpaceGetSleepTimeThreshold",
-    "cpSpaceSetSleepTimeThreshold", "cpSpaceGetShapeIDCounter", "cpSpaceGetTimestamp",
+    "cpSpaceSetSleepTimeThreshold", "cpSpaceGetTimestamp",
     *private_joints.OF_LIBRARY, *private_sleep.OF_LIBRARY, *private_arbiters.OF_LIBRARY, *private_functions.OF_LIBRARY,
     *private_batch.OF_LIBRARY, *private_shapes.OF_LIBRARY,
 )  # fmt: skip
 # By these methods pymunk adds and removes one thing after the other, also those that wait for the end of a step.
-CONTENTS = ("_add_shape", "_add_body", "_add_constraint", "_remove_shape", "_remove_body", "_remove_constraint")
+CONTENTS, LINKS = ("_add_shape", "_add_body", "_remove_shape", "_remove_body"), ("_add_constraint", "_remove_constraint")
 _OF_SPACE = (
     "_space", "_bodies", "_shapes", "_constraints", "_handlers", "_get_arbiters", "_locked", "_add_later",
-    "_remove_later", "_removed_shapes", "_post_step_callbacks", *CONTENTS,
+    "_remove_later", "_removed_shapes", "_post_step_callbacks", *CONTENTS, *LINKS,
 )  # fmt: skip
 _OF_BODY = ("_body", "_velocity_func", "_position_func")
 _TYPES = (*private_batch.TYPES, *private_arbiters.TYPES)
@@ -217,11 +217,6 @@ def set_time_step(space: pymunk.Space, dt: float) -> None:
     """Set `space.current_time_step`, which is that of pymunk's last step, and with which its next one scales what it
     has stored of impulses."""
     lib.cpSpaceSetCurrentTimeStep(space._space, dt)
-
-
-def contents(space: pymunk.Space) -> tuple[int, int, int]:
-    """Number of shapes ever added to the space; of shapes, and of bodies beside the static one, that are in it."""
-    return lib.cpSpaceGetShapeIDCounter(space._space), len(space._shapes), len(space._bodies)
 
 
 def waits(space: pymunk.Space) -> bool:
