@@ -325,6 +325,8 @@ MUTATIONS = (
     Mutation("rest: a carrier that begins to move wakes nothing", "islands/at_rest.py",
              "(ruled or moves_itself(A, A.LINK[a].owner) or moves_itself(A, A.LINK[b].owner))", "ruled",
              "islands/test_at_rest.py", "wakes"),
+    Mutation("edits: added and removed bodies are not counted", "space/edits.py", "name in private.CONTENTS",
+             "name in private.CONTENTS[::2]", "space/test_private.py", "watch_sees"),
     Mutation("shapes: late ones stay where they were", "space/late_shapes.py", "    if known.late:\n",
              "    if False:\n", "space/test_late_shapes.py", "whatever_reads"),
     Mutation("partners: their centre of gravity is turned backwards", "joints/partners.py",

@@ -42,7 +42,8 @@ _OF_LIBRARY = (
     *private_batch.OF_LIBRARY, *private_shapes.OF_LIBRARY,
 )  # fmt: skip
 # By these methods pymunk adds and removes one thing after the other, also those that wait for the end of a step.
-CONTENTS, LINKS = ("_add_shape", "_add_body", "_remove_shape", "_remove_body"), ("_add_constraint", "_remove_constraint")
+CONTENTS = "_add_shape", "_add_body", "_remove_shape", "_remove_body"
+LINKS = "_add_constraint", "_remove_constraint"
 _OF_SPACE = (
     "_space", "_bodies", "_shapes", "_constraints", "_handlers", "_get_arbiters", "_locked", "_add_later",
     "_remove_later", "_removed_shapes", "_post_step_callbacks", *CONTENTS, *LINKS,
