@@ -28,7 +28,7 @@ _UNMET, _SOLVES, _BLOCKS, _LOGGED, _LOSSY = map(_COUNT.index, ("unmet", "solves"
 _IMPULSE = Impulse.TYPE.itemsize // 8
 UNBOUND: tuple[Table, Callable[..., int]] = None, int
 # Attributes that no copy has.
-_OF_PROCESS = "table", "ties", "_bound", "own", "fresh", "_first", "_par", "_count", "log", "_laid", "_memory"
+_OF_PROCESS = "table", "ties", "_bound", "own", "fresh", "_first", "_par", "_count", "log", "_book", "_laid", "_memory"
 
 
 class Remembering:
@@ -63,9 +63,11 @@ class Remembering:
         self.table = table_of(arrays, self.table)
         self._bound: tuple[Table, Callable[..., int]] = UNBOUND  # with the reading to which it is bound
         # These are read in every step. Fields of records take thirty times as long, entries of arrays three times.
-        self._par: memoryview = numbers(arrays.PAR).data
-        self._count: memoryview = numbers(arrays.COUNT).data
-        self.log: memoryview = as_integers(arrays.LOG).data
+        self._view(numbers(arrays.PAR).data, numbers(arrays.COUNT).data, as_integers(arrays.LOG).data)
+
+    def _view(self, par: memoryview, count: memoryview, log: memoryview) -> None:
+        """Use these as the memory of PAR, COUNT and LOG."""
+        self._par, self._count, self.log, self._book = par, count, log, par[BOOK]
 
     def exchange(self, name: str, array: AnyArray) -> None:
         """Use another array of this name, which steps only read."""
@@ -86,9 +88,9 @@ class Remembering:
 
     def outcome(self) -> Outcome:
         """Of the last step; iterations are solves of islands and simultaneous impacts."""
-        par, count = self._par, self._count
-        book: list[float] = par[BOOK].tolist()  # type: ignore[assignment]
-        return book, par[_LOCK], count[_UNMET] == 0, count[_SOLVES] + count[_BLOCKS]
+        count = self._count
+        book: list[float] = self._book.tolist()  # type: ignore[assignment]
+        return book, self._par[_LOCK], count[_UNMET] == 0, count[_SOLVES] + count[_BLOCKS]
 
     @property
     def stamp(self) -> float:

@@ -77,7 +77,8 @@ class EventLoop(Remembering):
         self.pinned = self._hold(BODY, laid.SHAPE, laid.LINK)
         budget = STEP_LOOKS + STEP_LOOKS_BODY * n * max(n, MANY_BODIES) // MANY_BODIES
         self.table = memory.scene(laid, self.pinned, limit, together, budget)
-        (self._par, self._count, self.log), self._bound = memory.records(), UNBOUND
+        self._view(*memory.records())
+        self._bound = UNBOUND
         self._laid, self._memory, self.thin = self.table, memory, memory.thin > 0
         self._rules: dict[tuple[int, int], tuple[float, float, float, float]] = {}  # those of the table
         self._plan(BODY)
