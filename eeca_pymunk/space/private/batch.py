@@ -41,12 +41,12 @@ def reader(
         return last  # type: ignore[no-any-return]
     values, numbers = _array("pmFloatArray *", "cpFloat[]", floats), _array("pmIntArray *", "uintptr_t[]", ids)
     data = _batched(fields, values, numbers)
-    c, each = space._space, lib.cpSpaceEachBody
+    c, each, filled, listed = space._space, lib.cpSpaceEachBody, _num(values), _num(numbers)
     function = ffi.addressof(lib, "pmSpaceBodyGetIteratorFuncBatched")
 
     def read() -> None:
-        values.num = 0
-        numbers.num = 0
+        filled[0] = 0
+        listed[0] = 0
         each(c, function, data)
 
     made: Any = read
@@ -91,11 +91,11 @@ def writer(
         return last  # type: ignore[no-any-return]
     values, numbers = _array("pmFloatArray *", "cpFloat[]", floats), ffi.new("pmIntArray *")
     data = _batched(fields, values, numbers)
-    c, each = space._space, lib.cpSpaceEachBody
+    c, each, taken = space._space, lib.cpSpaceEachBody, _num(values)
     function = ffi.addressof(lib, "pmSpaceBodySetIteratorFuncBatched")
 
     def write() -> None:
-        values.num = 0
+        taken[0] = 0
         each(c, function, data)
 
     if bodies is None:
@@ -138,6 +138,11 @@ def _array(kind: str, items: str, memory: FloatArray | IntArray) -> Any:
     array = ffi.new(kind)
     _point(array, items, memory)
     return array
+
+
+def _num(array: Any) -> memoryview:
+    """`num` of one of pymunk's arrays, which is to live longer; attributes of C structs take twice as long."""
+    return memoryview(ffi.buffer(ffi.addressof(array, "num"))).cast("i")
 
 
 def _point(array: Any, items: str, memory: FloatArray | IntArray) -> None:
