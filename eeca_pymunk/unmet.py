@@ -18,7 +18,7 @@ class Unmet(NamedTuple):
     Attributes:
         name: a word of the list below, which says what `value` is.
         value: the value that was reached.
-        limit: the largest value allowed; nan if there is none.
+        limit: the largest value allowed.
         bodies: the bodies concerned, as far as they are known.
 
     Names:
@@ -27,8 +27,8 @@ class Unmet(NamedTuple):
         "impact": residual velocity of a simultaneous impact, length/time.
         "solves": work of the step, in looks (see the glossary): that of its events, and the part of the limit that
             joints have taken of theirs. The step ends early.
-        "contacts": residual velocity of the persistent contacts of an island of up to `COLUMN_CONTACTS` contacts,
-            length/time; nan if bodies are jointed.
+        "contacts": residual velocity of the persistent contacts of an island of up to `COLUMN_CONTACTS` contacts, or
+            with which joints force a contact deeper, length/time.
         "joints": status of the solve of jointed bodies.
     """
 

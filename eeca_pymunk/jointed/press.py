@@ -246,5 +246,6 @@ def solve_contacts(
         known = max(known, min(2.0 * reached / (slow + pull * h), joints.PRESS_WORK_TAUT))
     copy(FORESEEN, motion.MEAN)
     lock_jointed(A, J, interval, L, B, free, elastic, owed, work_error(interval, L, slow, pull, known))
-    agreed = farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n) <= max(agree, joints.AGREE * scale)
+    J.PROGRESS.tolerance = max(agree, joints.AGREE * scale)
+    agreed = farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n) <= J.PROGRESS.tolerance
     return SOLVED if converged and agreed else UNSOLVED

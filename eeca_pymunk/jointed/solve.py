@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from ..arrays import FloatArray
 from ..compiled import kernel
-from ..contacts.counts import note_unmet, spend
+from ..contacts.counts import spend
 from ..contacts.geometry import gather_contacts
 from ..contacts.interval import make_contacts, recall, speeds
-from ..contacts.memory import remember_loads, shapes_of
+from ..contacts.memory import remember_loads
 from ..islands import local
 from ..islands.candidates import pairs_within
 from ..islands.membership import lossy
@@ -20,7 +18,7 @@ from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, LARGE_ISLAND, REACH_ROUND_OFF, UNSOLVED_PART
 from ..model.parameters.joints import COLUMN_CONTACTS, INTERVAL_SHARE, INTERVAL_WORK, SPACING
 from ..model.scene import Scene
-from ..model.step import AGAIN, CONTACTS, DONE, PUSHES_FULL, SPENT
+from ..model.step import AGAIN, DONE, PUSHES_FULL, SPENT
 from ..rows.bounded import room_for_rows
 from ..rows.build import conserves, normal_rate
 from .advance import Interval, advance, motion_at_start
@@ -30,10 +28,11 @@ from .fitting import project_velocities
 from .gathered import gave_way, restore_joints, save_joints
 from .groups import find_groups
 from .ledger import work_left
-from .lengths import excess, forced_deeper, sinks, too_deep_on_way, within_sagitta
+from .lengths import excess, sinks, too_deep_on_way, within_sagitta
 from .lifting import lift_island
 from .losses import lost, slip_of
 from .press import GIVEN_UP, SOLVED, solve_contacts
+from .residual import note_residual
 from .rest import rest_if_still
 
 
@@ -170,10 +169,7 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
             restore_joints(J, s)
         local.clear_places(A, MINE)
         return AGAIN, h / far
-    forced = forced_deeper(A, interval)
-    if not solved or forced >= 0:
-        a, b = shapes_of(A, ROWS[max(forced, 0)])
-        note_unmet(A, CONTACTS, a, b, math.nan, math.nan)
+    note_residual(A, interval, L, solved, J.PROGRESS.tolerance)
     for s in groups.JOINTED:
         J.STEPPED[s].turned_work = J.STEPPED[s].lifted = 0.0
     for q in range(n):

@@ -89,6 +89,7 @@ class Progress(Record):
     """How far the solutions of a component are, and what they may take."""
 
     near: float  # error of a step that is near enough, 0 for round-off
+    tolerance: float  # by which velocities and contacts' laws may differ in the last interval that had contacts
     effort: float  # operations that solutions have taken since the step of the scene began; how many they may
     budget: float
     share: float  # of `effort`, at which an interval gives up

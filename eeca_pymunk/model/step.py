@@ -76,7 +76,7 @@ KINDS = (
     "hits",  # on an island in a step: later ones are left for the next step
     "impact",  # velocity that the impulses of an impact leave
     "solves",  # work of all events and solves: the step ends before its time
-    "contacts",  # velocity that contacts of an interval leave; nan with joints
+    "contacts",  # velocity that contacts of an interval leave
     "joints",  # status of the solve of a component
 )
 IMPACTS, HITS, IMPACT, SOLVES, CONTACTS, JOINTS = 0, 1, 2, 3, 4, 5
