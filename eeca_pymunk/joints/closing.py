@@ -6,12 +6,12 @@ import numpy as np
 
 from ..compiled import nonallocating
 from ..compiled.records import Rows
-from ..model.joint_steps import POSES, SPEEDS, BodyStep, JointLedger
+from ..model.joint_steps import POSES, SPEEDS, STEP, BodyStep, JointLedger
 from ..model.joints import APART, EDITED, GIVES_WAY, LEFT_APART, TAKEN_OVER, Workspace
 from ..model.parameters.joints import JOINT_APART, JOINT_TOUCH
 from ..newton.entries import acts
 from ..newton.motion import go_back, save
-from ..newton.rows import joint_rows
+from ..newton.rows import joint_rows, shared_part, shares_point
 from .bounds import inactive, limit_gap, passed_side
 from .correct import fitting_loss, project, restore_speeds, speeds_fit, steps_left
 from .frame import work_of_shift
@@ -116,16 +116,18 @@ def close_poses(W: Workspace) -> None:
 @nonallocating
 def keep_closed(W: Workspace) -> None:
     """Store how far closing has shifted the bodies, and set the targets of joints to the values it has reached, which
-    the step can keep without work."""
+    the step can keep without work; pivots that remain apart hold one point of both bodies (`shares_point`)."""
     hinge, link, local = W.J.HINGE, W.link, W.J.LOCAL
     for i in range(W.bodies):
         for c in range(3):
             if local[i].mobility[c] > 0.0:
                 local[i].shift[c] = local[i].pose[c] - local[i].saved_pose[c]
     for k in range(W.joints):
+        a, b, joint = local[link[k].body[0]], local[link[k].body[1]], W.J.JOINT[link[k].joint]
+        shared = shares_point(joint, STEP) and shared_part(a, b) >= 0.0
         for r in range(link[k].rows):
             if hinge[k].target[r] != 0.0 and link[k].bounded == 0 and acts(link, k, r):
-                hinge[k].target[r] = hinge[k].value[r]
+                hinge[k].target[r] = 0.0 if shared else hinge[k].value[r]
 
 
 @nonallocating

@@ -14,6 +14,7 @@ from ..newton.entries import acts, along, size_of_terms
 from ..newton.systems import apply, back, factorise, first_iterate, first_system, linearise
 from .bounds import inactive, limit_gap, limit_gap_rate
 from .frame import work_of_change
+from .lock import restore_momenta
 
 NOW, KEPT, SAVED = 0, 1, 2  # velocities of a kinetic energy
 
@@ -25,7 +26,8 @@ def project(W: Workspace, what: int) -> None:
     POSES: until g is on its targets, at most CLOSINGS times. SPEEDS: closed limits whose gap closes act from the first
     pass on. Two passes with the same factors remove the effect of epsilon, three if rows are redundant. Then the limit
     that pulls most is released, or limits that the solution moves into act, and all begins again; at most joints + 1
-    times. The result is in `pose` or `v0`, the velocities before in `v_kept`, the impulses in `pushed`.
+    times. The result is in `pose` or `v0`, the velocities before in `v_kept`, the impulses in `pushed`. Those of rows
+    that contradict one another are large, and change momenta by their round-off, which is undone.
     """
     component, passes, tries = W.J.COMPONENT[W.s], 0, 0
     enough = 2 if component.loops == 0 else 3
@@ -53,11 +55,13 @@ def project(W: Workspace, what: int) -> None:
             passes += 1
             if passes == enough or not error > 0.0:
                 if tries > W.joints or not (release(W, SPEEDS) or hold_closing(W, False)):
-                    return
+                    break
                 passes, tries = 0, tries + 1
                 restore_speeds(W)
         if what == POSES or passes == 0:
             first_iterate(W, what, 2.0)
+    if what == SPEEDS:
+        restore_momenta(W, 0.0, 1.0, 0.0)
 
 
 @nonallocating

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from ..compiled import nonallocating
 from ..model.joint_steps import ELASTIC, EXACT, HALVED, LINEAR
-from ..model.joints import APART, GIVES_WAY, LEFT_APART, ROTARY_SPRING, SPRING, Workspace
+from ..model.joints import GIVES_WAY, ROTARY_SPRING, SPRING, Workspace
 from ..model.parameters import joints
 from ..newton.effort import work_of_iteration
 from ..newton.motion import go_back
@@ -24,7 +24,7 @@ from ..newton.solve import drop_impulses
 from .contradiction import contradicts
 from .correct import NOW, SAVED, kinetic_of_component
 from .foresight import PARTS, forget_parts, predict_part, recalls, remember_part
-from .frame import frame_of, supports_rest
+from .frame import frame_of
 from .ledger import clear_ledger, close_ledger, unexplained
 from .limits import step_with_limits
 from .lock import lock_energy, restore_momenta
@@ -114,26 +114,17 @@ def gain_of_rows(W: Workspace, own: bool) -> float:
 
 
 @nonallocating
-def gapes(W: Workspace) -> bool:
-    """Whether a joint that is to hold is apart in this step."""
-    for k in range(W.joints):
-        if W.J.JOINT[W.link[k].joint].touched in (APART, LEFT_APART):
-            return True
-    return False
-
-
-@nonallocating
 def settle(W: Workspace, h: float, length: float) -> None:
     """Restore the momenta of a step, and close its ledger, where they are off by more than round-off of the energy and
     of the work of forces over the size `length`: impulses that are large change both by their round-off, and their
-    works cancel only up to that. Of joints that an edit has put apart the work of supports that turn is not theirs by
-    the impulses, which act at both anchors."""
+    works cancel only up to that."""
     local, part = W.J.LOCAL, W.J.PART_LEDGER
     least = kinetic_of_component(local, W.bodies, SAVED) + kinetic_of_component(local, W.bodies, NOW)
-    least = joints.JOINT_GAIN * (least + load_of(W, h, length))
-    part.closed += restore_momenta(W, h, least)
+    load = load_of(W, h, length)
+    least = joints.JOINT_GAIN * (least + load)
+    part.closed += restore_momenta(W, h, length, load)
     apart = unexplained(local, W.bodies, part) - (part.supports + part.closed - part.limited)
-    if not abs(apart) <= least or (gapes(W) and frame_of(W).spin != 0.0 and not supports_rest(local, W.bodies)):
+    if not abs(apart) <= least:
         close_ledger(local, W.bodies, part)
 
 

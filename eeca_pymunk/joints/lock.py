@@ -7,8 +7,8 @@ than 1 do not keep angular momentum: v_r then is that of the centre of mass. If 
 velocity of their frame (`frame`): 0 if they are at rest.
 
 The momenta are those of the start and of the accelerations. Impulses that are large, as those of joints that contradict
-one another, change them by their round-off, and turn what is held apart by the impulse times the distance: a component
-is turned as a whole, which no relative motion pays. So this is undone before (`restore_momenta`).
+one another, change them by their round-off: a component is moved or turned as a whole, which no relative motion pays.
+So this is undone before (`restore_momenta`).
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.joint_steps import BodyStep, JointLedger
 from ..model.joints import Workspace
-from ..model.parameters.joints import LOCK_ITERATIONS
+from ..model.parameters.joints import JOINT_GAIN, LOCK_ITERATIONS
 from .frame import frame_of, has_ratio, relative_energy, spin_about
 
 
@@ -54,10 +54,11 @@ def turns_freely(W: Workspace) -> bool:
 
 
 @nonallocating
-def restore_momenta(W: Workspace, h: float, least: float) -> float:
+def restore_momenta(W: Workspace, h: float, length: float, load: float) -> float:
     """Change the velocities v0 at the end of the step h by those of a rigid body, so that the momentum of a component
-    without partners, and its angular momentum if it `turns_freely`, are those of the start and of the accelerations.
-    Returns the change of the kinetic energy; nothing changes if the largest possible one is less than `least`.
+    without partners, and its angular momentum if it `turns_freely`, are those of the start and of the accelerations; if
+    h = 0, those of `v_kept` at the same poses. Returns the change of the kinetic energy. Nothing changes where momenta
+    are right to JOINT_GAIN of the sums of their magnitudes and of `load` h, by forces over the size `length`.
 
     L1 = L0 + sum m x_m x a h + I alpha h with the means x_m of the places over the time h, as the arms of joints are
     those of the middle.
@@ -66,33 +67,37 @@ def restore_momenta(W: Workspace, h: float, least: float) -> float:
     hangs, x, y, vx, vy, _, _ = centre_of(local, W.bodies)
     if hangs:
         return 0.0
-    mass = px = py = turning = 0.0
+    mass = px = py = turning = size = arms = 0.0
     for i in range(W.bodies):
         body = local[i]
         m = 1.0 / body.mobility[0]
+        rx, ry, now = body.pose[0] - x, body.pose[1] - y, body.v0
+        if h > 0.0:
+            before, sx, sy = body.saved_velocity, body.saved_pose[0] - x, body.saved_pose[1] - y
+            ax, ay, spun = body.acceleration[0], body.acceleration[1], h * body.acceleration[2]
+            turning -= m * ((body.mean[0] - h * x) * ay - (body.mean[1] - h * y) * ax)
+        else:
+            before, sx, sy, ax, ay, spun = body.v_kept, rx, ry, 0.0, 0.0, 0.0
         mass += m
-        px += m * (body.v0[0] - body.saved_velocity[0] - h * body.acceleration[0])
-        py += m * (body.v0[1] - body.saved_velocity[1] - h * body.acceleration[1])
-        turning += m * ((body.pose[0] - x) * body.v0[1] - (body.pose[1] - y) * body.v0[0])
-        turning -= m * (body.saved_pose[0] - x) * body.saved_velocity[1]
-        turning += m * (body.saved_pose[1] - y) * body.saved_velocity[0]
-        turning -= m * (body.mean[0] - h * x) * body.acceleration[1]
-        turning += m * (body.mean[1] - h * y) * body.acceleration[0]
+        px += m * (now[0] - before[0] - h * ax)
+        py += m * (now[1] - before[1] - h * ay)
+        turning += m * (rx * now[1] - ry * now[0]) - m * (sx * before[1] - sy * before[0])
+        moved = m * (abs(now[0]) + abs(now[1]) + abs(before[0]) + abs(before[1]))
+        size, arms = size + moved, arms + moved * (abs(rx) + abs(ry))
         if body.freedoms > 2 and body.mobility[2] > 0.0:
-            turning += (body.v0[2] - body.saved_velocity[2] - h * body.acceleration[2]) / body.mobility[2]
+            turning += (now[2] - before[2] - spun) / body.mobility[2]
+            arms += (abs(now[2]) + abs(before[2])) / body.mobility[2]
     was, inertia = spin_about(local, W.bodies, x, y, vx, vy)
     spin = -turning / inertia if inertia > 0.0 and turns_freely(W) else 0.0
-    ux, uy = -px / mass, -py / mass
-    gained = mass * (ux * (vx + 0.5 * ux) + uy * (vy + 0.5 * uy)) + inertia * spin * (was + 0.5 * spin)
-    size = mass * math.hypot(ux, uy) * (math.hypot(vx, vy) + 0.5 * math.hypot(ux, uy))
-    size += inertia * abs(spin) * (abs(was) + 0.5 * abs(spin))
-    if not size > least:
+    arms, size = arms + h * load, size + (h * load / length if load > 0.0 else 0.0)
+    if not (abs(px) + abs(py) > JOINT_GAIN * size or abs(spin) * inertia > JOINT_GAIN * arms):
         return 0.0
+    ux, uy = -px / mass, -py / mass
     for i in range(W.bodies):
         local[i].v0[0] += ux - spin * (local[i].pose[1] - y)
         local[i].v0[1] += uy + spin * (local[i].pose[0] - x)
         local[i].v0[2] += spin if local[i].freedoms > 2 else 0.0
-    return gained
+    return mass * (ux * (vx + 0.5 * ux) + uy * (vy + 0.5 * uy)) + inertia * spin * (was + 0.5 * spin)
 
 
 @nonallocating

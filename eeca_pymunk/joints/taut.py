@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 from ..compiled import nonallocating
+from ..model.joint_steps import POSES
 from ..model.joints import PIN, PIVOT, SLIDE, Workspace
 from ..model.parameters.joints import TAUT
 from ..newton.rows import start_joint
@@ -24,7 +25,7 @@ def is_taut(W: Workspace, h: float) -> bool:
         kind = link[k].kind
         if link[k].bounded != 0 or (kind != PIVOT and kind != PIN and kind != SLIDE):
             continue
-        start_joint(W, k, h)
+        start_joint(W, k, POSES, h)
         rax, ray, rbx, rby = hinge[k].arm_a[0], hinge[k].arm_a[1], hinge[k].arm_b[0], hinge[k].arm_b[1]
         fx, fy, per = hinge[k].lam[0], hinge[k].lam[1], 0.0
         if kind != PIVOT:

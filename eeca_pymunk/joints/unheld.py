@@ -82,18 +82,20 @@ def take_gain(W: Workspace, h: float, length: float, status: int, before: float)
     """Close the ledger of an ELASTIC or LINEAR step, and take its gain from the motion; returns the status. If that is
     not enough, or joints are farther apart than `before`, all bodies move as one.
 
-    Joints that close within a short h make bodies fast, and the lock then takes most of this: it is enough if what is
-    left of the gain is round-off of the kinetic energies before and after.
+    Joints that close within a short h make bodies fast, and the lock then takes most of this, and leaves its round-off,
+    of momenta too: both are put right once more. It is enough if what is left of the gain is round-off of the kinetic
+    energies before and after.
     """
     local, part, stopped = W.J.LOCAL, W.J.PART_LEDGER, False
-    settle(W, h, length)
-    close_ledger(local, W.bodies, part)
-    if part.closed > 0.0:
-        lock_energy(W, part.closed, part)
+    for _ in range(2):
+        settle(W, h, length)
         close_ledger(local, W.bodies, part)
-        had = kinetic_of_component(local, W.bodies, SAVED) + kinetic_of_component(local, W.bodies, NOW)
-        if part.closed > JOINT_GAIN * had and frame_of(W).rigid:
-            status, stopped = LINEAR, True
+        if part.closed > 0.0:
+            lock_energy(W, part.closed, part)
+            close_ledger(local, W.bodies, part)
+    had = kinetic_of_component(local, W.bodies, SAVED) + kinetic_of_component(local, W.bodies, NOW)
+    if part.closed > JOINT_GAIN * had and frame_of(W).rigid:
+        status, stopped = LINEAR, True
     if status == LINEAR and not farthest(W) <= before + LINEAR_APART:
         stopped = frame_of(W).rigid
     if stopped:

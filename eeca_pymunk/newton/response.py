@@ -102,7 +102,7 @@ def factor_response(W: Workspace, what: int, h: float) -> int:
                 local[i].pose[c], local[i].v0[c] = local[i].saved_pose[c], local[i].saved_velocity[c]
             local[i].cos, local[i].sin = np.cos(local[i].pose[2]), np.sin(local[i].pose[2])
         for k in range(W.joints):
-            start_joint(W, k, h)
+            start_joint(W, k, what, h)
         move(local, W.bodies, h)
         for i in range(W.bodies):
             for c in range(3):

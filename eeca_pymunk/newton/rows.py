@@ -24,7 +24,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..compiled import inlined, nonallocating
-from ..model.joints import GEAR, GROOVE, PIVOT, ROTARY_SPRING, SPRING, Joint, Workspace
+from ..model.joint_steps import POSES, STEP, BodyStep
+from ..model.joints import APART, GEAR, GROOVE, LEFT_APART, PIVOT, ROTARY_SPRING, SPRING, Joint, Workspace
 from .angles import angle_rows
 from .points import groove_rows, point_rows
 
@@ -58,9 +59,28 @@ def joint_rows(W: Workspace, k: int, h: float, stiffens: bool) -> int:
 
 
 @inlined
-def start_joint(W: Workspace, k: int, h: float) -> None:
-    """Set what is constant over the iterations of a part of length h: arms, distance and normal at its start; of joints
-    of angles the angles, in arm_a[0] and arm_b[0]; a spring's length or angle, and its `drag`."""
+def shares_point(joint: Joint, what: int) -> bool:
+    """Whether the anchors of a pivot are apart, and it acts at one point of both bodies all the same. Impulses at two
+    points would turn the component by themselves. Elastic ones pull along the line between the anchors."""
+    if joint.kind != PIVOT or what == POSES or joint.touched == 0:
+        return False
+    return what != STEP or joint.touched in (APART, LEFT_APART)
+
+
+@inlined
+def shared_part(a: BodyStep, b: BodyStep) -> float:
+    """Where the point of a pivot that `shares_point` is between the anchors, from that of a on: in the middle, or at
+    the centre of mass of a body that joints do not turn; -1 if that is so of both."""
+    free_a, free_b = a.freedoms == 0 or a.cayley > 0, b.freedoms == 0 or b.cayley > 0
+    if free_a:
+        return 0.5 if free_b else 1.0
+    return 0.0 if free_b else -1.0
+
+
+@inlined
+def start_joint(W: Workspace, k: int, what: int, h: float) -> None:
+    """Set what is constant over the iterations of a part of length h, for `what`: arms, distance and normal at its
+    start; of joints of angles the angles, in arm_a[0] and arm_b[0]; a spring's length or angle, and its `drag`."""
     joint, hinge, link, local = W.J.JOINT, W.J.HINGE, W.link, W.J.LOCAL
     kind, a, b, j = link[k].kind, link[k].body[0], link[k].body[1], link[k].joint
     if kind >= GEAR:
@@ -80,6 +100,10 @@ def start_joint(W: Workspace, k: int, h: float) -> None:
         rax = ca * joint[j].anchor_a[0] - sa * joint[j].anchor_a[1]
         ray = sa * joint[j].anchor_a[0] + ca * joint[j].anchor_a[1]
     dx, dy = local[b].pose[0] - local[a].pose[0] + (rbx - rax), local[b].pose[1] - local[a].pose[1] + (rby - ray)
+    part = shared_part(local[a], local[b]) if shares_point(joint[j], what) else -1.0
+    if part >= 0.0:
+        rax, ray, rbx, rby = rax + part * dx, ray + part * dy, rbx - (1.0 - part) * dx, rby - (1.0 - part) * dy
+        dx = dy = 0.0
     hinge[k].arm_a[0], hinge[k].arm_a[1], hinge[k].arm_b[0], hinge[k].arm_b[1] = rax, ray, rbx, rby
     hinge[k].apart[0], hinge[k].apart[1] = dx, dy
     if kind == SPRING:

@@ -52,7 +52,7 @@ def first_iterate(W: Workspace, what: int, h: float) -> None:
     before (`lead`); for POSES and SPEEDS, and in a LINEAR_STEP for bodies that joints move, no motion, v1 = -v0."""
     local = W.J.LOCAL
     for k in range(W.joints):
-        start_joint(W, k, h)
+        start_joint(W, k, what, h)
     for i in range(W.bodies):
         for c in range(3):
             local[i].v1[c] = local[i].v0[c] + h * (local[i].acceleration[c] + local[i].lead[c])

@@ -21,8 +21,8 @@ from .test_pairs import drawn
 
 def scene(seed: int) -> tuple[pymunk.Space, pymunk.Body, float]:
     """Bodies of masses up to 1 : 10^4 without weight, some of their joints on a body that moves, turns or both; that
-    body; and a length of steps. On one that turns no joint is apart at the start: the forces of such joints act at both
-    anchors, and turn what they hold."""
+    body; and a length of steps. On one that turns no joint is apart at the start: what closing displaces has another
+    velocity of the frame."""
     chance, space = Random(f"driven {seed}"), pymunk.Space()
     shape, count = chance.choice(("one", "two", "chain", "loop")), chance.randint(2, 5)
     wheel, count = pymunk.Body(body_type=pymunk.Body.KINEMATIC), {"one": 1, "two": 2}.get(shape, count)

@@ -72,7 +72,7 @@ NEARLY_HELD = accuracy(1e-08, "of the component, or rad",
 REPAID = accuracy(1e-3, "of the kinetic energy",
     "Gain of closing joints that an earlier step left apart, up to which it is locked.")
 JOINT_GAIN = round_off(1e-12, "of the kinetic energy before and after",
-    "Gain of joints that hold in a step, above which it is taken from what moves.")
+    "Gain of joints that hold in a step, above which it is taken from what moves; likewise errors of momenta.")
 GAIN_KEPT = round_off(1e-10, "of the kinetic energy, and of the work of forces over the size",
     "Gain of joints that hold which the relative motion of bodies is too little to pay: with more they move as one.")
 STALLED = accuracy(100.0, "of all momenta, loads and forces of a component, as angular momentum",
