@@ -254,12 +254,19 @@ class Varied(Composition):
         self.sizes.pop(i)
         self.extra = [shape for shape in self.extra if shape.body is not body]
         self.away = [shape for shape in self.away if shape.body is not body]
+        self._wake_touching(body)
         joints = [joint for joint in self.space.constraints if body in (joint.a, joint.b)]
         self.space.remove(*joints, *(shape for shape in body.shapes if shape.space is not None), body)
+
+    def _wake_touching(self, body: pymunk.Body) -> None:
+        """Wake what was put to sleep as it touched a body: it would keep pymunk's arbiter of shapes that are removed,
+        and waking it later would make a pointer to these valid again."""
+        body.each_arbiter(lambda arbiter: [s.body.activate() for s in arbiter.shapes if s.body.is_sleeping])
 
     def _go_shape(self, C: Random) -> None:
         if self.extra:
             shape = self.extra.pop(C.randrange(len(self.extra)))
+            self._wake_touching(shape.body)
             self.space.remove(shape)
             self.away.append(shape)
 
