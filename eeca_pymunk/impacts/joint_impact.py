@@ -22,14 +22,12 @@ from ..jointed.meet import end_before, locate_impact
 from ..model.contacts import SOLVED, JointedProblem, Row, Solved
 from ..model.joints import Joints
 from ..model.parameters.events import EVENT_LOOKS
-from ..model.parameters.impulses import WEDGED
 from ..model.parameters.intervals import UNSOLVED_PART
 from ..model.parameters.joints import CLOSES, IMPACT_ENERGY, IMPACT_LIMITS
 from ..model.scene import Scene
-from ..rows.blocks import TRUNCATED, close_block, solve_block
+from ..rows.blocks import TRUNCATED, close_block, solve_block, solve_freely
 from ..rows.bounded import room_for_rows
-from ..rows.build import aim, conserves, normal_rate, rubs
-from ..rows.coulomb import slip_freely
+from ..rows.build import aim, conserves, normal_rate
 from ..rows.energy import offset_gain, scale_to_lose
 from ..rows.gentle import excessive, sweep_gently
 from ..rows.inplace import copy
@@ -151,11 +149,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
             break
         copy(V, BEFORE)
         L[:] = 0.0
-    if OUT[0].residual > WEDGED * aim(ROWS, rows) and rubs(ROWS, rows):
-        slip_freely(ROWS, rows)
-        L[:] = 0.0
-        velocities(problem, L, FITTED, V)
-        status = solve_block(problem, L, V, owed, False, OUT)
+    status = solve_freely(problem, L, V, FITTED, owed, status, OUT)
     exact, fastest = conserves(ROWS, rows), aim(ROWS, rows)
     for q in range(n):
         fastest = max(fastest, math.hypot(FITTED[q, 0], FITTED[q, 1]))

@@ -22,7 +22,8 @@ from ..model.bodies import AT_REST
 from ..model.contacts import SOLVED, Problem, Solved
 from ..model.scene import Scene
 from ..model.step import IMPACT
-from ..rows.blocks import CONVERGED, solve_block
+from ..rows.blocks import CONVERGED, solve_block, solve_freely
+from ..rows.laws import solved_exactly
 from .simultaneous import Block, gather_block, make_block, take_owed_energy
 
 
@@ -116,7 +117,10 @@ def strike(A: Scene, a: int, b: int, t: float, lasts: bool) -> int:
     rows = len(block.ROWS)
     L, OUT = np.zeros((rows, 2)), zeros(1, SOLVED)
     problem = Problem(block.ROWS, block.IM, block.II, block.POSE, n, rows)
+    FREE = block.V.copy()
     status = solve_block(problem, L, block.V, owed, piled, OUT)
+    if solved_exactly(n, rows):
+        status = solve_freely(problem, L, block.V, FREE, owed, status, OUT)
     lost = OUT[0].restitution + OUT[0].friction - owed
     finish_block(A, block, n, m, L, OUT, status, t)
     spend(A, n, m, looks_of(rows, OUT[0]))

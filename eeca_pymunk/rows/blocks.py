@@ -19,6 +19,7 @@ from ..model.parameters import impulses
 from ..model.parameters.intervals import DIRECT_MOVING, INTERVAL_RESIDUAL_SPEED, SMALL_SWEEPS
 from .build import aim, conserves, largest_terms, rates, rubs
 from .conjugate import sweep_conjugate
+from .coulomb import slip_freely
 from .direct import refine, refine_and_sweep
 from .drift import skip_drift
 from .energy import lock, works
@@ -143,3 +144,20 @@ def solve_block(problem: AnyProblem, L: FloatArray, V: FloatArray, owed: float, 
     OUT[0].residual, OUT[0].tolerance = worst, tolerance
     close_block(problem, L, V, FREE, owed, exact, OUT)
     return CONVERGED if worst <= tolerance else TRUNCATED
+
+
+@kernel
+def solve_freely(
+    problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, owed: float, status: int, OUT: Rows[Solved]
+) -> int:  # fmt: skip
+    """`solve_block` again, without friction, where `solve_block` has left contacts with friction wedged (WEDGED):
+    sweeps may end between two states without impulses, so that what approaches would meet again at the same instant,
+    without end. FREE (k, 3): velocities without impulses. Returns the status; L, V and OUT are those of the solution.
+    """
+    ROWS, m = problem.ROWS, problem.m
+    if status == CONVERGED or not (OUT[0].residual > impulses.WEDGED * aim(ROWS, m) and rubs(ROWS, m)):
+        return status
+    slip_freely(ROWS, m)
+    L[:] = 0.0
+    velocities(problem, L, FREE, V)
+    return solve_block(problem, L, V, owed, False, OUT)

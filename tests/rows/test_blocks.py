@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from random import Random
 
 import numpy as np
 import pytest
 from scipy.optimize import nnls
 
-from eeca_pymunk.rows.blocks import CONVERGED
+from eeca_pymunk.model.contacts import Problem
+from eeca_pymunk.rows.blocks import CONVERGED, solve_freely
+from eeca_pymunk.rows.build import normal_rate
 
 from .block import Block, Floats
 
@@ -287,3 +290,38 @@ def test_impulses_of_what_is_jammed_do_not_grow(seed: int) -> None:
     lost = block.energy(velocity) - block.energy(block.after)
     assert lost >= 0.0
     assert block.loss.sum() == pytest.approx(lost, abs=1e-14 * block.energy(velocity))
+
+
+def wedged(seed: int) -> Block:
+    """Two flush bodies of which one may touch the ground by its end, or both; they spin fast, and rub elastically."""
+    chance = Random(seed)
+    mass = 10.0 ** chance.uniform(-1.0, 2.0)
+    pose = np.array([[0.0, 0.0, 0.0], [chance.uniform(0.1, 0.5), chance.uniform(-1.0, 1.0), 0.0], [0.0, 0.0, 0.0]])
+    rest = np.zeros(3)
+    velocity = np.array([*([chance.uniform(-u, u) for u in (1.0, 1.0, 3.0)] for _ in range(2)), rest])
+    turns = np.array([2.5 / mass, chance.uniform(1.0, 20.0), 0.0])
+    block = Block(pose, velocity, np.array([1.0 / mass, 1.0, 0.0]), turns)
+    y, half = pose[1, 1], chance.uniform(0.05, 0.5)
+    block.contacts = [(0, 1, 1.0, 0.0, 0.05, y - half), (0, 1, 1.0, 0.0, 0.05, y + half)]
+    if chance.random() < 0.5:
+        block.contacts.append((0, 2, 0.0, -1.0, 0.0, -1.0))
+    if chance.random() < 0.3:
+        block.contacts.append((1, 2, 0.0, -1.0, pose[1, 0] + chance.uniform(-0.3, 0.3), y - half))
+    block.solve(1.0, chance.choice((1.0, 0.5, 2.0)))
+    return block
+
+
+@pytest.mark.parametrize("seed", [313, 818, 1442, 2570, 2636])
+def test_contacts_that_friction_wedges_part_without_it(seed: int) -> None:
+    """With friction some approach although they should part, and would meet again at the same instant."""
+    block = wedged(seed)
+    m, n = len(block.contacts), len(block.pose) - 1
+    fastest = max(-normal_rate(row, block.velocity) for row in block.rows)
+    assert block.status != CONVERGED
+    assert block.out[0].residual > 0.01 * fastest
+    problem = Problem(block.rows, block.im, block.ii, block.pose, n, m)
+    status = solve_freely(problem, block.impulses, block.after, block.velocity, 0.0, block.status, block.out)
+    assert status == CONVERGED
+    assert min(normal_rate(row, block.after) - row.target for row in block.rows) >= -1e-13 * fastest
+    assert abs(block.energy(block.after) / block.energy(block.velocity) - 1.0) <= 1e-13
+    assert (block.impulses[:, 1] == 0.0).all()
