@@ -103,8 +103,7 @@ def solve_contacts(
     | of few contacts, CHORD iterations have come no nearer, or nowhere near | no | likewise | likewise |
 
     Where the exact solution of the first iteration is excessive, sweeps take its place (`rough`), and iterations go on.
-    Impulses that are excessive in the end, or have not converged, are replaced by gentle ones (`gentle`). The energy
-    lock comes last.
+    Impulses that are excessive in the end, or not converged, are replaced by gentle ones (`gentle`). The lock is last.
 
     Args:
         slow, fast, pull: see `..contacts.interval.speeds`.  owed: energy >= 0 that the island has to lose at least.
