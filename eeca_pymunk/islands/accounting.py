@@ -109,6 +109,9 @@ def wake(A: Scene, root: int, t: float) -> int:
     MEMBER, one = A.MEMBER, root
     MEMBER[root].rest = CHANGED
     wake_supported(A)
+    # Before others are united with it, which may become the root.
+    set_awake(A, root)
+    close_interval(A, root, t)
     for i in range(A.BODY.shape[0] - 1):
         if A.STATE[i].island == i and A.BODY[i].inv_mass > 0.0 and MEMBER[i].rest == CHANGED:
             set_awake(A, i)

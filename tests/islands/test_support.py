@@ -8,6 +8,7 @@ import pymunk
 import pytest
 
 import eeca_pymunk as ep
+from eeca_pymunk.model.bodies import CHANGED
 
 from .test_at_rest import DT, UNITS, G
 
@@ -163,3 +164,27 @@ def test_arbiters_of_what_rests_hold_its_weight(seed: int) -> None:
             assert abs(sum(j.y for j in total)) == pytest.approx(weight, rel=1e-7)
             checked += 1
     assert checked > 100
+
+
+@pytest.mark.parametrize("seed", [1, 8, 12])
+def test_a_larger_island_that_wakes_its_support_ends_its_contacts(seed: int) -> None:
+    """Boxes that fall on others at rest. If what moves is united with its support before the interval of that ends, and
+    is the root of both, contacts of the support go on as those of an island that there is not, and are mixed with later
+    ones of its number: the ledger is open by up to 4e-6 of the energy."""
+    chance, space = random.Random(seed), pymunk.Space()
+    space.gravity = 0.0, -10.0
+    floor = pymunk.Segment(space.static_body, (-20.0, 0.0), (20.0, 0.0), 0.1)
+    floor.friction = 0.6
+    space.add(floor)
+    for i in range(7):
+        body = pymunk.Body(1.0, 1 / 6)
+        body.position = (chance.uniform(-1.5, 1.5), 8.0 - 1.3 * i + (12.0 if i < 3 else 0.0))
+        body.angle = chance.uniform(-0.3, 0.3)
+        shape = pymunk.Poly.create_box(body, (1.0, 1.0))
+        shape.friction = 0.5
+        space.add(body, shape)
+    stepper = ep.EECA(space)
+    for _ in range(150):
+        stepper.step(1 / 20)
+        assert stepper.event_loop is not None
+        assert all(member.rest != CHANGED for member in stepper.event_loop.scene.MEMBER)
