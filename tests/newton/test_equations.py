@@ -12,7 +12,7 @@ from eeca_pymunk.arrays import FloatArray
 from eeca_pymunk.compiled.records import kind_of, zeros
 from eeca_pymunk.joints.ordering import order_unknowns
 from eeca_pymunk.joints.workspace import workspace
-from eeca_pymunk.model.joint_steps import STIFF_NONE, STIFF_TURNS, BodyStep, JointStep
+from eeca_pymunk.model.joint_steps import STEP, STIFF_NONE, STIFF_TURNS, BodyStep, JointStep
 from eeca_pymunk.model.joints import NOTHING, STEPS
 from eeca_pymunk.newton.angles import shared_turn
 from eeca_pymunk.newton.banded import back_banded, factor_banded
@@ -116,7 +116,7 @@ class Iterate:
         if shift is not None:
             self.local["v1"] += shift.reshape(2, 3) * 2.0 / self.h
         move(self.local, 2, self.h)
-        start_joint(self.work, k, self.h)
+        start_joint(self.work, k, STEP, self.h)
         lam = self.hinge[k].lam.copy()
         bend = joint_rows(self.work, k, self.h, True)
         found = self.hinge[k : k + 1].copy()[0]
