@@ -85,7 +85,6 @@ def excess_length(
     """
     m, n = interval.m, interval.n
     far = 2.0 if not solved and m <= COLUMN_CONTACTS and J.PROGRESS.effort > J.PROGRESS.share else 0.0
-    payable = RESOLUTION * effort <= J.PROGRESS.budget
     for s in interval.groups.JOINTED:
         if gave_way(J, s):
             far = 2.0
@@ -99,6 +98,7 @@ def excess_length(
     # A motion that is no solution does not tell how long the interval may be. Contacts that are not solved in a long
     # interval may be in a short one, if the step has work for many of these; and bodies that sink into others by
     # unsolved contacts would sink further in the next interval.
+    payable = RESOLUTION * effort <= J.PROGRESS.budget
     hard = (m <= COLUMN_CONTACTS and payable) or (n < LARGE_ISLAND and sinks(A, interval))
     return UNSOLVED_PART if hard and J.PROGRESS.long > 0 else min(far, UNSOLVED_PART)
 

@@ -90,7 +90,7 @@ def test_dropped_boxes_stay_above_the_floor(count: int, dt: float, e: float) -> 
 def test_a_box_that_is_dropped_in_a_long_step_does_not_rest_inside_the_floor(
     seed: int, dt: float, least: float
 ) -> None:
-    """What its impacts have lost in the step pays for lifting it: it had stayed a tenth of its height inside."""
+    """What its impacts have lost in the step pays for lifting it; else it stays a tenth of its height inside."""
     chance = random.Random(seed)
     space = world(0.5, chance.choice((0.0, 0.5)))
     w, h = chance.uniform(0.5, 1.5), chance.uniform(0.5, 1.0)
