@@ -72,8 +72,8 @@ def test_the_work_of_steps_is_spent_on_motion(monkeypatch: pytest.MonkeyPatch, s
 @pytest.mark.parametrize("seed", [8, 10])
 def test_a_heap_that_settles_takes_its_time(seed: int) -> None:
     """200 bodies in one island: a solve takes a twenty-fifth of the budget, and never converges, as more than forty
-    contacts are solved roughly. If that makes intervals shorter, or if these may not grow by more than 1.5 from one to
-    the next, half of the time is not taken, and the heap moves on for hundreds of steps."""
+    contacts are solved roughly. If intervals may not grow by more than 1.5 from one to the next, half of the time is
+    not taken, and the heap moves on for hundreds of steps."""
     scene = rods.heap(seed=seed)
     stepper = Counting(scene.space)
     for _ in range(300):
