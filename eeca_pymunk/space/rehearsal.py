@@ -66,12 +66,12 @@ class Rehearsal:
         # Number of steps for which decisions apply at least; ignored collisions are ignored as long as shapes touch.
         self._decision_steps = 1.0
         self._pairs: HandledPairs | None = None
-        self.go_on(world, True)
+        self.go_on(world)
 
-    def go_on(self, world: World, edited: bool) -> bool:
-        """Go on in the next world of the space. `edited`: whether a shape or body was edited in place since the last
-        step. Returns whether no decision of a handler can apply. Boxes of shapes and wrappers are kept."""
-        undecided = not edited and self._decision_steps <= 0 and self._sync is not None and self._sync.is_ours()
+    def go_on(self, world: World) -> bool:
+        """Go on in the next world of the space. Returns whether no decision of a handler can apply. Boxes of shapes and
+        wrappers are kept."""
+        undecided = self._decision_steps <= 0 and self._sync is not None and self._sync.is_ours()
         self.world, self._sync, self._untested = world, None, max(self._untested, 0)
         self.forget_old_handlers()
         if self._pairs is not None:
@@ -83,7 +83,7 @@ class Rehearsal:
         """Forget earlier steps; if sizes, filters or places of shapes have changed, also the pairs with handlers."""
         if reshaped:
             self._pairs = None
-        self._changed, self._untested, self._decision_steps = [False, False], 0, 1.0
+        self._changed, self._untested = [False, False], 0
         self.world.forget_changes()
 
     def is_silent_again(self, dt: float, half_damping: float, sync: Sync) -> bool:
@@ -148,7 +148,7 @@ class Rehearsal:
             self._untested = _SILENT
             self._step_without_calls(dt, sync)
             return 0
-        else:
+        elif self._decision_steps <= 0 and continues:  # otherwise nothing was tested
             self._untested = _BETWEEN_TESTS
         self.left_out = 0
         world.scatter(TURNS)

@@ -106,7 +106,7 @@ class World(BodyStates):
         self.read_settings(anew=True)
         self.undecided = False
         if past is not None and (rehearsal := past.__dict__.pop("rehearsal", None)) is not None:
-            self.undecided, self.rehearsal = rehearsal.go_on(self, past.edited()), rehearsal
+            self.undecided, self.rehearsal = rehearsal.go_on(self), rehearsal
 
     def read_settings(self, anew: bool = False) -> None:
         """Read and check the settings of the space, and its joints if they have changed or if `anew`; record later
