@@ -407,3 +407,26 @@ def test_what_turns_about_its_centre_of_mass_has_no_other_way(spin: float, more:
     space.add(rod, pymunk.Segment(rod, (-5.0, 0.0), (5.0, 0.0), 0.1), pymunk.Circle(space.static_body, 1.0, place))
     space.on_collision(None, None, begin=lambda *_: None)
     assert near_at_the_end(space, 1.0) is near
+
+
+def test_a_law_of_shapes_that_was_edited_is_no_decision_of_a_handler() -> None:
+    """pymunk keeps the arbiter of a disk that has left the floor, with the friction that it had there."""
+    space = pymunk.Space()
+    space.gravity = (0.0, -10.0)
+    floor = pymunk.Segment(space.static_body, (-5.0, 0.0), (5.0, 0.0), 0.0)
+    space.add(floor)
+    disk = add_disk(space, (0.0, 0.1), 0.1)
+    (round_one,) = disk.shapes
+    floor.friction = round_one.friction = 1.0
+    hear(space, 7, 8, [])
+    stepper = ep.EECA(space)
+    for _ in range(20):
+        stepper.step(DT)
+        disk.each_arbiter(lambda arbiter: None)
+    disk.velocity = 0.0, 5.0
+    stepper.step(DT)
+    round_one.friction = 0.5
+    for _ in range(4):
+        stepper.step(DT)
+        assert stepper._world is not None
+        assert not stepper._world.rules.changed
