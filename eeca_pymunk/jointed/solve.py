@@ -56,7 +56,8 @@ def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
         h = max(h, least)
         last = attempt + 1 == INTERVAL_TRIES or A.COUNT.together > 0 or h <= least
         if t > 0.0 and work_left(A, J) < 0.0:
-            rest.longest = h  # where the next step begins
+            # The next step begins with a quarter of the length for which there was too little work (RESOLUTION below).
+            rest.longest = UNSOLVED_PART**2 * h
             return SPENT
         status, then = try_jointed(A, J, root, t, h, last)
         if status != AGAIN:

@@ -124,6 +124,14 @@ def begin_part(link: Rows[Coupling], joints: int) -> None:
 
 
 @nonallocating
+def hold_passed(W: Workspace) -> None:
+    """Let all limits act that the present iterate has passed. Only after `first_bound`, which computes their rows."""
+    for k in range(W.joints):
+        if in_reach(W, k):
+            W.link[k].side = passed_side(W, k, JOINT_TOUCH)
+
+
+@nonallocating
 def held_till_then(W: Workspace, k: int, side: int, instant: float) -> bool:
     """Whether limit k, passed at about this instant, stood on its bound at the start of the part, was released, and has
     not left its bound since: its force changes sign only later."""

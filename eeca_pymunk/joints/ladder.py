@@ -57,13 +57,12 @@ def has_elastic_joint(W: Workspace) -> bool:
 
 @nonallocating
 def limit_work(W: Workspace) -> None:
-    """Set the work that this component may take in a step, PROGRESS.limit and hurry."""
+    """Set the work that this component may take in a step, PROGRESS.limit."""
     component, progress = W.J.COMPONENT[W.s], W.J.PROGRESS
     one = work_of_iteration(component.system, joints.CONDENSED_PASSES, component.boxes, W.joints, component)
     # With no work left, components that are solved easily still are.
     share = max((progress.budget - progress.effort) * joints.COMPONENT_BUDGET, joints.LEAST_SOLUTIONS * one)
     progress.limit = progress.effort + share
-    progress.hurry = progress.effort + joints.HASTE * (progress.limit - progress.effort)
 
 
 @nonallocating

@@ -4,9 +4,9 @@ A limit is a row that is inactive, or acts (side = -1 on the lower, 1 on the upp
 a step would end beyond a bound, it is taken again to the instant at which the bound is reached (secant on the end of
 the implicit step). There velocities into the bound vanish, and the loss enters the ledger. A row that would pull is
 released from the start of the part on. If another limit is met within that part, and the released row does not leave
-its bound until then, its force changes sign later: it acts up to there. The number of parts of a step is bounded; then
-limits *land*: their rows act from the present place on, g reaches the bound at the end of the part, and their work
-enters the ledger.
+its bound until then, its force changes sign later: it acts up to there. The number of parts of a step is bounded,
+and so is the work for them (`in_haste`); then limits *land*: the rows of all that were passed act from the present
+place on, g reaches the bound at the end of the part, and their work enters the ledger.
 
 A part is solved to the end of the step (`at_end`), or to the instant at which a limit is searched (`at_limit`):
 
@@ -66,10 +66,17 @@ def search_for(S: Parts, k: int, side: int, when: float, high: float) -> None:
     S.limit, S.side, S.when, S.low, S.high, S.secants = k, side, when, 0.0, high, 0
 
 
+@inlined
+def in_haste(W: Workspace) -> bool:
+    """Whether joints have taken more than HASTE of the work of this step of the scene. Slack nets meet so many limits
+    that their instants take all of it, and motion none."""
+    return bool(W.J.PROGRESS.effort > joints.HASTE * W.J.PROGRESS.budget)
+
+
 @nonallocating
 def late(W: Workspace, S: Parts) -> bool:
     """Whether instants are no longer searched: limits that are met then land."""
-    return bool(S.events >= joints.LIMIT_EVENTS or W.J.PROGRESS.effort > W.J.PROGRESS.hurry)
+    return bool(S.events >= joints.LIMIT_EVENTS or in_haste(W))
 
 
 @nonallocating
@@ -113,7 +120,7 @@ def at_end(W: Workspace, S: Parts, linear: bool, h: float, whole: bool, ledger: 
         S.solved, S.hopped = 0.0, S.hopped + 1
         stop_at(W, k, side, True, True, ledger)
     elif lands:
-        W.link[k].side = side
+        bounds.hold_passed(W)
     else:
         search_for(S, k, side, instant, S.left)
     return GOES_ON
@@ -147,7 +154,7 @@ def at_limit(W: Workspace, S: Parts) -> int:
         if not (rate < 0.0 and 0.0 < S.when - gap_now / rate < S.left):
             S.limit, S.when, S.secants, S.events, S.foreseen = -1, S.left, 0, S.events - 1, 0
             return GOES_ON
-    most = joints.LIMIT_SECANTS if W.J.PROGRESS.effort <= W.J.PROGRESS.hurry else joints.LIMIT_SECANTS_HASTE
+    most = joints.LIMIT_SECANTS_HASTE if in_haste(W) else joints.LIMIT_SECANTS
     if abs(gap_now) > 0.1 * touch and S.secants < most:
         seek(W, S, gap_now)
         return GOES_ON

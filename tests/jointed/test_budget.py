@@ -53,7 +53,7 @@ def test_a_cloth_that_falls_over_a_disk_stays_within_its_budget(side: int) -> No
     assert 0.5 < max(stepper.works) <= 1.6
     assert np.mean(stepper.parts) >= 0.4
     assert min(stepper.parts) > 0.0
-    assert sum(part < 1e-6 for part in stepper.parts) <= (15 if side == 7 else 1)
+    assert sum(part < 1e-6 for part in stepper.parts) <= 1
 
 
 @pytest.mark.parametrize(("seed", "least"), [(51050106, 0.6), (51050051, 0.8), (51050114, 0.85)])
@@ -81,6 +81,37 @@ def test_a_heap_that_settles_takes_its_time(seed: int) -> None:
     assert np.mean(stepper.parts) >= 0.95
     assert sum(body.kinetic_energy for body in scene.bodies) <= 1e-4 * len(scene.bodies) * 9.81
     assert apart(scene.space) <= 1e-10
+
+
+def slack_rope(bars: int) -> pymunk.Space:
+    """A rope of bars, whose ends slides of length 0 to .03 join, that falls over disks."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -10.0
+    last = None
+    for k in range(bars):
+        bar = pymunk.Body(0.1, pymunk.moment_for_segment(0.1, (-0.1, 0.0), (0.1, 0.0), 0.03))
+        bar.position = 0.22 * k - 0.11 * bars, 1.5 + 0.01 * math.sin(7.0 * k)
+        space.add(bar, pymunk.Segment(bar, (-0.1, 0.0), (0.1, 0.0), 0.03))
+        if last is not None:
+            joint = pymunk.SlideJoint(last, bar, (0.1, 0.0), (-0.1, 0.0), 0.0, 0.03)
+            joint.collide_bodies = False
+            space.add(joint)
+        last = bar
+    for k in range(5):
+        space.add(pymunk.Circle(space.static_body, 0.3, (0.9 * k - 1.8, 0.5 * math.sin(3.0 * k))))
+    space.add(pymunk.Segment(space.static_body, (-30.0, -1.2), (30.0, -1.2), 0.1))
+    for shape in space.shapes:
+        shape.friction = 0.5
+    return space
+
+
+def test_a_rope_of_slack_links_takes_its_time() -> None:
+    """Its 19 links meet hundreds of limits in a step. If the instants of all are searched as long as there is work, or
+    limits land one by one, half of the time is not taken."""
+    stepper = Counting(slack_rope(20))
+    for _ in range(100):
+        stepper.step(DT)
+    assert np.mean(stepper.parts) >= 0.9
 
 
 def pinned_on_a_floor(friction: float, off: float, mass: float, box: bool) -> pymunk.Space:

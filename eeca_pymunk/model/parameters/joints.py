@@ -63,7 +63,7 @@ FACTOR_WORK = work(210.0, "operations", "Work of the factors of a row besides th
 BACK_WORK = work(4.0, "operations", "Work of a solution for each row and each number in its band.")
 JOINT_APART = accuracy(1e-10, "of the component", "Error of a joint above which it closes at pymunk's rate.")
 ELASTIC_PARTS = work(7, "number", "Parts of a step of elastic joints.")
-HASTE = work(0.25, "of what a component may take", "Work of its step after which limits are located roughly.")
+HASTE = work(0.25, "of the budget of a step", "Work of joints after which limits land, and are located roughly.")
 COMPONENT_BUDGET = work(0.5, "of what is left", "Work of one step of a component, at most.")
 BALANCED = round_off(1e-6, "of the errors of joints, as forces",
     "Force on bodies by which the errors of joints balance: these contradict one another, and become elastic at once.")
