@@ -4,12 +4,12 @@ A body without mobility that the program moves, or has placed into others, does 
 external. All else is deducted from what contacts have lost: in the interval, less what the island owes. What was lost
 before in the step pays too
 
-* in an island of one body, which would stay in the floor that it was dropped on by a long step;
-* in a free island: lifting costs kinetic energy there, as the angular momentum stays, and sinking has released it;
-* where a body without mobility is driven into others, which have also gone deeper by their own motion;
+* where a contact is deeper than SLIGHT_DEPTH, as of boxes dropped on one another by a long step: once they are at rest
+  nothing would lift them;
+* in an island of one body, which lifts no other;
 * in an island with joints.
 
-Elsewhere impacts would pay, and stir pyramids again and again.
+Elsewhere impacts would pay for what truncated solves let sink, and stir piles again and again.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ from ..geometry.sides import depth_limit
 from ..model.bodies import MOVED
 from ..model.contacts import Row
 from ..model.islands import Island
+from ..model.parameters.intervals import SLIGHT_DEPTH
 from ..model.scene import Scene
 from ..rows.build import conserves, normal_rate
 from .at_rest import moves_itself
@@ -42,6 +43,16 @@ def was_placed(A: Scene, isle: Island, n: int) -> bool:
     """Whether the program has moved a body without mobility into an island of n bodies."""
     for q in range(n, len(isle.WHO)):
         if A.MEMBER[isle.WHO[q]].placed == MOVED and A.BODY[isle.WHO[q]].inv_mass == 0.0:
+            return True
+    return False
+
+
+@nonallocating
+def deep(A: Scene, ROWS: Rows[Row], m: int) -> bool:
+    """Whether any of m contacts is deeper than SLIGHT_DEPTH."""
+    for z in range(m):
+        a, b = shapes_of(A, ROWS[z])
+        if ROWS[z].gap < -SLIGHT_DEPTH * depth_limit(A, a, b):
             return True
     return False
 
@@ -75,7 +86,7 @@ def payment(
         placed: whether it `was_placed` into.  jointed: whether the island has joints.
     """
     drives = driven(A, isle, ROWS, L, V, n, m)
-    counts = drives or jointed or len(isle.WHO) == n or n == 1
+    counts = jointed or n == 1 or deep(A, ROWS, m)
     # Elastic contacts have no losses; what they seem to lose is round-off.
     losses = -1.0 if conserves(ROWS, m) else lost + (before if counts else min(before, 0.0))
     payable = 0.0 if placed else max(losses, 0.0) if drives else math.inf

@@ -20,7 +20,7 @@ from ..geometry.sides import depth_limit, smaller
 from ..islands.depths import closes_too_far, too_deep_at_end
 from ..model.joints import Joints
 from ..model.parameters.events import RESOLUTION
-from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_WAY, SAGITTA, UNSOLVED_DEPTH
+from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_WAY, SAGITTA, SLIGHT_DEPTH
 from ..model.scene import Scene
 from ..pairs.lists import far_apart
 from ..pairs.rules import barred
@@ -159,11 +159,11 @@ def forced_deeper(A: Scene, interval: Interval) -> int:
 
 @nonallocating
 def sinks(A: Scene, interval: Interval) -> bool:
-    """Whether any contact becomes deeper in an interval by more than UNSOLVED_DEPTH of its depth limit."""
+    """Whether any contact becomes deeper in an interval by more than SLIGHT_DEPTH of its depth limit."""
     ROWS, WAY = interval.ROWS, interval.motion.WAY
     for z in range(interval.m):
         closed = normal_rate(ROWS[z], WAY)
         a, b = shapes_of(A, ROWS[z])
-        if closed + max(ROWS[z].gap, 0.0) < -UNSOLVED_DEPTH * depth_limit(A, a, b):
+        if closed + max(ROWS[z].gap, 0.0) < -SLIGHT_DEPTH * depth_limit(A, a, b):
             return True
     return False
