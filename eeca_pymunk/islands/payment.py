@@ -7,6 +7,7 @@ before in the step pays too
 * where a contact is deeper than SLIGHT_DEPTH, as of boxes dropped on one another by a long step: once they are at rest
   nothing would lift them;
 * in an island of one body, which lifts no other;
+* in a free island: lifting costs kinetic energy there, as the angular momentum stays, and sinking has released it;
 * in an island with joints.
 
 Elsewhere impacts would pay for what truncated solves let sink, and stir piles again and again.
@@ -86,7 +87,7 @@ def payment(
         placed: whether it `was_placed` into.  jointed: whether the island has joints.
     """
     drives = driven(A, isle, ROWS, L, V, n, m)
-    counts = jointed or n == 1 or deep(A, ROWS, m)
+    counts = jointed or n == 1 or len(isle.WHO) == n or deep(A, ROWS, m)
     # Elastic contacts have no losses; what they seem to lose is round-off.
     losses = -1.0 if conserves(ROWS, m) else lost + (before if counts else min(before, 0.0))
     payable = 0.0 if placed else max(losses, 0.0) if drives else math.inf

@@ -192,7 +192,8 @@ def test_what_lies_on_a_roller_turns_with_its_surface(dt: float, unit: float) ->
 def test_a_drum_keeps_what_it_carries(held: bool, angle: float, x: float, unit: float) -> None:
     """Walls that impulses move, `held` by a pivot: boxes sink by the tangents of the middle, from .8 rad a step on by
     more than the correction at the end of the step moves them, and corrections lift them before. Without a pivot that
-    costs energy, as the angular momentum stays: what was lost in the step pays."""
+    costs energy, as the angular momentum stays: what was lost in the step pays (boxes sink by .0026 at .1 rad, if it
+    does not)."""
     space, drum = pymunk.Space(), pymunk.Body(1e4, 1e6 * unit * unit)
     drum.angular_velocity = SPIN
     corners = [(-HALF, -HALF), (HALF, -HALF), (HALF, HALF), (-HALF, HALF), (-HALF, -HALF)]
@@ -207,7 +208,7 @@ def test_a_drum_keeps_what_it_carries(held: bool, angle: float, x: float, unit: 
     for shape in space.shapes:
         shape.friction = 1.0
     stepper = ep.EECA(space)
-    energy, room = ep.measure(space).energy, 0.01 if held else 0.05
+    energy, room = ep.measure(space).energy, 0.01 if held else {0.1: 0.001, 0.4: 0.005}.get(angle, 0.05)
     for _ in range(40):
         ledger = stepper.step(angle / SPIN).ledger
         assert abs(ledger.residual) <= 1e-12 * energy
