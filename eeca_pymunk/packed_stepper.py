@@ -25,6 +25,7 @@ from .arrays import AnyArray
 from .compiled.records import as_integers
 from .hooked_stepper import HookedStepper
 from .layout import WRITTEN
+from .model.parameters.rest import WAKE_ALL
 from .model.step import EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES
 from .reentry import BUSY, refuse_within
 from .report import Details, StepReport
@@ -97,14 +98,22 @@ class PackedStepper(HookedStepper):
         sleepers = self._sleep is not None and self._sleep.any_asleep
         return [array.copy() for array in self.rewound(world)] if sleepers else []
 
+    def _allow(self, left: float) -> None:
+        """Let the next attempt at a step spend what is `left` of the step's budgets; half of it while bodies sleep, as
+        the step is repeated if these are touched."""
+        if (loop := self.event_loop) is not None:
+            loop.scene.PAR.share = 0.5 * left if self._sleep is not None and self._sleep.any_asleep else left
+
     def _repeat_awake(
         self, world: World, dt: float, half_damping: float, status: int, before: list[AnyArray]
     ) -> tuple[World, int]:
         """While the step has touched sleeping bodies, wake these and repeat it; returns the world and status of the
-        last repetition. A step that then calls functions of the program is left to the caller.
+        last repetition. All attempts together spend the budgets of one step; after WAKE_ALL of them all bodies wake. A
+        step that then calls functions of the program is left to the caller.
 
         `before`: a copy of the arrays of `rewound`, made before the step.
         """
+        left, tries = 1.0, 0
         while self._sleep is not None and self._sleep.any_asleep and status >= 0 and status & EVENTS:
             if not self.may_touch_sleepers(self._sleep):
                 break
@@ -112,7 +121,9 @@ class PackedStepper(HookedStepper):
             touched = self._sleep.touched((details if isinstance(details, Details) else details()).contacts)
             if not touched:
                 break
-            self._sleep.wake(touched)
+            loop, tries = self.event_loop, tries + 1
+            left -= 0.0 if loop is None else float(loop.scene.PAR.spent)
+            self._sleep.wake(touched if tries < WAKE_ALL else None)
             for array, old in zip(self.rewound(world), before, strict=True):
                 array[:] = old
             world = self._update_world(anew=True)
@@ -121,6 +132,7 @@ class PackedStepper(HookedStepper):
                     world = self._update_world(anew=True)
                 break
             world.gather()
+            self._allow(left)
             before, status = self._rewound_copy(world), self.advance(world, dt, half_damping)
         return world, status
 
@@ -163,11 +175,16 @@ class PackedStepper(HookedStepper):
             return self._hooked_step(world, dt)
         world.gather()
         before = [] if self._sleep is None else self._rewound_copy(world)
+        if before:
+            self._allow(1.0)
         status = self.advance(world, dt, half_damping)
         if status < 0 and status in (OTHER_BODIES, MOVED_STATIC):
             world = self._update_world(anew=True)
             world.gather()
-            before, status = self._rewound_copy(world), self.advance(world, dt, half_damping)
+            before = self._rewound_copy(world)
+            if before:
+                self._allow(1.0)
+            status = self.advance(world, dt, half_damping)
         if self._sleep is not None:
             world, status = self._repeat_awake(world, dt, half_damping, status, before)
             if self._calls(world):

@@ -75,6 +75,7 @@ class World:
             BODY=self.body, SHAPE=self.shape, LINK=self.link, VERTEX=self.vertex, CORE=core_room(self.link)
         )
         self.scene.COUNT.disks, self.scene.COUNT.budget = self.disks, STEP_LOOKS
+        self.scene.PAR.share = 1.0
 
 
 def disk(radius: float) -> list[tuple[Sequence[tuple[float, float]], float]]:

@@ -41,6 +41,7 @@ def begin_scene(table: Table, limit: int, disks: int, together: int, budget: int
     A = scene_of(table)
     A.COUNT.limit, A.COUNT.disks, A.COUNT.together = limit, disks, together
     A.COUNT.budget, A.COUNT.lossy = budget, lossy
+    A.PAR.share = 1.0
     A.KEYS[:] = -1
     ground = A.BODY.shape[0] - 1
     for i in range(A.BODY.shape[0]):

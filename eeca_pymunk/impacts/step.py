@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ..compiled import Table, kernel
 from ..islands.support import settle
-from ..jointed.ledger import account_joints, load_welds, start_joints
+from ..jointed.ledger import account_joints, load_welds, note_spent, start_joints
 from ..joints.pinned import put_pinned
 from ..model.joints import Joints, joints_of
 from ..model.parameters.joints import MEET_INSTANT
@@ -43,6 +43,8 @@ def start(A: Scene, J: Joints, R: Reading, dt: float, gx: float, gy: float, half
 @kernel
 def finish(A: Scene, J: Joints, R: Reading) -> int:
     """Close the step, and write the states at its end; returns the bits of the step, or a negative code."""
+    if A.PAR.share < 1.0:
+        note_spent(A, J)
     account_joints(A, J)
     settle(A)
     close(A, R.IDS)

@@ -68,7 +68,7 @@ def start_joints(A: Scene, J: Joints, STATES: FloatArray, IDS: IntArray, dt: flo
     mark_edited(A, J, STATES, IDS)
     J.TALLY.worst = 0
     J.PROGRESS.effort = 0.0
-    J.PROGRESS.budget = (STEP_WORK + STEP_WORK_BODY * A.BODY.shape[0]) * growth(dt)
+    J.PROGRESS.budget = (STEP_WORK + STEP_WORK_BODY * A.BODY.shape[0]) * growth(A, dt)
     for s in range(len(J.STEPPED)):
         clear_interval(J.STEPPED[s])
     for j in range(J.JOINT.shape[0]):
@@ -88,6 +88,16 @@ def most_looks(A: Scene, J: Joints) -> float:
     used."""
     taken = J.PROGRESS.effort / J.PROGRESS.budget if J.TALLY.components > 0 else 0.0
     return float(most_work(A) * (1.0 - taken))
+
+
+@nonallocating
+def note_spent(A: Scene, J: Joints) -> None:
+    """At the end of a step that may have to be repeated, note the part of the budgets of a step that it has spent: its
+    share, if it was cut short. The next step may spend all, unless it gets a share again."""
+    most, part = most_work(A), 1.0
+    if A.PAR.dt == A.PAR.planned:
+        part = min((A.COUNT.work + most - most_looks(A, J)) / most, 1.0)
+    A.PAR.spent, A.PAR.share = part * A.PAR.share, 1.0
 
 
 @nonallocating

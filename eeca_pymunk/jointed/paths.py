@@ -20,7 +20,7 @@ from .ends import under_way
 @nonallocating
 def crossing_of_paths(A: Scene, a: int, b: int, t: float) -> tuple[float, bool]:
     """The instant before t at which the paths of shapes a and b, apart at t, meet; and whether there is one."""
-    through, certain = time_of_impact(A, a, b, t)
+    through, certain = time_of_impact(A, a, b, t, math.inf)
     return through, bool(certain and through < t)
 
 

@@ -10,6 +10,8 @@ class Step(Record):
 
     dt: float  # length of the step, as far as it is not cut short
     planned: float  # its length before
+    share: float  # part of the budgets of a step that it may spend; below 1 if it may have to be repeated
+    spent: float  # part that it has spent, if `share` was below 1
     instant: float  # length up to which intervals of islands with joints are empty
     now: float  # instant at which the event loop has stopped for more memory
     gravity_x: float

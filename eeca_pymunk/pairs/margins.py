@@ -111,6 +111,23 @@ def set_cell(A: Scene) -> None:
 
 
 @nonallocating
+def neighbours_factor(A: Scene, wide: float, tall: float, neighbours: float) -> float:
+    """The factor (2 + 2 m / r)² of the packing for which a shape has so many neighbours. A shape of a large part of the
+    area wide x tall is one neighbour of each, not more, as the walls of a container that turns."""
+    squared, before = 0.0, -1.0
+    while squared > before:
+        large, packing, before = 0, 0.0, squared
+        for s in range(A.GRID.moving):
+            part = math.pi * (A.SHAPE[s].bound / wide) * (A.SHAPE[s].bound / tall)
+            if squared * part > 1.0:
+                large += 1
+            else:
+                packing += part
+        squared = max(neighbours - large, 0.0) / max(packing, 1e-6)
+    return squared
+
+
+@nonallocating
 def choose_margins(A: Scene, median: float, neighbours: float) -> None:
     """Set the margins of the shapes that move, whose bounding radii have this median, for so many neighbours."""
     left, bottom, right, top, largest = math.inf, math.inf, -math.inf, -math.inf, 0.0
@@ -119,11 +136,8 @@ def choose_margins(A: Scene, median: float, neighbours: float) -> None:
         left, bottom = min(left, body.x - bound), min(bottom, body.y - bound)
         right, top = max(right, body.x + bound), max(top, body.y + bound)
         largest = max(largest, bound)
-    wide, tall, packing = max(right - left, 1e-300), max(top - bottom, 1e-300), 0.0
-    for s in range(A.GRID.moving):
-        packing += (A.SHAPE[s].bound / wide) * (A.SHAPE[s].bound / tall)
-    phi = max(math.pi * packing, 1e-6)
-    factor = min(max(math.sqrt(0.25 * neighbours / phi) - 1.0, MARGIN_LEAST), MARGIN_MOST)
+    squared = neighbours_factor(A, max(right - left, 1e-300), max(top - bottom, 1e-300), neighbours)
+    factor = min(max(0.5 * math.sqrt(squared) - 1.0, MARGIN_LEAST), MARGIN_MOST)
     factor = MARGIN_MOST if A.GRID.moving <= ALL_PAIRS else factor
     # Points have a margin too; if all shapes are points, any length will do.
     size = median if median > 0.0 else largest if largest > 0.0 else 1.0

@@ -72,7 +72,7 @@ def first_impact(
                 best, other = first_chosen(A, i, chosen, best, other)
                 chosen = 0
             continue
-        t, certain = time_of_impact(A, i, o, end)
+        t, certain = time_of_impact(A, i, o, end, best)
         if t < best or (t == best and other >= 0 and o < other):
             best, other = t, (o if certain else CHECK)
     return first_chosen(A, i, chosen, best, other)
@@ -109,7 +109,7 @@ def continue_path(A: Scene, i: int, now: float, end: float) -> bool:
     best, other, later, known = math.inf, NOTHING, A.LIST[i].later, A.LIST[i].number
     ahead = AHEAD
     if later >= 0 and A.STATE[body_of(A, later)].version == A.STATE[i].known:
-        best, certain = time_of_impact(A, i, later, end)
+        best, certain = time_of_impact(A, i, later, end, math.inf)
         other = later if certain else CHECK
     if margin_used(A, i, now):
         h = now - BODY[i].since
@@ -139,7 +139,7 @@ def still_valid(A: Scene, i: int, end: float) -> bool:
     if other >= 0:
         if A.STATE[body_of(A, other)].version != A.STATE[i].known:
             return False
-        t, certain = time_of_impact(A, i, other, end)
+        t, certain = time_of_impact(A, i, other, end, math.inf)
         if not (certain and abs(t - due) <= SAME_INSTANT * end):
             return False
         A.BODY[i].due = due = t

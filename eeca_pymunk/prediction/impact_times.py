@@ -100,8 +100,9 @@ def disk_wall(A: Scene, i: int, b: int, horizon: float) -> tuple[float, bool]:
 
 
 @nonallocating
-def time_of_impact(A: Scene, a: int, b: int, horizon: float) -> tuple[float, bool]:
-    """(t, certain) of shapes a and b, see the module; searched up to a finite instant `horizon`."""
+def time_of_impact(A: Scene, a: int, b: int, horizon: float, latest: float) -> tuple[float, bool]:
+    """(t, certain) of shapes a and b, see the module; searched up to a finite instant `horizon`. A search ends at
+    instant `latest`, with a later lower bound: it does not matter to the caller what comes after."""
     if a > b:
         a, b = b, a
     disks = A.COUNT.disks
@@ -110,4 +111,4 @@ def time_of_impact(A: Scene, a: int, b: int, horizon: float) -> tuple[float, boo
             return disk_disk(A.BODY, a, b, horizon)
         if A.LINK[b].owner == A.BODY.shape[0] - 1:
             return disk_wall(A, a, b, horizon)
-    return general(A, a, b, horizon)
+    return general(A, a, b, horizon, latest)

@@ -20,43 +20,6 @@ from .heap import push_event
 from .impact_times import time_of_impact
 
 
-@nonallocating
-def inside_until(A: Scene, i: int, s: int, now: float) -> float:
-    """Instant up to which the centre of the bounding circle of shape s, of body i, stays inside its margin circle:
-    exact for a straight path of a shape about the centre of mass, else a lower bound. `now` itself if it is outside."""
-    BODY, SHAPE, MARK = A.BODY, A.SHAPE, A.MARK
-    m = MARK[s].margin
-    if m == math.inf:
-        return math.inf
-    h = now - BODY[i].since
-    arm = 0.0 if s < A.COUNT.disks else norm(SHAPE[s].centre_x, SHAPE[s].centre_y)
-    ax, ay = BODY[i].ax, BODY[i].ay
-    if ax == 0.0 and ay == 0.0 and arm == 0.0:
-        vx, vy = BODY[i].vx, BODY[i].vy
-        dx, dy = BODY[i].x + vx * h - MARK[s].x, BODY[i].y + vy * h - MARK[s].y
-        squared = vx * vx + vy * vy
-        b = dx * vx + dy * vy
-        c = m * m - dx * dx - dy * dy
-        # A shape that the program has moved may be outside, even at rest or on its way back.
-        if c <= 0.0:
-            return now
-        if squared == 0.0:
-            return math.inf
-        root = math.sqrt(b * b + squared * c)
-        return float(now + ((root - b) / squared if b <= 0.0 else c / (root + b)))
-    # Two lower bounds, of which the later one counts: the centre of the circle moves no farther than its path is long,
-    # and is never farther from the body's centre of mass than its arm, however fast it goes around that.
-    x, y = circle_centre(A, s, now)
-    u, g = norm(BODY[i].vx + ax * h, BODY[i].vy + ay * h), norm(ax, ay)
-    room = m - norm(x - MARK[s].x, y - MARK[s].y)
-    turned = abs(BODY[i].spin + BODY[i].angular * h)
-    inside = passage(room, u + turned * arm, g + abs(BODY[i].angular) * arm)
-    if arm > 0.0:
-        x, y, _ = pose(BODY, i, now)
-        inside = max(inside, passage(m - arm - norm(x - MARK[s].x, y - MARK[s].y), u, g))
-    return now + inside
-
-
 @inlined
 def passage(room: float, u: float, g: float) -> float:
     """Least time in which a point of speed u and acceleration g covers a way `room`: u t + g t^2 / 2 = room."""
@@ -65,6 +28,61 @@ def passage(room: float, u: float, g: float) -> float:
     if u + g == 0.0:
         return math.inf
     return 2.0 * room / (u + math.sqrt(u * u + 2.0 * g * room))
+
+
+@inlined
+def straight_exit(dx: float, dy: float, vx: float, vy: float, m: float) -> float:
+    """Time at which a point that moves from d with the velocity v leaves the circle of radius m about 0; 0 if it is
+    outside, be it on its way back."""
+    c = m * m - dx * dx - dy * dy
+    if m <= 0.0 or c <= 0.0:
+        return 0.0
+    squared = vx * vx + vy * vy
+    if squared == 0.0:
+        return math.inf
+    b = dx * vx + dy * vy
+    root = math.sqrt(b * b + squared * c)
+    return float((root - b) / squared if b <= 0.0 else c / (root + b))
+
+
+@inlined
+def exit_time(dx: float, dy: float, vx: float, vy: float, g: float, m: float) -> float:
+    """`straight_exit` of a point whose acceleration is no larger than g: exact for g = 0, else a lower bound.
+
+    Up to an instant t acceleration displaces the point by g t² / 2 at most, so it is inside until the straight path
+    leaves a circle that is smaller by this.
+    """
+    t = straight_exit(dx, dy, vx, vy, m)
+    if g == 0.0 or t == 0.0:
+        return t
+    least = passage(m - norm(dx, dy), norm(vx, vy), g)
+    return max(least, straight_exit(dx, dy, vx, vy, m - 0.5 * g * t * t)) if t < math.inf else least
+
+
+@nonallocating
+def inside_until(A: Scene, i: int, s: int, now: float) -> float:
+    """Instant up to which the centre of the bounding circle of shape s, of body i, stays inside its margin circle:
+    exact for a straight path of a shape about the centre of mass, else a lower bound. `now` itself if it is outside, as
+    a shape may be that the program has moved."""
+    BODY, SHAPE, MARK = A.BODY, A.SHAPE, A.MARK
+    m = MARK[s].margin
+    if m == math.inf:
+        return math.inf
+    h = now - BODY[i].since
+    ax, ay = BODY[i].ax, BODY[i].ay
+    vx, vy, g = BODY[i].vx + ax * h, BODY[i].vy + ay * h, norm(ax, ay)
+    arm = 0.0 if s < A.COUNT.disks else norm(SHAPE[s].centre_x, SHAPE[s].centre_y)
+    # The centre of the circle is never farther from the body's centre of mass than its arm, however fast it goes around
+    # that.
+    x, y, _ = pose(BODY, i, now)
+    inside = exit_time(x - MARK[s].x, y - MARK[s].y, vx, vy, g, m - arm)
+    if arm > 0.0:
+        # Another lower bound: it moves no farther than its path is long.
+        x, y = circle_centre(A, s, now)
+        turned = abs(BODY[i].spin + BODY[i].angular * h)
+        room = m - norm(x - MARK[s].x, y - MARK[s].y)
+        inside = max(inside, passage(room, norm(vx, vy) + turned * arm, g + abs(BODY[i].angular) * arm))
+    return now + inside
 
 
 @nonallocating
@@ -115,7 +133,7 @@ def predict(A: Scene, i: int, now: float, end: float, until: float) -> None:
                 continue
             if A.RULE.shape[0] > 0 and barred(A, s, o):
                 continue
-            t, certain = time_of_impact(A, s, o, min(horizon, horizon_of(A, LINK[o].owner, end)))
+            t, certain = time_of_impact(A, s, o, min(horizon, horizon_of(A, LINK[o].owner, end)), best)
             if t < best or (t == best and other >= 0 and (s < own or (s == own and o < other))):
                 best, own, other = t, s, (o if certain else CHECK)
     A.COUNT.work += 1 + ENTRY_LOOKS * entries + (STATE[i].shapes - 1) / SHAPES_LOOK

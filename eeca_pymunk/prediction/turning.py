@@ -31,7 +31,7 @@ from ..pairs.rules import face_tolerance
 from .axes import Closing, MotionState, bends, fixed_axis, motion, pulled_along, speed_bound, turning_axis
 from .bounding_circles import carried_circles_meet, circles_meet
 from .sides import begin_side, closing_rate, opening
-from .work import most_work
+from .work import look_work, most_work
 
 
 @nonallocating
@@ -65,18 +65,21 @@ def face_closes(
 
 
 @nonallocating
-def general(A: Scene, a: int, b: int, horizon: float) -> tuple[float, bool]:
-    """`search` for shapes a and b in either order. It changes the remembered side of thin ones as it follows them on
-    their paths; afterwards that is again the side at its start, since an impulse may change the paths before."""
+def general(A: Scene, a: int, b: int, horizon: float, latest: float) -> tuple[float, bool]:
+    """`search` for shapes a and b in either order, up to instant `latest`; once LONGEST_SEARCH of the step's work is
+    spent, it ends where it is. It changes the remembered side of thin ones as it follows them on their paths;
+    afterwards that is again the side at its start, since an impulse may change the paths before."""
     if a > b:
         a, b = b, a
+    most = LONGEST_SEARCH * most_work(A)
     if not sides.remembers(A, a, b):
-        return search(A, a, b, horizon, math.inf)
+        return search(A, a, b, horizon, latest, most)
     start = max(A.BODY[A.LINK[a].owner].since, A.BODY[A.LINK[b].owner].since)
     begin_side(A, a, b, start, max(horizon - start, 0.0), gap_round_off(A, a, b))
+    A.COUNT.work += look_work(A, a, b)
     side = A.SIDE[sides.side_row(A, sides.side_key(A, a, b))]
     key, nx, ny, deep = side.key, side.nx, side.ny, side.deep
-    t, certain = search(A, a, b, horizon, math.inf)
+    t, certain = search(A, a, b, horizon, latest, most)
     side.key, side.nx, side.ny, side.deep = key, nx, ny, deep
     return t, certain
 
@@ -86,25 +89,29 @@ def note_sides(A: Scene, a: int, b: int, horizon: float, t: float) -> None:
     """Note on which side of each other thin shapes a < b are at instant t, as they follow their paths."""
     start = max(A.BODY[A.LINK[a].owner].since, A.BODY[A.LINK[b].owner].since)
     begin_side(A, a, b, start, max(horizon - start, 0.0), gap_round_off(A, a, b))
-    search(A, a, b, horizon, t)
+    search(A, a, b, horizon, t, math.inf)
 
 
 @nonallocating
-def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[float, bool]:
-    """(t, certain) of any two shapes, as defined in `impact_times.py`.
+def search(A: Scene, a: int, b: int, horizon: float, until: float, most: float) -> tuple[float, bool]:
+    """(t, certain) of any two shapes.
 
     Depends only on the two paths, from the later of their instants `since` to the horizon, the `duration`. Shapes that
     touch and approach meet at once. Shapes that touch and part do not meet: the search goes on where they may be as
     deep as TOUCH (`axes.first_close`), or ends where they touch again if that is before.
 
     Its work is bounded: after ADVANCES looks within an interval of duration / RESOLUTION each look advances by at least
-    that interval over ADVANCES; of shapes that overlap, but do not close, by duration / ADVANCES. Once LONGEST_SEARCH
-    of the step's work is spent, the search ends where it is.
+    that interval over ADVANCES; of shapes that overlap, but do not close, by duration / ADVANCES.
 
     Args:
         a, b: a < b.
-        horizon: finite instant; lower bounds are no earlier, unless the work is spent.
-        until: instant from which on the search is not continued, to note the sides there; else infinite.
+        horizon: finite instant.
+        until: instant from which on the search is not continued.
+        most: work of the step at which the search ends where it is.
+
+    Returns:
+        as defined in `impact_times.py`; lower bounds are no earlier than the horizon or `until`, unless the work is
+        spent.
     """
     BODY, SHAPE = A.BODY, A.SHAPE
     i, j = A.LINK[a].owner, A.LINK[b].owner
@@ -120,6 +127,8 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
             if BODY[i].angular == 0.0 and BODY[j].angular == 0.0:
                 return start + s, s == math.inf
             return horizon, False
+    if start + s > until:
+        return start + s, False
     around, bend_a, bend_b = bends(A, a, b, start, duration)
     extent = SHAPE[a].rounding + SHAPE[b].rounding
     still = APPROACH_ROUND_OFF * (speed_bound(A, a, start) + speed_bound(A, b, start))
@@ -127,10 +136,10 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
     of_a, of_b = Closing(extent, bend_a, tolerance, depth, still), Closing(extent, bend_b, tolerance, depth, still)
     P, Q = A.CORE[0], A.CORE[1]
     looks, mark, interval = 0, s, duration / RESOLUTION
-    most = LONGEST_SEARCH * most_work(A)
+    each = look_work(A, a, b)
     while True:
         looks += 1
-        A.COUNT.work += 1
+        A.COUNT.work += each
         if s > mark + interval:  # a new interval: fast rotation is followed for many turns
             looks, mark = 0, s
         one, two = motion(BODY, i, start + s), motion(BODY, j, start + s)
@@ -161,7 +170,7 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
         if met:
             return start + s + safe, True
         s += safe if looks < ADVANCES else max(safe, interval / ADVANCES)
-        if s > duration or looks > 2.0 * ADVANCES * RESOLUTION or start + s > until:
+        if s > duration or looks > 2.0 * ADVANCES * RESOLUTION:
             return horizon, False
-        if A.COUNT.work > most and until == math.inf:
+        if start + s > until or A.COUNT.work > most:
             return start + s, False

@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 from ..compiled import inlined
-from ..model.parameters.events import BUDGET_TIME
+from ..model.parameters.events import BUDGET_TIME, VERTICES_LOOK
 from ..model.scene import Scene
 
 
 @inlined
-def growth(dt: float) -> float:
-    """Factor on the budgets of a step of length dt: 1 up to BUDGET_TIME, beyond it dt / BUDGET_TIME."""
-    return max(1.0, dt / BUDGET_TIME)
+def growth(A: Scene, dt: float) -> float:
+    """Factor on the budgets of a step of length dt: its share, up to BUDGET_TIME; beyond it times dt / BUDGET_TIME."""
+    return float(A.PAR.share * max(1.0, dt / BUDGET_TIME))
+
+
+@inlined
+def look_work(A: Scene, a: int, b: int) -> float:
+    """Work of a look at shapes a and b, in looks: those at shapes of many vertices, of which each pair counts, take
+    longer."""
+    return float(1.0 + A.LINK[a].vertices * A.LINK[b].vertices / VERTICES_LOOK)
 
 
 @inlined
 def most_work(A: Scene) -> float:
     """Largest work of the events of this step, in looks."""
-    return float(A.COUNT.budget * growth(A.PAR.dt))
+    return float(A.COUNT.budget * growth(A, A.PAR.dt))

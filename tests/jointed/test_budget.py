@@ -32,7 +32,7 @@ class Counting(ep.EECA):
         for unmet in report.unmet:
             assert unmet.name != "solves" or 0.9 < unmet.value / unmet.limit < 1.6
         if loop is not None and loop.jointed:
-            budget = (STEP_WORK + STEP_WORK_BODY * len(loop.scene.BODY)) * growth(dt)
+            budget = (STEP_WORK + STEP_WORK_BODY * len(loop.scene.BODY)) * growth(loop.scene, dt)
             self.works.append(float(loop.joints.PROGRESS.effort / budget))
             self.parts.append(float(loop.scene.PAR.dt / dt))
         return report

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ from eeca_pymunk.pairs import cells, grid, setup
 from eeca_pymunk.pairs.lists import mark_pair
 from tests.packed import Thing, World, disk
 
-from .scenes import Crowd, crowd
+from .scenes import Crowd, crowd, moving_of
 
 Make = Callable[[np.random.Generator], World]
 
@@ -104,6 +104,21 @@ def test_half_full_places_are_crowded_too() -> None:
     near = Crowd.of(world)
     near.check()
     assert near.near.LIST["number"].mean() <= 30
+
+
+def test_a_container_counts_as_one_neighbour() -> None:
+    """Its walls, which surround all others, do not make their margins small."""
+    rng, half, margins = np.random.default_rng(1), 2.0, []
+    things = [Thing(disk(0.05), (*rng.uniform(-1.9, 1.9, 2), 0.0)) for _ in range(60)]
+    corners = [(-half, -half), (half, -half), (half, half), (-half, half)]
+    walls: list[tuple[Sequence[tuple[float, float]], float]]
+    walls = [([p, q], 0.0) for p, q in zip(corners, corners[1:] + corners[:1], strict=True)]
+    for world in (World(things, walls), World([*things, Thing(walls, moves=False)])):
+        world.link["categories"] = world.link["mask"] = -1
+        near = setup.near_lists(world.scene, moving_of(world))
+        margins.append(float(np.median(near.MARK["margin"])))
+        assert 3.0 < near.LIST["number"][:60].mean() <= 24.0
+    assert margins[1] > 0.5 * margins[0]
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1e3])

@@ -16,8 +16,8 @@ FLOOR = [([(-50.0, 0.0), (50.0, 0.0)], 0.0)]
 
 def next_impact(world: World, a: int, b: int, horizon: float = 10.0) -> tuple[float, bool]:
     """`time_of_impact`, the same from b to a."""
-    found = time_of_impact(world.scene, a, b, horizon)
-    assert time_of_impact(world.scene, b, a, horizon) == found
+    found = time_of_impact(world.scene, a, b, horizon, math.inf)
+    assert time_of_impact(world.scene, b, a, horizon, math.inf) == found
     return float(found[0]), bool(found[1])
 
 

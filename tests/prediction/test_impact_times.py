@@ -69,13 +69,13 @@ def test_disks_are_bitwise_symmetric() -> None:
             Thing(disk(0.3), (*p[i], 0.0), (*v[i], 0.0), (*pulls[i], 0.0), float(since[i])) for i in range(2)
         ]  # fmt: skip
         one, other = World(things), World(things[::-1])
-        found = time_of_impact(one.scene, 0, 1, 5.0)
-        assert found == time_of_impact(other.scene, 0, 1, 5.0)
+        found = time_of_impact(one.scene, 0, 1, 5.0, math.inf)
+        assert found == time_of_impact(other.scene, 0, 1, 5.0, math.inf)
         # Mirrored in both axes.
         turned = World(
             [Thing(disk(0.3), (*-p[i], 0.0), (*-v[i], 0.0), (*-pulls[i], 0.0), float(since[i])) for i in (0, 1)]
         )
-        assert found == time_of_impact(turned.scene, 0, 1, 5.0)
+        assert found == time_of_impact(turned.scene, 0, 1, 5.0, math.inf)
 
 
 @pytest.mark.parametrize("unit", UNITS)

@@ -10,6 +10,7 @@ import pytest
 
 from eeca_pymunk.geometry.gap import gap
 from eeca_pymunk.prediction.axes import bends, pulled_along
+from eeca_pymunk.prediction.impact_times import time_of_impact
 from tests.packed import Thing, World, box, disk, hull, placed
 from tests.prediction.forecasts import FLOOR, UNITS, check_by_sampling, gap_now, next_impact, static
 
@@ -120,6 +121,44 @@ def test_what_cannot_meet_before_the_horizon_is_only_bounded() -> None:
     assert bound == pytest.approx(t, rel=1e-12)
     parting = World([Thing(box(1.0, 1.0), rate=(-1.0, 0.0, 3.0)), Thing(box(1.0, 1.0), (9.0, 0.0, 0.0))])
     assert next_impact(parting, 0, 1, 1.0) == (math.inf, True)
+
+
+def test_a_search_ends_at_the_latest_instant_that_matters() -> None:
+    """An impact before it is the same to the last bit; else the bound is later, and found with less work."""
+    rng, fewer = np.random.default_rng(3), 0
+    for _ in range(40):
+        y, spin = float(rng.uniform(-0.7, 0.7)), float(rng.uniform(20.0, 60.0))
+        world = World(
+            [
+                Thing([(hull(rng, 4), 0.0)], (0.0, 0.0, 0.3), (0.0, 0.0, spin)),
+                Thing([(hull(rng, 3), 0.0)], (2.5, y, 0.0), (-0.3, 0.0, -spin)),
+            ]
+        )
+        scene = world.scene
+        found = time_of_impact(scene, 0, 1, 5.0, math.inf)
+        whole, scene.COUNT.work = scene.COUNT.work, 0.0
+        assert time_of_impact(scene, 0, 1, 5.0, 5.0) == found
+        assert scene.COUNT.work == whole
+        scene.COUNT.work = 0.0
+        t, certain = time_of_impact(scene, 0, 1, 5.0, 0.5)
+        if t <= 0.5:
+            assert (t, certain) == found
+        else:
+            assert not certain or found[0] == math.inf
+            assert t <= found[0]
+            fewer += scene.COUNT.work < 0.5 * whole
+    assert fewer > 10
+
+
+def test_looks_at_shapes_of_many_vertices_count_more() -> None:
+    works = []
+    for corners in (4, 40):
+        turns = [2.0 * math.pi * k / corners for k in range(corners)]
+        shape = [([(math.cos(turn), math.sin(turn)) for turn in turns], 0.0)]
+        world = World([Thing(shape, rate=(1.0, 0.0, 0.0)), Thing(shape, (3.0, 0.0, 0.0))])
+        assert next_impact(world, 0, 1) == (pytest.approx(1.0, rel=1e-12), True)
+        works.append(world.scene.COUNT.work)
+    assert works[1] > 20.0 * works[0]
 
 
 def test_a_forecast_does_not_depend_on_where_a_clock_stands() -> None:

@@ -7,6 +7,7 @@ import math
 import pickle
 from collections.abc import Callable
 from contextlib import nullcontext
+from typing import Any
 
 import numpy as np
 import pymunk
@@ -270,6 +271,64 @@ def test_what_wakes_a_body_wakes_its_group_in_the_same_step(change, falls: bool)
     assert not any(body.is_sleeping for body in bodies)
     for body in bodies:
         assert abs(body.velocity.y) == pytest.approx(10.0 * DT if falls else 0.0, abs=1e-9)
+
+
+class Attempts(ep.EECA):
+    """EECA that notes the work of each attempt at a step, over the budget of a whole one."""
+
+    works: list[float]
+
+    def advance(self, *arguments: Any) -> int:
+        status, loop = super().advance(*arguments), self.event_loop
+        assert loop is not None
+        self.works.append(float(loop.scene.COUNT.work / loop.scene.COUNT.budget))
+        return status
+
+
+def row_of_sleepers(count: int) -> tuple[pymunk.Space, Attempts]:
+    """A fast ball between walls, and sleeping ones in its way, each a group of its own."""
+    space = pymunk.Space()
+    space.sleep_time_threshold = 10.0
+    for x in (-1.0, 2.0 * count):
+        wall = pymunk.Segment(space.static_body, (x, -1.0), (x, 1.0), 0.1)
+        wall.elasticity = 1.0
+        space.add(wall)
+    ball(space, (0.0, 0.0), (200.0, 0.0))
+    for i in range(1, count):
+        ball(space, (0.8 * i, 0.0), (0.0, 0.0)).sleep()
+    stepper = Attempts(space)
+    stepper.works = []
+    return space, stepper
+
+
+def test_a_step_that_wakes_one_body_after_the_other_is_repeated_a_few_times() -> None:
+    """Each attempt wakes the next ball of the row: the last attempt wakes all."""
+    space, stepper = row_of_sleepers(12)
+    report = stepper.step(DT)
+    assert len(stepper.works) == 5
+    assert not any(body.is_sleeping for body in space.bodies)
+    assert report.converged
+    assert ep.measure(space).energy == pytest.approx(0.25 * 200.0**2, rel=1e-14)
+    assert len(report.contacts) >= 4
+
+
+def test_all_attempts_at_a_step_spend_the_budget_of_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("eeca_pymunk.impacts.scene.STEP_LOOKS", 50)
+    monkeypatch.setattr("eeca_pymunk.impacts.scene.STEP_LOOKS_BODY", 0)
+    space, stepper = row_of_sleepers(12)
+    for body in space.bodies:
+        if not body.is_sleeping:
+            body.velocity = 1e4, 0.0
+    for _ in range(3):
+        stepper.works.clear()
+        assert not stepper.step(DT).converged
+        assert len(stepper.works) > 1
+        assert 0.9 < sum(stepper.works) < 1.5
+    for body in space.bodies:
+        body.activate()
+    stepper.works.clear()
+    assert not stepper.step(DT).converged
+    assert stepper.works == [pytest.approx(1.0, abs=0.2)]
 
 
 def test_a_ball_far_away_wakes_nobody() -> None:

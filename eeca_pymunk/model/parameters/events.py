@@ -36,6 +36,7 @@ BUDGET_TIME = work(1 / 30, "s", "Length of a step from which the budget grows wi
 LONGEST_SEARCH = work(1.25, "of the budget",
     "Work of a step at which a search for an impact ends where it is: the step ends early there.")
 EVENT_LOOKS = work(4, "looks", "Work of an event, beside its predictions.")
+VERTICES_LOOK = work(48, "pairs of vertices", "Number that costs as much as the rest of a look.")
 SHAPES_LOOK = work(16, "shapes", "Further shapes of a body whose prediction costs a look, beside their near lists.")
 ENTRY_LOOKS = work(0.75, "looks", "Work of a shape in a near list that a prediction looks through.")
 BODY_LOOKS = work(6, "looks", "Work of a body in a solve.")

@@ -27,6 +27,8 @@ MOVING_SHARE = heuristic(0.1, "of the bodies",
 PARTIAL_REST_FACTORS_STEP = work(8, "factorisations",
     "Factorisations of a freeze after which its island is not tested for partial rest in the step.")
 SLEEP_SPEED = accuracy(1e-06, "of |g| dt", "Speed of a body that counts as at rest and may fall asleep.")
+WAKE_ALL = work(4, "attempts",
+    "Attempts at a step, of which each has touched bodies that slept and were woken, after which all bodies wake.")
 SLEEP_RETRY = work(16, "steps", "Steps from one search for groups that may fall asleep to the next.")
 SLEEP_SHARE = work(8, "parts of the bodies awake", "A group of one such part or more falls asleep at once.")
 SLEEP_PATIENCE = work(120, "steps",
