@@ -5,7 +5,10 @@ Shapes are apart if they are apart along some axis. Each axis gives an instant b
 with the vertices of both shapes; and the normals of the edges of a and of b along which they are farthest apart, which
 rotate with their bodies, with the vertices of the other shape.
 
-Shapes meet if, along each of these axes some point touches and approaches.
+Of a shape that turns more than once in the time searched, a fourth bound holds: it is inside the disk that it sweeps,
+which does not turn (`swept`). So its turns need not be followed where the disk is apart.
+
+Shapes meet if, along each of the axes some point touches and approaches.
 
 A look is one evaluation of the gap in a search.
 
@@ -20,7 +23,7 @@ import math
 from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..geometry import sides
-from ..geometry.convex import place_vertices
+from ..geometry.convex import closest, place_vertices
 from ..geometry.gap import gap_round_off
 from ..geometry.manifold import face_points
 from ..model.bodies import Body
@@ -28,7 +31,7 @@ from ..model.parameters.events import ADVANCES, APPROACH_ROUND_OFF, LONGEST_SEAR
 from ..model.parameters.intervals import TOUCH
 from ..model.scene import Scene
 from ..pairs.rules import face_tolerance
-from .axes import Closing, MotionState, bends, fixed_axis, motion, pulled_along, speed_bound, turning_axis
+from .axes import Closing, MotionState, bends, fixed_axis, motion, pulled_along, reach_of, speed_bound, turning_axis
 from .bounding_circles import carried_circles_meet, circles_meet
 from .sides import begin_side, closing_rate, opening
 from .work import look_work, most_work
@@ -62,6 +65,44 @@ def face_closes(
     away, tolerance = A.SHAPE[a].rounding + 0.5 * g, face_tolerance(A, a, b)
     _, px, py, qx, qy = face_points(A, a, b, g, nx, ny, x + away * nx, y + away * ny, tolerance)
     return bool(min(opening(one, two, nx, ny, px, py), opening(one, two, nx, ny, qx, qy)) < -still)
+
+
+@nonallocating
+def turning(A: Scene, s: int, start: float, duration: float) -> tuple[bool, float]:
+    """Whether shape s turns more than once within a `duration` from instant `start` on; and if not, its part of the
+    bound B (length/time²) of a fixed axis, see `axes.py`."""
+    w, q = abs(motion(A.BODY, A.LINK[s].owner, start).spin), abs(A.BODY[A.LINK[s].owner].angular)
+    w += q * duration
+    if w * duration > 2.0 * math.pi:
+        return True, 0.0
+    return False, max(reach_of(A, s)[2] - A.SHAPE[s].rounding, 0.0) * (w * w + q)
+
+
+@nonallocating
+def swept(
+    A: Scene, a: int, b: int, p: int, q: int, one: MotionState, two: MotionState, fast_a: bool, fast_b: bool,
+    bend: float, of: Closing,
+) -> float:  # fmt: skip
+    """Time for which shapes a and b are apart, as the disk that a fast one sweeps about its centre of mass is; 0 if it
+    is not.
+
+    Args:
+        p, q: numbers of the vertices of the cores, in CORE, which change.  one, two: motions of the bodies.
+        bend: part of the bound B of a fixed axis that rotation of a slow one gives.  of: constants of a fixed axis.
+    """
+    P, Q, extent = A.CORE[0], A.CORE[1], 0.0
+    if fast_a:
+        P[0, 0], P[0, 1], p = one.x, one.y, 1
+    if fast_b:
+        Q[0, 0], Q[0, 1], q = two.x, two.y, 1
+    extent += A.SHAPE[a].extent if fast_a else A.SHAPE[a].rounding
+    extent += A.SHAPE[b].extent if fast_b else A.SHAPE[b].rounding
+    near = closest(P, p, Q, q)
+    if near.distance <= extent:
+        return 0.0
+    bend += pulled_along(A, a, b, near.nx, near.ny)
+    sure = Closing(extent, bend, of.tolerance, of.depth, of.round_off)
+    return fixed_axis(P, p, Q, q, near.nx, near.ny, one, two, sure)[0]
 
 
 @nonallocating
@@ -137,6 +178,9 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float, most: float) 
     P, Q = A.CORE[0], A.CORE[1]
     looks, mark, interval = 0, s, duration / RESOLUTION
     each = look_work(A, a, b)
+    fast_a, slow_a = turning(A, a, start, duration)
+    fast_b, slow_b = turning(A, b, start, duration)
+    slow = slow_a + slow_b
     while True:
         looks += 1
         A.COUNT.work += each
@@ -145,8 +189,8 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float, most: float) 
         one, two = motion(BODY, i, start + s), motion(BODY, j, start + s)
         p = place_vertices(A, a, one.x, one.y, one.angle, P)
         q = place_vertices(A, b, two.x, two.y, two.angle, Q)
-        closest = sides.closest_on_side(A, P, p, Q, q, a, b)
-        d, nx, ny, px, py, faces = closest.distance, closest.nx, closest.ny, closest.x, closest.y, closest.faces
+        here = sides.closest_on_side(A, P, p, Q, q, a, b)
+        d, nx, ny, px, py, faces = here.distance, here.nx, here.ny, here.x, here.y, here.faces
         if d > sides.near_side(A, a, b):
             sides.note_side(A, a, b, nx, ny, False)
         fixed = Closing(extent, around + pulled_along(A, a, b, nx, ny), tolerance, depth, still)
@@ -169,6 +213,8 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float, most: float) 
                 return start + s + back, True
         if met:
             return start + s + safe, True
+        if fast_a or fast_b:
+            safe = max(safe, swept(A, a, b, p, q, one, two, fast_a, fast_b, slow, fixed))
         s += safe if looks < ADVANCES else max(safe, interval / ADVANCES)
         if s > duration or looks > 2.0 * ADVANCES * RESOLUTION:
             return horizon, False

@@ -61,6 +61,33 @@ def test_turning_shapes_by_sampling(counts: tuple[int, int], unit: float) -> Non
     assert outcomes.count("meets") > 8
 
 
+@pytest.mark.parametrize("both", [True, False])
+def test_fast_shapes_by_sampling(both: bool) -> None:
+    """Disks that they sweep bound when they meet: with each other, or with one that turns slowly. Many pass each other,
+    and the disks of others overlap from the start."""
+    rng, outcomes = np.random.default_rng(17), []
+    for k in range(80):
+        things = []
+        for side, count in ((-1.0, 2 + k % 3), (1.0, 4)):
+            x, v = np.array((side * rng.uniform(0.6, 1.4), rng.uniform(-1.2, 1.2))), rng.normal(size=2)
+            spin = float(rng.choice([-1.0, 1.0]) * (rng.uniform(40.0, 90.0) if both or side < 0.0 else 1.0))
+            pull = rng.normal(size=2) * (k % 2)
+            shape = (hull(rng, count, 0.6 if side < 0.0 else 1.0), 0.05 * (k % 3))
+            things.append(Thing([shape], (*x, rng.uniform(-3, 3)), (*v, spin), (*pull, 0.0)))
+        if gap_now(things) > 0.0:
+            outcomes.append(check_by_sampling(World(things), 0, 1, 0.7, 2000))
+    assert outcomes.count("meets") > 8
+    assert len(outcomes) - outcomes.count("meets") > 8
+
+
+def test_turns_of_a_fan_beside_a_box_are_not_followed() -> None:
+    """It reaches up to the box, whose corners are nearer to its hub than the length of both."""
+    fan = Thing([([(-1.0, 0.0), (1.0, 0.0)], 0.05)], rate=(0.0, 0.0, 1e5))
+    world = World([fan, Thing(box(1.0, 2.0), (1.56, 0.0, 0.0), (0.0, 0.0, 0.1))])
+    assert next_impact(world, 0, 1, 0.03) == (0.03, False)
+    assert world.scene.COUNT.work < 20.0
+
+
 @pytest.mark.parametrize("corners", [1, 2, 4])
 def test_turning_shape_and_static_shape_by_sampling(corners: int) -> None:
     rng = np.random.default_rng(21)
