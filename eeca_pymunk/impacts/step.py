@@ -71,8 +71,8 @@ def act(A: Scene, J: Joints) -> int:
         if COUNT.pushes + COUNT.any_placed + J.TALLY.components > 0 and start_islands(A, J) != DONE:
             return PUSHES_FULL
         COUNT.phase = 1
+        COUNT.work = 0.0  # the intervals at the start of a step do not count
         predict_due(A)
-        COUNT.work = 0.0  # the start of a step does not count
     if COUNT.phase == 1:
         status = process_events(A, J, COUNT.lossy > 0 or A.PAR.pulled > 0.0)
         if status != DONE:
