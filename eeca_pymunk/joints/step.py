@@ -100,6 +100,8 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
         status = LINEAR
     elif abs(W.J.PART_LEDGER.closed) > kinetic_of_component(local, W.bodies, NOW):  # but for round-off they cancel
         close_ledger(local, W.bodies, W.J.PART_LEDGER)
+    if status >= ELASTIC:
+        compute_rows(W)  # they were those before the last correction
     ledger.gave = max(farthest(W) - ledger.apart, 0.0) if status >= ELASTIC else 0.0
     add_part(ledger, W.J.PART_LEDGER)
     write_joints(W, h, GIVES_WAY if status == ELASTIC else LEFT_APART if status == LINEAR else 0)

@@ -109,6 +109,7 @@ class Composition:
         self.bodies: list[pymunk.Body] = []
         self.led: set[pymunk.Body] = set()
         self.sizes: list[float] = []
+        self.reached: dict[pymunk.Constraint, float] = {}  # `reach` at the end of the last step
         self.matter = elastic, rough
         places = [(x, y) for x in range(-3, 4, 2) for y in range(-3, 4, 2)]
         for x, y in R.sample(places, R.randint(2, 12)):
@@ -294,7 +295,9 @@ class Composition:
         before, found.off = found.off, 0.0
         for joint in self.space.constraints:
             off, over = apart(joint, self.length), overdone(joint, self.dt)
-            held = apart(joint, max(self.length, reach(joint)))
+            # A step measures errors by the size of the component at its start.
+            size, self.reached[joint] = max(self.reached.get(joint, 0.0), now := reach(joint)), now
+            held = apart(joint, max(self.length, size))
             found.off, found.apart = max(found.off, held), max(found.apart, off)
             if over > 1.0 + BOUND:
                 raise Broken(f"step {k}: {joint} pushes {over:.3g} times max_force")

@@ -107,13 +107,15 @@ def reach(joint: pymunk.Constraint) -> float:
 def may_contradict(joint: pymunk.Constraint) -> bool:
     """Whether this component has two joints that hold exactly on what joints do not move, or do not turn, of which the
     program turns or moves something: others may not follow, as a limit between what two gears turn, or between what a
-    ratchet turns and a body of infinite moment."""
+    ratchet turns and a body of infinite moment. A gear with another ratio than 1, and another such joint, fix the
+    angles of both bodies that they connect."""
     seen = component(joint)
     springs = pymunk.DampedSpring, pymunk.DampedRotarySpring
     angles = pymunk.GearJoint, pymunk.RotaryLimitJoint, pymunk.RatchetJoint
     exact = {c for body in seen for c in body.constraints if {c.a, c.b} <= seen}
     exact = {c for c in exact if math.isinf(c.max_force) and not isinstance(c, springs)}
-    led = fixed = 0
+    turns = [c for c in exact if isinstance(c, angles)]
+    led, fixed = 0, int(len(turns) > 2 and any(isinstance(c, pymunk.GearJoint) and c.ratio != 1.0 for c in turns))
     for body in seen:
         if body.body_type != pymunk.Body.DYNAMIC:
             held = sum(body in (c.a, c.b) for c in exact)

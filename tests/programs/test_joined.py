@@ -48,9 +48,10 @@ def test_what_is_apart_and_what_is_overdone_is_seen() -> None:
 
 
 @pytest.mark.parametrize("spin", [0.0, 0.4])
-@pytest.mark.parametrize("second", ["gear", "heavy", "spring", "none"])
+@pytest.mark.parametrize("second", ["gear", "heavy", "ratio", "spring", "none"])
 def test_what_the_program_turns_may_drive_bodies_against_a_limit(spin: float, second: str) -> None:
-    """Where a gear turns the other body another way, or that has an infinite moment."""
+    """Where a gear turns the other body another way, that has an infinite moment, or a gear of another ratio than 1 is
+    between both."""
     space = pymunk.Space()
     wheel, a, b = pymunk.Body(body_type=pymunk.Body.KINEMATIC), pymunk.Body(1.0, 1.0), pymunk.Body(1.0, 1.0)
     wheel.angular_velocity = spin
@@ -60,9 +61,11 @@ def test_what_the_program_turns_may_drive_bodies_against_a_limit(spin: float, se
     space.add(wheel, a, b, limit, pymunk.GearJoint(wheel, a, 0.0, 1.0))
     if second == "gear":
         space.add(pymunk.GearJoint(wheel, b, 0.0, 2.0))
+    elif second == "ratio":
+        space.add(pymunk.GearJoint(a, b, 0.0, 2.0))
     elif second == "spring":
         space.add(pymunk.DampedRotarySpring(wheel, b, 0.0, 9.0, 1.0))
-    assert may_contradict(limit) == (spin != 0.0 and second in ("gear", "heavy"))
+    assert may_contradict(limit) == (spin != 0.0 and second in ("gear", "heavy", "ratio"))
     stepper = ep.EECA(space)
     converged = [stepper.step(0.1).converged for _ in range(10)]
     assert all(converged) or may_contradict(limit)
