@@ -77,10 +77,10 @@ def gap_rates(W: Workspace, k: int, side: int) -> tuple[float, float]:
 
 
 @nonallocating
-def standing(link: Rows[Coupling], joints: int) -> bool:
+def standing(W: Workspace) -> bool:
     """Whether a joint stands on a limit."""
-    for k in range(joints):
-        if link[k].side != 0:
+    for k in range(W.joints):
+        if W.link[k].side != 0:
             return True
     return False
 
@@ -117,10 +117,10 @@ def in_reach(W: Workspace, k: int) -> bool:
 
 
 @nonallocating
-def begin_part(link: Rows[Coupling], joints: int) -> None:
+def begin_part(W: Workspace) -> None:
     """Start a part of a step: no limit has been released in it."""
-    for k in range(joints):
-        link[k].let_go = 0
+    for k in range(W.joints):
+        W.link[k].let_go = 0
 
 
 @nonallocating

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compiled import nonallocating
-from ..compiled.records import Rows
-from ..model.joint_steps import POSES, SPEEDS, STEP, BodyStep, JointLedger
+from ..model.joint_steps import POSES, SPEEDS, STEP, JointLedger
 from ..model.joints import APART, EDITED, GIVES_WAY, LEFT_APART, TAKEN_OVER, Workspace
 from ..model.parameters.joints import JOINT_APART, JOINT_TOUCH
 from ..newton.entries import acts
@@ -79,10 +78,10 @@ def farthest(W: Workspace) -> float:
 
 
 @nonallocating
-def closing_work(local: Rows[BodyStep], bodies: int) -> float:
+def closing_work(W: Workspace) -> float:
     """The work of closing, from the saved to the present poses, against the bodies' accelerations."""
-    work = 0.0
-    for i in range(bodies):
+    local, work = W.J.LOCAL, 0.0
+    for i in range(W.bodies):
         for c in range(3):
             if local[i].mobility[c] > 0.0:
                 work -= local[i].acceleration[c] * (local[i].pose[c] - local[i].saved_pose[c]) / local[i].mobility[c]
@@ -134,20 +133,19 @@ def keep_closed(W: Workspace) -> None:
 def close_joints(W: Workspace, h: float, ledger: JointLedger) -> bool:
     """Close joints that are apart by the share of one step, and make velocities fit them after an edit. The costs enter
     the ledger of the step. Returns whether no edit has left joints apart."""
-    local = W.J.LOCAL
     stored = springs_of(W)
     edited, unknown, apart, own = find_apart(W, h)
     if apart:
         before, supports, carried = farthest(W), ledger.supports, ledger.carried
         project(W, POSES)
         taken = springs_of(W) - stored
-        cost = taken + closing_work(local, W.bodies)
+        cost = taken + closing_work(W)
         turned = work_of_shift(W) if own else 0.0
         # Closing what a step left apart is paid from the motion.
         locked = lock_energy(W, cost - turned, ledger) if own and cost > turned else 0.0
         # Contradictory rows are not closed.
         if not farthest(W) <= before or (own and locked < cost - turned - 1e-9 * abs(cost)):
-            go_back(local, W.bodies)
+            go_back(W)
             compute_rows(W)
             taken = cost = turned = locked = 0.0
             ledger.supports, ledger.carried = supports, carried
@@ -155,11 +153,11 @@ def close_joints(W: Workspace, h: float, ledger: JointLedger) -> bool:
         ledger.closed += cost - turned - locked
         ledger.supports, ledger.carried = ledger.supports + turned, ledger.carried + turned
         ledger.stored += taken
-        save(local, W.bodies)
+        save(W)
     if (edited or unknown) and not speeds_fit(W):
         project(W, SPEEDS)
-        if not edited and steps_left(local, W.bodies):
+        if not edited and steps_left(W):
             restore_speeds(W)
         ledger.projected += fitting_loss(W, ledger)
-        save(local, W.bodies)
+        save(W)
     return own

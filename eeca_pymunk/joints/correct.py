@@ -6,14 +6,13 @@ The change is M^-1 G^T times impulses that bring G v to 0: kinetic energy only f
 from __future__ import annotations
 
 from ..compiled import nonallocating
-from ..compiled.records import Rows
-from ..model.joint_steps import POSES, SPEEDS, STEP, BodyStep, JointLedger
+from ..model.joint_steps import POSES, SPEEDS, STEP, JointLedger
 from ..model.joints import Workspace
 from ..model.parameters import joints
 from ..newton.entries import acts, along, size_of_terms
 from ..newton.systems import apply, back, factorise, first_iterate, first_system, linearise
 from .bounds import inactive, limit_gap, limit_gap_rate
-from .frame import work_of_change
+from .frame import supports_rest, work_of_change
 from .lock import restore_momenta
 
 NOW, KEPT, SAVED = 0, 1, 2  # velocities of a kinetic energy
@@ -65,11 +64,11 @@ def project(W: Workspace, what: int) -> None:
 
 
 @nonallocating
-def kinetic_of_component(local: Rows[BodyStep], bodies: int, which: int) -> float:
+def kinetic_of(W: Workspace, which: int) -> float:
     """Kinetic energy in the directions that joints can move, of the velocities v0 (NOW), `v_kept` (KEPT) or
     `saved_velocity` (SAVED)."""
-    total = 0.0
-    for i in range(bodies):
+    local, total = W.J.LOCAL, 0.0
+    for i in range(W.bodies):
         velocity = local[i].v0 if which == NOW else local[i].v_kept if which == KEPT else local[i].saved_velocity
         for c in range(3):
             if local[i].mobility[c] > 0.0:
@@ -78,10 +77,10 @@ def kinetic_of_component(local: Rows[BodyStep], bodies: int, which: int) -> floa
 
 
 @nonallocating
-def kinetic_of_change(local: Rows[BodyStep], bodies: int) -> float:
+def kinetic_of_change(W: Workspace) -> float:
     """(1/2) dv.M dv of the change of velocities from `v_kept` to `v0`."""
-    total = 0.0
-    for i in range(bodies):
+    local, total = W.J.LOCAL, 0.0
+    for i in range(W.bodies):
         for c in range(3):
             if local[i].mobility[c] > 0.0:
                 total += 0.5 * (local[i].v0[c] - local[i].v_kept[c]) ** 2 / local[i].mobility[c]
@@ -95,23 +94,20 @@ def fitting_loss(W: Workspace, ledger: JointLedger) -> float:
     It is (1/2) dv.M dv, as the projection is orthogonal. The rest of the change of kinetic energy is the work of
     supports, 0 unless they move, and enters the ledger.
     """
-    local, bodies = W.J.LOCAL, W.bodies
-    gained = kinetic_of_component(local, bodies, NOW) - kinetic_of_component(local, bodies, KEPT)
-    lost, moves = kinetic_of_change(local, bodies), False
-    for i in range(bodies):
-        for c in range(3):
-            moves = moves or (not local[i].mobility[c] > 0.0 and local[i].v0[c] != 0.0)
-    if moves:
-        ledger.supports += gained + lost
-        ledger.carried += work_of_change(W)
-    return lost if moves else -gained
+    gained = kinetic_of(W, NOW) - kinetic_of(W, KEPT)
+    if supports_rest(W):
+        return -gained
+    lost = kinetic_of_change(W)
+    ledger.supports += gained + lost
+    ledger.carried += work_of_change(W)
+    return lost
 
 
 @nonallocating
-def steps_left(local: Rows[BodyStep], bodies: int) -> bool:
+def steps_left(W: Workspace) -> bool:
     """Whether the projection of velocities from `v_kept` to `v0` has changed no more of the kinetic energy than steps
     of another stepper may have left."""
-    return kinetic_of_change(local, bodies) <= joints.TAKEN_OVER_LEFT * kinetic_of_component(local, bodies, KEPT)
+    return kinetic_of_change(W) <= joints.TAKEN_OVER_LEFT * kinetic_of(W, KEPT)
 
 
 @nonallocating

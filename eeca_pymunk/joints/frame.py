@@ -18,8 +18,7 @@ import math
 from typing import NamedTuple
 
 from ..compiled import inlined, nonallocating
-from ..compiled.records import Rows
-from ..model.joint_steps import BodyStep, JointLedger
+from ..model.joint_steps import BodyStep
 from ..model.joints import GEAR, Workspace
 
 
@@ -43,11 +42,11 @@ def supports(body: BodyStep, c: int) -> bool:
 
 
 @nonallocating
-def supports_rest(local: Rows[BodyStep], bodies: int) -> bool:
+def supports_rest(W: Workspace) -> bool:
     """Whether all supports of the component are at rest."""
-    for i in range(bodies):
+    for i in range(W.bodies):
         for c in range(3):
-            if local[i].v0[c] != 0.0 and supports(local[i], c):
+            if W.J.LOCAL[i].v0[c] != 0.0 and supports(W.J.LOCAL[i], c):
                 return False
     return True
 
@@ -62,10 +61,47 @@ def has_ratio(W: Workspace) -> bool:
 
 
 @nonallocating
+def centre_of(W: Workspace) -> tuple[bool, float, float, float, float, float, float]:
+    """Whether the component hangs on a support that has a place, and the centre of mass (x, y) of its other bodies with
+    its velocity (vx, vy) and acceleration (ax, ay)."""
+    mass = x = y = vx = vy = ax = ay = 0.0
+    hangs = False
+    for i in range(W.bodies):
+        body = W.J.LOCAL[i]
+        hangs = hangs or supports(body, 0)
+        if body.mobility[0] > 0.0:
+            m = 1.0 / body.mobility[0]
+            mass += m
+            x, y = x + m * body.pose[0], y + m * body.pose[1]
+            vx, vy = vx + m * body.v0[0], vy + m * body.v0[1]
+            ax, ay = ax + m * body.acceleration[0], ay + m * body.acceleration[1]
+    if mass > 0.0:
+        x, y, vx, vy, ax, ay = x / mass, y / mass, vx / mass, vy / mass, ax / mass, ay / mass
+    return hangs, x, y, vx, vy, ax, ay
+
+
+@nonallocating
+def spin_about(W: Workspace, x: float, y: float, vx: float, vy: float) -> tuple[float, float]:
+    """Spin of a rigid body with the angular momentum of the component about its centre of mass (x, y), of velocity (vx,
+    vy), and its moment of inertia; 0 if that is 0."""
+    turning, inertia = 0.0, 0.0
+    for i in range(W.bodies):
+        body = W.J.LOCAL[i]
+        if body.mobility[0] > 0.0:
+            m, dx, dy = 1.0 / body.mobility[0], body.pose[0] - x, body.pose[1] - y
+            turning += m * (dx * (body.v0[1] - vy) - dy * (body.v0[0] - vx))
+            inertia += m * (dx * dx + dy * dy)
+        if body.freedoms > 2 and body.mobility[2] > 0.0:
+            turning += body.v0[2] / body.mobility[2]
+            inertia += 1.0 / body.mobility[2]
+    return turning / inertia if inertia > 0.0 else 0.0, inertia
+
+
+@nonallocating
 def frame_of(W: Workspace) -> Frame:
     """The frame of a component at its present poses and velocities v0."""
     local, rigid, hangs, turns = W.J.LOCAL, True, False, False
-    mass = x = y = vx = vy = spin = 0.0
+    x = y = vx = vy = spin = 0.0
     for i in range(W.bodies):
         body = local[i]
         if supports(body, 2):
@@ -77,43 +113,18 @@ def frame_of(W: Workspace) -> Frame:
             rigid = rigid and not (hangs and (body.v0[0] != vx or body.v0[1] != vy))
             rigid = rigid and not (hangs and spin != 0.0 and (body.pose[0] != x or body.pose[1] != y))
             x, y, vx, vy, hangs = body.pose[0], body.pose[1], body.v0[0], body.v0[1], True
-    if hangs or not rigid:
-        return Frame(rigid and not (spin != 0.0 and has_ratio(W)), hangs, turns, x, y, vx, vy, spin)
-    for i in range(W.bodies):
-        body = local[i]
-        if body.mobility[0] > 0.0:
-            m = 1.0 / body.mobility[0]
-            mass, x, y = mass + m, x + m * body.pose[0], y + m * body.pose[1]
-            vx, vy = vx + m * body.v0[0], vy + m * body.v0[1]
-    if mass > 0.0:
-        x, y, vx, vy = x / mass, y / mass, vx / mass, vy / mass
-    if not turns and not has_ratio(W):
-        spin, _ = spin_about(local, W.bodies, x, y, vx, vy)
-    return Frame(not (turns and spin != 0.0 and has_ratio(W)), False, turns, x, y, vx, vy, spin)
+    if rigid and not hangs:
+        _, x, y, vx, vy, _, _ = centre_of(W)
+        if not turns and not has_ratio(W):
+            spin, _ = spin_about(W, x, y, vx, vy)
+    return Frame(rigid and not (spin != 0.0 and has_ratio(W)), hangs, turns, x, y, vx, vy, spin)
 
 
 @nonallocating
-def spin_about(local: Rows[BodyStep], bodies: int, x: float, y: float, vx: float, vy: float) -> tuple[float, float]:
-    """Spin of a rigid body with the angular momentum of the component about its centre of mass (x, y), of velocity (vx,
-    vy), and its moment of inertia; 0 if that is 0."""
-    turning, inertia = 0.0, 0.0
-    for i in range(bodies):
-        if local[i].freedoms > 0 and local[i].mobility[0] > 0.0:
-            m, dx, dy = 1.0 / local[i].mobility[0], local[i].pose[0] - x, local[i].pose[1] - y
-            turning += m * (dx * (local[i].v0[1] - vy) - dy * (local[i].v0[0] - vx))
-            inertia += m * (dx * dx + dy * dy)
-        if local[i].freedoms > 2 and local[i].mobility[2] > 0.0:
-            turning += local[i].v0[2] / local[i].mobility[2]
-            inertia += 1.0 / local[i].mobility[2]
-    return turning / inertia if inertia > 0.0 else 0.0, inertia
-
-
-@nonallocating
-def account_frame(W: Workspace, h: float, ledger: JointLedger) -> None:
-    """Add the work of moving supports in a solved part h, by the balance of momentum, to `ledger`: 0 without a
+def account_frame(W: Workspace, h: float) -> None:
+    """Add the work of moving supports in a solved part h, by the balance of momentum, to PART_LEDGER: 0 without a
     frame."""
-    local = W.J.LOCAL
-    if supports_rest(local, W.bodies):
+    if supports_rest(W):
         return
     F = frame_of(W)
     if not (F.rigid and (F.hangs or F.turns)):
@@ -121,7 +132,7 @@ def account_frame(W: Workspace, h: float, ledger: JointLedger) -> None:
     wide = 2.0 * math.tan(0.5 * F.spin * h) / h
     x, y = F.x + 0.5 * h * F.vx, F.y + 0.5 * h * F.vy
     for i in range(W.bodies):
-        body = local[i]
+        body = W.J.LOCAL[i]
         for c in range(body.freedoms):
             if body.mobility[c] > 0.0:
                 speed = wide if body.cayley > 0 else F.spin
@@ -130,7 +141,7 @@ def account_frame(W: Workspace, h: float, ledger: JointLedger) -> None:
                 elif c == 1:
                     speed = F.vy + wide * (body.pose[0] + 0.5 * body.way[0] - x)
                 impulse = (body.v1[c] - body.v0[c] - h * body.acceleration[c]) / body.mobility[c]
-                ledger.carried += impulse * speed
+                W.J.PART_LEDGER.carried += impulse * speed
 
 
 @nonallocating

@@ -22,7 +22,7 @@ from ..newton.effort import work_of_iteration
 from ..newton.motion import go_back
 from ..newton.solve import drop_impulses
 from .contradiction import contradicts
-from .correct import NOW, SAVED, kinetic_of_component
+from .correct import NOW, SAVED, kinetic_of
 from .foresight import PARTS, forget_parts, predict_part, recalls, remember_part
 from .frame import frame_of
 from .ledger import clear_ledger, close_ledger, unexplained
@@ -97,7 +97,7 @@ def take_parts(W: Workspace, h: float, length: float, rung: int, parts: int, giv
         before = piece
         if rung == ORDER_4 and recalls(W, h):
             predict_part(W, p, piece, cold)
-        if not step_with_limits(W, False, piece, length, cold, give, rung == ORDER_4, W.J.PART_LEDGER):
+        if not step_with_limits(W, False, piece, length, cold, give, rung == ORDER_4):
             return CONTRADICTED if p == 0 and rung < ELASTIC_RUNG and contradicts(W, piece) else FAILED
         if rung == ORDER_4:
             remember_part(W, piece)
@@ -117,14 +117,12 @@ def settle(W: Workspace, h: float, length: float) -> None:
     """Restore the momenta of a step, and close its ledger, where they are off by more than round-off of the energy and
     of the work of forces over the size `length`: impulses that are large change both by their round-off, and their
     works cancel only up to that."""
-    local, part = W.J.LOCAL, W.J.PART_LEDGER
-    least = kinetic_of_component(local, W.bodies, SAVED) + kinetic_of_component(local, W.bodies, NOW)
-    load = load_of(W, h, length)
-    least = joints.JOINT_GAIN * (least + load)
+    part, load = W.J.PART_LEDGER, load_of(W, h, length)
+    least = joints.JOINT_GAIN * (kinetic_of(W, SAVED) + kinetic_of(W, NOW) + load)
     part.closed += restore_momenta(W, h, length, load)
-    apart = unexplained(local, W.bodies, part) - (part.supports + part.closed - part.limited)
+    apart = unexplained(W) - (part.supports + part.closed - part.limited)
     if not abs(apart) <= least:
-        close_ledger(local, W.bodies, part)
+        close_ledger(W)
 
 
 @nonallocating
@@ -135,13 +133,13 @@ def repaid(W: Workspace, h: float, length: float, own: bool) -> bool:
     step fails. Other rows hold to round-off e of their places, and give e times their impulse over h: more in shorter
     steps. What is taken of a gain that is much larger than the energy has its round-off: the rest is taken again.
     """
-    part, before = W.J.PART_LEDGER, kinetic_of_component(W.J.LOCAL, W.bodies, SAVED)
+    part, before = W.J.PART_LEDGER, kinetic_of(W, SAVED)
     if not frame_of(W).rigid:
         return True
     for turn in range(2):
         settle(W, h, length)
         gain = gain_of_rows(W, own)
-        known = joints.JOINT_GAIN * (before + kinetic_of_component(W.J.LOCAL, W.bodies, NOW))
+        known = joints.JOINT_GAIN * (before + kinetic_of(W, NOW))
         if own and gain > 0.0 and not gain <= joints.REPAID * before:
             return False
         if not gain > 0.0 or not (gain > known or (own and turn == 0)):
@@ -164,7 +162,7 @@ def undo_impulses(W: Workspace) -> None:
 @nonallocating
 def restore_start(W: Workspace) -> None:
     """Return to the start of the step, without impulses."""
-    go_back(W.J.LOCAL, W.bodies)
+    go_back(W)
     undo_impulses(W)
     for k in range(W.joints):
         W.link[k].side = W.J.JOINT[W.link[k].joint].side

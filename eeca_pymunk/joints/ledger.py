@@ -6,8 +6,7 @@
 from __future__ import annotations
 
 from ..compiled import inlined, nonallocating
-from ..compiled.records import Rows
-from ..model.joint_steps import BodyStep, JointLedger
+from ..model.joint_steps import JointLedger
 from ..model.joints import MOTOR, ROTARY_SPRING, SPRING, Workspace
 from ..newton.entries import acts
 from ..newton.springs import potential
@@ -44,14 +43,14 @@ def add_part(ledger: JointLedger, part: JointLedger) -> None:
 
 
 @nonallocating
-def account_part(W: Workspace, h: float, ledger: JointLedger) -> None:
-    """Add the works of a solved part h of the step to `ledger`, and its impulses to `total`.
+def account_part(W: Workspace, h: float) -> None:
+    """Add the works of a solved part h of the step to PART_LEDGER, and its impulses to `total`.
 
     A joint's impulse F = J^T lam does the work F . x / h on its bodies. The local `total` is all of it, `moved` the
     part on bodies that joints move; the rest is on supports.
     """
-    hinge, link = W.J.HINGE, W.link
-    account_frame(W, h, ledger)
+    hinge, link, ledger = W.J.HINGE, W.link, W.J.PART_LEDGER
+    account_frame(W, h)
     per = 1.0 / h
     for k in range(W.joints):
         kind, j = link[k].kind, link[k].joint
@@ -103,27 +102,29 @@ def springs_hold(W: Workspace) -> float:
 
 
 @nonallocating
-def unexplained(local: Rows[BodyStep], bodies: int, ledger: JointLedger) -> float:
+def unexplained(W: Workspace) -> float:
     """The change of energy, from the saved state to the present one, that springs, motors and losses other than at
-    limits do not explain."""
-    gained = 0.0
-    for i in range(bodies):
+    limits do not explain (PART_LEDGER)."""
+    part, gained = W.J.PART_LEDGER, 0.0
+    for i in range(W.bodies):
+        body = W.J.LOCAL[i]
         for c in range(3):
-            if local[i].mobility[c] > 0.0:
-                before, after = local[i].saved_velocity[c], local[i].v0[c]
-                way = local[i].travel[c] - local[i].shift[c]
-                specific = 0.5 * (after * after - before * before) - local[i].acceleration[c] * way
-                gained += specific / local[i].mobility[c]
-    return gained + ledger.stored + ledger.damped + ledger.clamped + ledger.projected - ledger.motors
+            if body.mobility[c] > 0.0:
+                before, after = body.saved_velocity[c], body.v0[c]
+                way = body.travel[c] - body.shift[c]
+                specific = 0.5 * (after * after - before * before) - body.acceleration[c] * way
+                gained += specific / body.mobility[c]
+    return gained + part.stored + part.damped + part.clamped + part.projected - part.motors
 
 
 @nonallocating
-def close_ledger(local: Rows[BodyStep], bodies: int, ledger: JointLedger) -> None:
-    """Close the ledger of a step whose joints did not hold: the change of energy that is `unexplained` is `closed` if
+def close_ledger(W: Workspace) -> None:
+    """Close PART_LEDGER for a step whose joints did not hold: the change of energy that is `unexplained` is `closed` if
     it is a gain, else `limited`. The work of supports is that by the balance of momentum (`frame`).
 
     This includes the works of limits, and of supports without a frame: the impulses of contradictory rows grow without
     bound, and their works cancel up to round-off, so that only the sum is known.
     """
-    change = unexplained(local, bodies, ledger) - ledger.carried
-    ledger.supports, ledger.closed, ledger.limited = ledger.carried, max(change, 0.0), max(-change, 0.0)
+    part = W.J.PART_LEDGER
+    change = unexplained(W) - part.carried
+    part.supports, part.closed, part.limited = part.carried, max(change, 0.0), max(-change, 0.0)

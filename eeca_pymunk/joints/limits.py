@@ -25,7 +25,7 @@ Each solution of an interval first tries the limits, and their instants, that th
 from __future__ import annotations
 
 from ..compiled import inlined, nonallocating
-from ..model.joint_steps import SPEEDS, STEP, JointLedger, Parts
+from ..model.joint_steps import SPEEDS, STEP, Parts
 from ..model.joints import Workspace
 from ..model.parameters import joints
 from ..newton.motion import accept_part
@@ -39,9 +39,9 @@ GOES_ON, MEETS, ENDS, FAILS = 0, 1, 2, 3  # what follows a solve
 
 
 @nonallocating
-def stop_at(W: Workspace, k: int, side: int, at_once: bool, stays: bool, ledger: JointLedger) -> None:
-    """Let joint k stand on its limit at this side: velocities into the bound vanish, and the loss enters `ledger`. The
-    next part begins without impulses.
+def stop_at(W: Workspace, k: int, side: int, at_once: bool, stays: bool) -> None:
+    """Let joint k stand on its limit at this side: velocities into the bound vanish, and the loss enters PART_LEDGER.
+    The next part begins without impulses.
 
     Args:
         at_once: the part before is empty but for round-off.  stays: velocities out of the bound vanish as well, and no
@@ -52,10 +52,10 @@ def stop_at(W: Workspace, k: int, side: int, at_once: bool, stays: bool, ledger:
     for i in range(W.joints):
         link[i].let_go = link[i].side if stays else 0
     project(W, SPEEDS)
-    bounds.begin_part(link, W.joints)
+    bounds.begin_part(W)
     if at_once:
         link[k].side = side  # a velocity that released it is round-off: forces press it to its bound at once
-    ledger.limited += fitting_loss(W, ledger)
+    W.J.PART_LEDGER.limited += fitting_loss(W, W.J.PART_LEDGER)
     drop_impulses(W)
     bounds.hold_present_gaps(W)
 
@@ -80,7 +80,7 @@ def late(W: Workspace, S: Parts) -> bool:
 
 
 @nonallocating
-def end_part(W: Workspace, S: Parts, linear: bool, h: float, whole: bool, ledger: JointLedger) -> int:
+def end_part(W: Workspace, S: Parts, linear: bool, h: float, whole: bool) -> int:
     """End a part at whose end no limit is passed; or, if a limit was passed and passed back within it, solve again to
     an instant in between. Arguments as of `step_with_limits`."""
     component = W.J.COMPONENT[W.s]
@@ -90,35 +90,35 @@ def end_part(W: Workspace, S: Parts, linear: bool, h: float, whole: bool, ledger
             return FAILS
         S.when, S.events, component.parts_within = within, S.events + 1, 0.0
         return GOES_ON
-    account_part(W, S.when, ledger)
-    accept_part(W.J.LOCAL, W.bodies, S.when)
+    account_part(W, S.when)
+    accept_part(W, S.when)
     if component.parts_within == h:
         note_part(W, S.part, -1, 0, S.when)
     S.left -= S.when
     if S.left == 0.0:
         return ENDS
     S.when, S.solved = S.left, 0.0
-    bounds.begin_part(W.link, W.joints)
+    bounds.begin_part(W)
     drop_impulses(W)
     return GOES_ON
 
 
 @nonallocating
-def at_end(W: Workspace, S: Parts, linear: bool, h: float, whole: bool, ledger: JointLedger) -> int:
+def at_end(W: Workspace, S: Parts, linear: bool, h: float, whole: bool) -> int:
     """Decide what follows a solve to the end of the step. Arguments as of `step_with_limits`."""
     most = joints.LIMIT_SOLVES if linear else 2 * W.joints + 100  # after these, none is released or searched
     if S.solves < most and release(W, STEP):
         return GOES_ON
     k, side, instant = bounds.first_bound(W, S.when)
     if k < 0 or linear:
-        return end_part(W, S, linear, h, whole, ledger)
+        return end_part(W, S, linear, h, whole)
     if whole:
         return FAILS
     lands = late(W, S) or S.solves >= most
     S.events += 1
     if S.hopped < W.joints and bounds.hops(W, k, side, instant, S.when):
         S.solved, S.hopped = 0.0, S.hopped + 1
-        stop_at(W, k, side, True, True, ledger)
+        stop_at(W, k, side, True, True)
     elif lands:
         bounds.hold_passed(W)
     else:
@@ -175,7 +175,7 @@ def at_limit(W: Workspace, S: Parts) -> int:
 
 
 @nonallocating
-def meet_limit(W: Workspace, S: Parts, h: float, ledger: JointLedger) -> None:
+def meet_limit(W: Workspace, S: Parts, h: float) -> None:
     """Let the joint stand on the limit that it meets at the end of the part; bodies move there unless the way is
     round-off."""
     at_once = not is_solved(S, h)
@@ -184,14 +184,14 @@ def meet_limit(W: Workspace, S: Parts, h: float, ledger: JointLedger) -> None:
         near = rate < 0.0 and -S.when * min(rate, after) <= joints.LIMIT_WAY * W.J.HINGE[S.limit].size
         at_once = near or S.when <= joints.MEET_INSTANT * abs(h)
     if not at_once:  # else round-off of places, over S.when, would become velocities
-        account_part(W, S.when, ledger)
-        accept_part(W.J.LOCAL, W.bodies, S.when)
+        account_part(W, S.when)
+        accept_part(W, S.when)
         note_part(W, S.part, S.limit, S.side, S.when)
         S.part += 1
         S.left -= S.when
         if S.when < S.left:
             weaken_lead(W, S.when / S.left)
-    stop_at(W, S.limit, S.side, at_once, False, ledger)
+    stop_at(W, S.limit, S.side, at_once, False)
 
 
 @inlined
@@ -202,37 +202,37 @@ def is_solved(S: Parts, h: float) -> bool:
 
 @nonallocating
 def step_with_limits(
-    W: Workspace, linear: bool, h: float, length: float, loops: bool, give: float, whole: bool, ledger: JointLedger
+    W: Workspace, linear: bool, h: float, length: float, loops: bool, give: float, whole: bool
 ) -> bool:
     """Take the step h in parts between instants at which limits are met; False if a solve fails.
 
     Args:
         linear: whether by linear systems, which pass limits.  length: size of the component.
         loops: whether rows are redundant and begin without impulses.  give: compliance over h², see `..newton.systems`.
-        whole: whether the step must not meet any limit: False if it would.  ledger: energies are added to it.
+        whole: whether the step must not meet any limit: False if it would.
     """
     S, component = W.J.PARTS, W.J.COMPONENT[W.s]
     S.left = h
     S.part = S.events = S.solves = 0
-    bounds.begin_part(W.link, W.joints)
+    bounds.begin_part(W)
     if component.parts_within != h or linear or whole:
         component.parts, component.parts_within = 0, 0.0 if linear or whole else h
     component.parts = component.parts if meets_limit(component) else 0
     begin_next(W, S, loops)
     while True:
         if is_solved(S, h):
-            redundant = loops or bounds.standing(W.link, W.joints)
+            redundant = loops or bounds.standing(W)
             if S.solved != 0.0 and not linear:
                 begin_as_before(W, S.solved, S.when)
             if not (solve_linearly(W, S.when, length) if linear else solve(W, S.when, length, redundant, give)):
                 return False
             S.solves, S.solved = S.solves + 1, S.when
-            verdict = at_limit(W, S) if S.limit >= 0 else at_end(W, S, linear, h, whole, ledger)
+            verdict = at_limit(W, S) if S.limit >= 0 else at_end(W, S, linear, h, whole)
             if verdict == GOES_ON:
                 continue
             if verdict != MEETS:
                 return verdict == ENDS
-        meet_limit(W, S, h, ledger)
+        meet_limit(W, S, h)
         if S.left <= joints.PART_ROUND_OFF * h:
             return True
         begin_next(W, S, loops)

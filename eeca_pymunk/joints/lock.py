@@ -16,30 +16,10 @@ from __future__ import annotations
 import math
 
 from ..compiled import nonallocating
-from ..compiled.records import Rows
-from ..model.joint_steps import BodyStep, JointLedger
+from ..model.joint_steps import JointLedger
 from ..model.joints import Workspace
 from ..model.parameters.joints import JOINT_GAIN, LOCK_ITERATIONS
-from .frame import frame_of, has_ratio, relative_energy, spin_about
-
-
-@nonallocating
-def centre_of(local: Rows[BodyStep], bodies: int) -> tuple[bool, float, float, float, float, float, float]:
-    """Whether the component has a partner, or a body of infinite mass (`hangs`), and the centre of mass (x, y) of its
-    moving bodies with its velocity (vx, vy) and acceleration (ax, ay)."""
-    mass = x = y = vx = vy = ax = ay = 0.0
-    hangs = False
-    for i in range(bodies):
-        hangs = hangs or not local[i].mobility[0] > 0.0
-        if local[i].freedoms > 0 and local[i].mobility[0] > 0.0:
-            m = 1.0 / local[i].mobility[0]
-            mass += m
-            x, y = x + m * local[i].pose[0], y + m * local[i].pose[1]
-            vx, vy = vx + m * local[i].v0[0], vy + m * local[i].v0[1]
-            ax, ay = ax + m * local[i].acceleration[0], ay + m * local[i].acceleration[1]
-    if mass > 0.0:
-        x, y, vx, vy, ax, ay = x / mass, y / mass, vx / mass, vy / mass, ax / mass, ay / mass
-    return hangs, x, y, vx, vy, ax, ay
+from .frame import centre_of, frame_of, has_ratio, relative_energy, spin_about
 
 
 @nonallocating
@@ -64,7 +44,7 @@ def restore_momenta(W: Workspace, h: float, length: float, load: float) -> float
     those of the middle.
     """
     local = W.J.LOCAL
-    hangs, x, y, vx, vy, _, _ = centre_of(local, W.bodies)
+    hangs, x, y, vx, vy, _, _ = centre_of(W)
     if hangs:
         return 0.0
     mass = px = py = turning = size = arms = 0.0
@@ -87,7 +67,7 @@ def restore_momenta(W: Workspace, h: float, length: float, load: float) -> float
         if body.freedoms > 2 and body.mobility[2] > 0.0:
             turning += (now[2] - before[2] - spun) / body.mobility[2]
             arms += (abs(now[2]) + abs(before[2])) / body.mobility[2]
-    was, inertia = spin_about(local, W.bodies, x, y, vx, vy)
+    was, inertia = spin_about(W, x, y, vx, vy)
     spin = -turning / inertia if inertia > 0.0 and turns_freely(W) else 0.0
     arms, size = arms + h * load, size + (h * load / length if load > 0.0 else 0.0)
     if not (abs(px) + abs(py) > JOINT_GAIN * size or abs(spin) * inertia > JOINT_GAIN * arms):
@@ -125,10 +105,10 @@ def move_rigidly(W: Workspace, h: float) -> None:
     """
     local, bodies, F = W.J.LOCAL, W.bodies, frame_of(W)
     held, x, y, vx, vy, spin = F.hangs or F.turns, F.x, F.y, F.vx, F.vy, F.spin
-    _, _, _, _, _, ax, ay = centre_of(local, bodies)
+    _, _, _, _, _, ax, ay = centre_of(W)
     if F.hangs:
         ax = ay = 0.0
-    _, inertia = spin_about(local, bodies, x, y, vx, vy)
+    _, inertia = spin_about(W, x, y, vx, vy)
     chi, after = (2.0 * math.tan(0.5 * h * spin), spin) if held else (0.0, 0.0)
     for _ in range(0 if held or has_ratio(W) else LOCK_ITERATIONS):
         torque, over = 0.0, 1.0 / (1.0 + 0.25 * chi * chi)

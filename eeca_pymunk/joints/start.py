@@ -27,7 +27,7 @@ def mark_bounded(W: Workspace) -> None:
         link[k].bounded = BOUNDED if kind == MOTOR or finite else 0
         rows += link[k].rows if link[k].bounded != 0 else 0
     if rows <= W.J.COMPONENT[W.s].boxes:
-        bound_otherwise(link, W.joints, BOUNDED, BOXED)
+        bound_otherwise(W, BOUNDED, BOXED)
 
 
 @nonallocating

@@ -17,7 +17,7 @@ from ..newton.motion import save
 from ..newton.solve import drop_impulses
 from .bounds import closes_on_limit, hold_present_gaps, standing
 from .closing import close_joints, farthest
-from .correct import NOW, fitting_loss, kinetic_of_component, project
+from .correct import NOW, fitting_loss, kinetic_of, project
 from .ladder import climb, limit_work
 from .ledger import add_part, clear_ledger, close_ledger
 from .start import bounded_targets, compute_rows, read_joints
@@ -73,9 +73,9 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
     for i in range(W.bodies):
         for c in range(3):
             local[i].shift[c] = 0.0
-    save(local, W.bodies)
+    save(W)
     own = touched and close_joints(W, h, ledger)
-    stands = standing(W.link, W.joints)
+    stands = standing(W)
     if bounded or stands:
         compute_rows(W)
     if bounded:
@@ -84,7 +84,7 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
         # An impact has left velocities into a bound on which a joint stands: it is met at once.
         project(W, SPEEDS)
         ledger.limited += fitting_loss(W, ledger)
-        save(local, W.bodies)
+        save(W)
     if stands:
         hold_present_gaps(W)
     for k in range(W.joints):
@@ -98,8 +98,8 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
     elif keeps_gain(W, h, length, own):
         stop_joints(W, h)
         status = LINEAR
-    elif abs(W.J.PART_LEDGER.closed) > kinetic_of_component(local, W.bodies, NOW):  # but for round-off they cancel
-        close_ledger(local, W.bodies, W.J.PART_LEDGER)
+    elif abs(W.J.PART_LEDGER.closed) > kinetic_of(W, NOW):  # but for round-off they cancel
+        close_ledger(W)
     if status >= ELASTIC:
         compute_rows(W)  # they were those before the last correction
     ledger.gave = max(farthest(W) - ledger.apart, 0.0) if status >= ELASTIC else 0.0

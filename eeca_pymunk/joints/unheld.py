@@ -9,7 +9,7 @@ from ..model.parameters.joints import GAIN_KEPT, JOINT_GAIN, JOINT_TOLERANCE, LI
 from ..newton.motion import accept_part, go_back, move
 from ..newton.solve import drop_impulses
 from .closing import farthest
-from .correct import NOW, SAVED, kinetic_of_component
+from .correct import NOW, SAVED, kinetic_of
 from .foresight import forget_parts
 from .frame import frame_of, relative_energy, supports_rest
 from .ladder import gain_of_rows, restore_start, settle, undo_impulses
@@ -26,7 +26,7 @@ def step_linearly(W: Workspace, h: float, length: float) -> float:
     local, part = W.J.LOCAL, W.J.PART_LEDGER
     stored, apart, carried = springs_of(W), farthest(W), 0.0
     drop_impulses(W)
-    if step_with_limits(W, True, h, length, True, 0.0, False, part):
+    if step_with_limits(W, True, h, length, True, 0.0, False):
         W.J.JOINT[W.link[0].joint].compliance, carried = 0.0, part.carried
     else:
         restore_start(W)
@@ -35,7 +35,7 @@ def step_linearly(W: Workspace, h: float, length: float) -> float:
             for c in range(3):
                 local[i].v1[c] = local[i].v0[c] + h * local[i].acceleration[c]
         move(local, W.bodies, h)
-        accept_part(local, W.bodies, h)
+        accept_part(W, h)
     clear_ledger(part)
     part.stored, part.carried = springs_of(W) - stored, carried
     return apart
@@ -45,16 +45,16 @@ def step_linearly(W: Workspace, h: float, length: float) -> float:
 def stop_joints(W: Workspace, h: float) -> None:
     """Take the step h again by `move_rigidly`, which needs no solution; the loss is `limited` in PART_LEDGER: with
     supports, all of the motion relative to their frame."""
-    local, part = W.J.LOCAL, W.J.PART_LEDGER
-    go_back(local, W.bodies)
+    part = W.J.PART_LEDGER
+    go_back(W)
     stored = springs_of(W)
     lost, _ = relative_energy(W, frame_of(W), -1.0)
     move_rigidly(W, h)
     clear_ledger(part)
     part.stored = springs_of(W) - stored
-    if not supports_rest(local, W.bodies):
-        part.carried = unexplained(local, W.bodies, part) + lost
-    close_ledger(local, W.bodies, part)
+    if not supports_rest(W):
+        part.carried = unexplained(W) + lost
+    close_ledger(W)
     undo_impulses(W)
 
 
@@ -67,13 +67,13 @@ def keeps_gain(W: Workspace, h: float, length: float, own: bool) -> bool:
     if W.J.PROGRESS.near > 0.0:
         return False
     part = W.J.PART_LEDGER
-    gain = min(gain_of_rows(W, own), unexplained(local, W.bodies, part) - part.carried)
+    gain = min(gain_of_rows(W, own), unexplained(W) - part.carried)
     if not gain > 0.0 or not frame_of(W).rigid:
         return False
     for i in range(W.bodies):
         mass += 1.0 / local[i].mobility[0] if local[i].mobility[0] > 0.0 else 0.0
     noise = mass * (JOINT_TOLERANCE * length / h) ** 2
-    had = kinetic_of_component(local, W.bodies, SAVED) + load_of(W, h, length)
+    had = kinetic_of(W, SAVED) + load_of(W, h, length)
     return bool(gain > noise + GAIN_KEPT * had)
 
 
@@ -86,14 +86,14 @@ def take_gain(W: Workspace, h: float, length: float, status: int, before: float)
     of momenta too: both are put right once more. It is enough if what is left of the gain is round-off of the kinetic
     energies before and after.
     """
-    local, part, stopped = W.J.LOCAL, W.J.PART_LEDGER, False
+    part, stopped = W.J.PART_LEDGER, False
     for _ in range(2):
         settle(W, h, length)
-        close_ledger(local, W.bodies, part)
+        close_ledger(W)
         if part.closed > 0.0:
             lock_energy(W, part.closed, part)
-            close_ledger(local, W.bodies, part)
-    had = kinetic_of_component(local, W.bodies, SAVED) + kinetic_of_component(local, W.bodies, NOW)
+            close_ledger(W)
+    had = kinetic_of(W, SAVED) + kinetic_of(W, NOW)
     if part.closed > JOINT_GAIN * had and frame_of(W).rigid:
         status, stopped = LINEAR, True
     if status == LINEAR and not farthest(W) <= before + LINEAR_APART:

@@ -47,11 +47,11 @@ def rows_of(link: Rows[Coupling], k: int) -> int:
 
 
 @nonallocating
-def boxed_rows(link: Rows[Coupling], joints: int) -> int:
+def boxed_rows(W: Workspace) -> int:
     """How many rows are boxed."""
     count = 0
-    for k in range(joints):
-        count += rows_of(link, k)
+    for k in range(W.joints):
+        count += rows_of(W.link, k)
     return count
 
 

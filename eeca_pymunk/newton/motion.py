@@ -8,7 +8,7 @@ from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.bodies import Body
 from ..model.joint_steps import BodyStep
-from ..model.joints import ComponentBody, Joints
+from ..model.joints import ComponentBody, Joints, Workspace
 
 
 @inlined
@@ -91,22 +91,23 @@ def find_turned(body: BodyStep) -> None:
 
 
 @inlined
-def balance_velocities(local: Rows[BodyStep], bodies: int, h: float) -> None:
+def balance_velocities(W: Workspace, h: float) -> None:
     """Set the velocities v1 to v0 + h a + M^-1 `impulse`, so that the balance of momentum holds to round-off, and
     `move`."""
-    for i in range(bodies):
+    local = W.J.LOCAL
+    for i in range(W.bodies):
         for c in range(3):
             change = h * local[i].acceleration[c] + local[i].mobility[c] * local[i].impulse[c]
             local[i].v1[c] = local[i].v0[c] + change
-    move(local, bodies, h)
+    move(local, W.bodies, h)
 
 
 @inlined
-def accept_part(local: Rows[BodyStep], bodies: int, h: float) -> None:
+def accept_part(W: Workspace, h: float) -> None:
     """Make the end of a part h of the step the start of the next: poses and velocities move on, `travel` and `mean`
     are summed, and `lead` keeps the accelerations by joints in this part."""
-    per = 1.0 / h
-    for i in range(bodies):
+    local, per = W.J.LOCAL, 1.0 / h
+    for i in range(W.bodies):
         for c in range(3):
             local[i].lead[c] = (local[i].v1[c] - local[i].v0[c]) * per - local[i].acceleration[c]
             local[i].travel[c] += local[i].way[c]
@@ -125,10 +126,11 @@ def accept_part(local: Rows[BodyStep], bodies: int, h: float) -> None:
 
 
 @nonallocating
-def save(local: Rows[BodyStep], bodies: int) -> None:
+def save(W: Workspace) -> None:
     """Make the present poses and velocities the start of the step, to which `go_back` returns; ways are 0 but for the
     `shift` by the closing of joints."""
-    for i in range(bodies):
+    local = W.J.LOCAL
+    for i in range(W.bodies):
         for c in range(3):
             local[i].saved_pose[c], local[i].saved_velocity[c] = local[i].pose[c], local[i].v0[c]
             local[i].travel[c] = local[i].shift[c]
@@ -136,9 +138,10 @@ def save(local: Rows[BodyStep], bodies: int) -> None:
 
 
 @nonallocating
-def go_back(local: Rows[BodyStep], bodies: int) -> None:
+def go_back(W: Workspace) -> None:
     """Return to the poses and velocities at the start of the step."""
-    for i in range(bodies):
+    local = W.J.LOCAL
+    for i in range(W.bodies):
         for c in range(3):
             local[i].pose[c], local[i].v0[c] = local[i].saved_pose[c], local[i].saved_velocity[c]
             local[i].travel[c] = local[i].shift[c]

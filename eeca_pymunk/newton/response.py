@@ -9,15 +9,13 @@ others exert no impulse.
 
 from __future__ import annotations
 
-import numpy as np
-
 from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..model.joint_steps import STEP, STIFF_ALL, STIFF_NONE
 from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, GEAR, GROOVE, Workspace
 from ..model.parameters.joints import CONDENSED_PASSES, REDUNDANT_EPSILON, RESPONSE_PASSES, TAUT
 from .entries import acts
-from .motion import move
+from .motion import go_back, move
 from .rows import joint_rows, start_joint
 from .saturation import bound_otherwise
 from .systems import assemble, back, decompose, first_iterate, first_system
@@ -84,10 +82,10 @@ def prepare_response(W: Workspace, what: int, h: float) -> int:
     `what` is STEP, after `take_step` (whose start becomes that of `local` again), or SPEEDS, at the present poses.
     """
     # Boxed rows are in the matrix meanwhile: those inside of their bounds are exact.
-    boxed = bound_otherwise(W.link, W.joints, BOXED, BOUNDED)
+    boxed = bound_otherwise(W, BOXED, BOUNDED)
     system = factor_response(W, what, h)
     if boxed:
-        bound_otherwise(W.link, W.joints, BOUNDED, BOXED)
+        bound_otherwise(W, BOUNDED, BOXED)
     return int(system)
 
 
@@ -99,8 +97,7 @@ def factor_response(W: Workspace, what: int, h: float) -> int:
         for i in range(W.bodies):
             for c in range(3):
                 local[i].v1[c] = local[i].v0[c]
-                local[i].pose[c], local[i].v0[c] = local[i].saved_pose[c], local[i].saved_velocity[c]
-            local[i].cos, local[i].sin = np.cos(local[i].pose[2]), np.sin(local[i].pose[2])
+        go_back(W)
         for k in range(W.joints):
             start_joint(W, k, what, h)
         move(local, W.bodies, h)

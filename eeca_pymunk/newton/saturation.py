@@ -9,8 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compiled import nonallocating
-from ..compiled.records import Rows
-from ..model.joints import CONDENSED, Coupling, Workspace
+from ..model.joints import CONDENSED, Workspace
 from ..model.parameters.joints import STIFFEST
 from ..rows.bounded import pulls
 from .condensed import freeze_row, put_row
@@ -18,12 +17,12 @@ from .entries import acting_rows, interval_of, put_free, put_rows
 
 
 @nonallocating
-def bound_otherwise(link: Rows[Coupling], joints: int, before: int, after: int) -> bool:
+def bound_otherwise(W: Workspace, before: int, after: int) -> bool:
     """Change `bounded` of joints from `before` to `after`; returns whether there are any."""
     some = False
-    for k in range(joints):
-        if link[k].bounded == before:
-            link[k].bounded, some = after, True
+    for k in range(W.joints):
+        if W.link[k].bounded == before:
+            W.link[k].bounded, some = after, True
     return some
 
 

@@ -7,9 +7,8 @@ does not depend on it.
 from __future__ import annotations
 
 from ..compiled import nonallocating
-from ..compiled.records import Rows
 from ..model.joint_steps import LINEAR_STEP, STEP
-from ..model.joints import BOUNDED, CONDENSED, DUAL, Coupling, Workspace
+from ..model.joints import BOUNDED, CONDENSED, DUAL, Workspace
 from ..model.parameters.joints import (
     CONDENSED_PASSES,
     ELASTIC_ROUND_OFF,
@@ -36,10 +35,10 @@ def drop_impulses(W: Workspace) -> None:
 
 
 @nonallocating
-def has_bounded(link: Rows[Coupling], joints: int) -> bool:
+def has_bounded(W: Workspace) -> bool:
     """Whether any joint has bounded rows in the matrix."""
-    for k in range(joints):
-        if link[k].bounded == BOUNDED:
+    for k in range(W.joints):
+        if W.link[k].bounded == BOUNDED:
             return True
     return False
 
@@ -123,16 +122,16 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
     Args:
         loops: whether rows may be redundant, and begin without impulses.  give: compliance over h², see `systems`.
     """
-    local, component, progress = W.J.LOCAL, W.J.COMPONENT[W.s], W.J.PROGRESS
+    component, progress = W.J.COMPONENT[W.s], W.J.PROGRESS
     first_iterate(W, STEP, h)
     best, last, stalls = 1e300, 1e300, 0
     system = first_system(component, STEP)
-    lasting = system == DUAL or not has_bounded(W.link, W.joints)
+    lasting = system == DUAL or not has_bounded(W)
     # ready: factors can be used again; fresh: those of the last iteration were new; since: iteration from which on each
     # has new ones (full Newton).
     ready, fresh, since = lasting and component.factored > 0, False, 0
     component.factored = 0
-    boxes = boxed_rows(W.link, W.joints)
+    boxes = boxed_rows(W)
     for iteration in range(NEWTON_ITERATIONS + 1):
         built = not ready
         worst = linearise(W, STEP, h, length, give, False, system, built)
@@ -146,7 +145,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
         if iteration > 0 and (worst <= max(JOINT_TOLERANCE, progress.near) or at_floor):
             # A wide matrix is expensive to factor: the parts of a step share one while errors fall with it.
             component.factored = 1 if ready and system == CONDENSED and boxes == 0 else 0
-            balance_velocities(local, W.bodies, h)
+            balance_velocities(W, h)
             return True
         # Next to the solution errors cannot fall by much.
         slow = not worst <= NEWTON_PROGRESS * last and (iteration > 2 or not worst <= JOINT_ROUND_OFF)
@@ -196,7 +195,7 @@ def solve_linearly(W: Workspace, h: float, length: float) -> bool:
     system = factorise(W, LINEAR_STEP, h, length, 0.0, system, REDUNDANT_EPSILON)
     if system < 0:
         return False
-    boxes = boxed_rows(link, W.joints)
+    boxes = boxed_rows(W)
     iterate(W, LINEAR_STEP, system, CONDENSED_PASSES, boxes, h, True)
     for i in range(W.bodies):
         for c in range(3):
