@@ -147,9 +147,10 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
 
 
 @nonallocating
-def apart(row: Row, x: float, y: float) -> tuple[float, float]:
-    """The distance d + r_b - r_a of the points of a contact on both bodies, along n and along -t; d = (x, y) leads from
-    the centre of body a to that of b. Arms are r = arm_t n - arm_n t."""
+def apart(row: Row, PLACE: FloatArray) -> tuple[float, float]:
+    """The distance d + r_b - r_a of the points of a contact on both bodies, along n and along -t, with bodies at PLACE
+    (k, 2 or more): d leads from the centre of body a to that of b. Arms are r = arm_t n - arm_n t."""
+    x, y = PLACE[row.b, 0] - PLACE[row.a, 0], PLACE[row.b, 1] - PLACE[row.a, 1]
     along = x * row.nx + y * row.ny + (row.arm_tb - row.arm_ta)
     return along, x * row.ny - y * row.nx + (row.arm_nb - row.arm_na)
 
@@ -174,7 +175,7 @@ def points_apart(interval: Interval, i: int) -> tuple[float, float, float]:
     a, b = row.a, row.b
     if isle.IM[a] == 0.0 or isle.IM[b] == 0.0:
         return 0.0, 0.0, 0.0
-    along, across = apart(row, MID[b, 0] - MID[a, 0], MID[b, 1] - MID[a, 1])
+    along, across = apart(row, MID)
     off, size = abs(along) + abs(across), min(isle.EXTENT[a], isle.EXTENT[b])
     if not off <= size:
         return 0.0, 0.0, 0.0

@@ -18,7 +18,7 @@ from ..model.scene import Scene
 from ..newton.entries import acts
 from ..newton.response import prepare_response, respond
 from ..newton.rows import unit_of
-from .gathered import gather_component
+from .gathered import gather_component, number_of
 
 
 @nonallocating
@@ -42,10 +42,9 @@ def step_component(
     MID: (k, 2), out: where constant forces have acted, means of the places over time.
     """
     step_in_scratch(J, s, h, length, whole)
-    b0 = J.COMPONENT[s].first_body
-    for i in range(J.COMPONENT[s].end_body - b0):
-        if J.LOCAL[i].freedoms > 0:
-            q = A.PLACE[J.JOINED[b0 + i].body]
+    for i in range(J.COMPONENT[s].end_body - J.COMPONENT[s].first_body):
+        q = number_of(A, J, s, i)
+        if q >= 0:
             for c in range(3):
                 V[q, c], END[q, c], WAY[q, c] = J.LOCAL[i].v0[c], J.LOCAL[i].pose[c], J.LOCAL[i].travel[c]
             MID[q, 0], MID[q, 1] = J.LOCAL[i].mean[0] / h, J.LOCAL[i].mean[1] / h
@@ -83,7 +82,7 @@ def close_at_poses(
 ) -> float:  # fmt: skip
     """Close the joints of component s at the poses NEW (k, 3) of an island, along M^-1 G^T. Returns by how much more
     energy its springs store there than at OLD; infinity if joints do not close or limits are passed."""
-    W, b0 = workspace(J, s), J.COMPONENT[s].first_body
+    W = workspace(J, s)
     length = gather_component(A, J, s, OLD, V, V, IM, II, t, h)
     size_joints(W, length)
     stored = springs_of(W)
@@ -91,10 +90,9 @@ def close_at_poses(
     gather_component(A, J, s, NEW, V, V, IM, II, t, h)
     project(W, POSES)
     for i in range(W.bodies):
-        if J.LOCAL[i].freedoms > 0:
-            q = A.PLACE[J.JOINED[b0 + i].body]
-            for c in range(3):
-                NEW[q, c] = J.LOCAL[i].pose[c]
+        q = number_of(A, J, s, i)
+        for c in range(3 if q >= 0 else 0):
+            NEW[q, c] = J.LOCAL[i].pose[c]
     stored = springs_of(W) - stored
     for k in range(W.joints):
         link, hinge = W.link[k], W.J.HINGE[k]

@@ -5,12 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, nonallocating
-from ..compiled.records import Rows
+from ..compiled import kernel
 from ..contacts.works import kinetic_energy
 from ..joints.correct import fitting_loss
 from ..joints.workspace import workspace
-from ..model.contacts import JointedProblem, Row
+from ..model.contacts import JointedProblem
 from ..model.joints import Joints
 from ..model.parameters.joints import COLUMN_CONTACTS, FIT_CLOSING, FIT_ENERGY, FIT_RESIDUAL
 from ..model.scene import Scene
@@ -18,10 +17,10 @@ from ..rows.bounded import room_for_rows
 from ..rows.build import normal_rate
 from ..rows.inplace import add
 from .advance import Interval, apart, find_hit, join_points
-from .columns import fill_free, fill_group, make_columns, set_effective_masses
-from .component import fit_speeds, ready_at_poses
-from .gathered import find_places, gather_component
-from .lifting import raise_gaps
+from .columns import fill_free, make_columns, set_effective_masses
+from .component import fit_speeds
+from .gathered import gather_component, number_of
+from .lifting import fill_at_end, raise_gaps
 from .motors import acts_at_once, is_driven
 
 
@@ -54,10 +53,9 @@ def project_velocities(A: Scene, J: Joints, interval: Interval, L: FloatArray, e
         fit_speeds(J, s, length)
         J.STEPPED[s].projected += fitting_loss(workspace(J, s), J.STEPPED[s])
         for w in range(J.COMPONENT[s].end_body - J.COMPONENT[s].first_body):
-            body = J.JOINED[J.COMPONENT[s].first_body + w].body
-            if body < A.PLACE.shape[0] and A.PLACE[body] >= 0:
-                for c in range(3):
-                    motion.V[A.PLACE[body], c] = J.LOCAL[w].v0[c]
+            q = number_of(A, J, s, w)
+            for c in range(3 if q >= 0 else 0):
+                motion.V[q, c] = J.LOCAL[w].v0[c]
     if payer < 0 or m > COLUMN_CONTACTS:
         return np.zeros(m)
     PUSHING, pushing, fastest = np.empty(m, np.int64), 0, 0.0
@@ -72,16 +70,6 @@ def project_velocities(A: Scene, J: Joints, interval: Interval, L: FloatArray, e
     return np.zeros(m)
 
 
-@nonallocating
-def bring_arms(ROWS: Rows[Row], END: FloatArray, m: int) -> None:
-    """Join the points of m contacts at the poses END, where they have moved apart (`advance.apart`)."""
-    for i in range(m):
-        a, b = ROWS[i].a, ROWS[i].b
-        x, y = END[b, 0] - END[a, 0], END[b, 1] - END[a, 1]
-        along, across = apart(ROWS[i], x, y)
-        join_points(ROWS[i], along, across)
-
-
 @kernel
 def stop_closing(
     A: Scene, J: Joints, interval: Interval, end: float, PUSHING: IntArray, fine: float, payer: int
@@ -89,24 +77,21 @@ def stop_closing(
     """Normal impulses mu (m,), 0 <= mu _|_ u + G S G^T mu >= 0, on the contacts PUSHING, whose rates are u, with S the
     response of components at one instant: velocities that fit the joints still do, and contacts do not close. Energy
     changes by mu.(u + G S G^T mu / 2) <= 0, also if sweeps end early. Component `payer` has the loss in its ledger."""
-    isle, groups, ROWS, motion, _, m, n, _, h = interval
+    isle, groups, ROWS, motion, _, m, n, _, _ = interval
     pushing, KEEP = len(PUSHING), ROWS[: len(PUSHING)].copy()
     for i in range(pushing):
         KEEP[i] = ROWS[PUSHING[i]]
-    bring_arms(KEEP, motion.END, pushing)
+        along, across = apart(KEEP[i], motion.END)
+        join_points(KEEP[i], along, across)  # which have moved apart
     C = make_columns(groups, KEEP, pushing)
     fill_free(groups, C, KEEP, isle.IM, isle.II, pushing)
-    NOTHING, INDEX = np.zeros_like(isle.V), np.full(len(isle.IM), -1, np.int64)
-    HIT = find_hit(groups, KEEP, pushing)
+    INDEX, HIT = np.full(len(isle.IM), -1, np.int64), find_hit(groups, KEEP, pushing)
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
         if s < 0 or HIT[g] == 0:
             continue
-        gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, end, h)
-        size = find_places(A, J, s, INDEX)
-        if not ready_at_poses(J, s):
+        if not fill_at_end(A, J, interval, C, g, INDEX, KEEP, pushing, end):
             return np.zeros(m)
-        fill_group(J, groups, C, g, INDEX, KEEP, pushing, np.empty((size, 3)), 1)
     set_effective_masses(groups, C, KEEP, pushing)
     RATES = np.empty(pushing)
     for i in range(pushing):

@@ -141,6 +141,13 @@ def gather_alone(A: Scene, J: Joints, s: int, t: float, h: float) -> float:
 
 
 @nonallocating
+def number_of(A: Scene, J: Joints, s: int, i: int) -> int:
+    """The number in the island (A.PLACE) of body i of component s; -1 if joints do not move it."""
+    member = J.JOINED[J.COMPONENT[s].first_body + i]
+    return int(A.PLACE[member.body]) if member.freedoms > 0 else -1
+
+
+@nonallocating
 def lead_component(A: Scene, J: Joints, s: int, V: FloatArray, ACC: FloatArray, GUESS: FloatArray, h: float) -> None:
     """Begin Newton's method in the next step of component s with velocities GUESS (k, 3) at the end: (GUESS - V)/h -
     ACC by joints. Not if the last step met a limit: it has a guess for each part (`..joints.parts`)."""
@@ -148,20 +155,18 @@ def lead_component(A: Scene, J: Joints, s: int, V: FloatArray, ACC: FloatArray, 
         return
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         for end in range(2):
-            member = J.COMPONENT[s].first_body + J.COUPLING[k].body[end]
-            if J.JOINED[member].freedoms > 0:
-                q = A.PLACE[J.JOINED[member].body]
-                for c in range(3):
-                    J.JOINT[J.COUPLING[k].joint].led[end, c] = (GUESS[q, c] - V[q, c]) / h - ACC[q, c]
+            q = number_of(A, J, s, J.COUPLING[k].body[end])
+            for c in range(3 if q >= 0 else 0):
+                J.JOINT[J.COUPLING[k].joint].led[end, c] = (GUESS[q, c] - V[q, c]) / h - ACC[q, c]
 
 
 @nonallocating
 def find_places(A: Scene, J: Joints, s: int, INDEX: IntArray) -> int:
-    """Write to INDEX (k,) the places in the scratch of the bodies of component s that have local numbers (A.PLACE); how
+    """Write to INDEX (k,) the places in the scratch of the bodies of an island that joints of component s move; how
     many bodies the scratch has."""
-    b0, size = J.COMPONENT[s].first_body, J.COMPONENT[s].end_body - J.COMPONENT[s].first_body
-    for w in range(size):
-        body = J.JOINED[b0 + w].body
-        if body < A.PLACE.shape[0] and A.PLACE[body] >= 0:
-            INDEX[A.PLACE[body]] = w
+    size = J.COMPONENT[s].end_body - J.COMPONENT[s].first_body
+    for i in range(size):
+        q = number_of(A, J, s, i)
+        if q >= 0:
+            INDEX[q] = i
     return int(size)

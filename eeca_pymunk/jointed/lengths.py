@@ -114,7 +114,7 @@ def points_part(interval: Interval, L: FloatArray) -> float:
     for z in range(interval.m):
         a, b = ROWS[z].a, ROWS[z].b
         if L[z, 0] != 0.0 and isle.IM[a] > 0.0 and isle.IM[b] > 0.0:
-            along, across = apart(ROWS[z], MID[b, 0] - MID[a, 0], MID[b, 1] - MID[a, 1])
+            along, across = apart(ROWS[z], MID)
             far = max(far, (abs(along) + abs(across)) / (INTERVAL_WAY * min(isle.EXTENT[a], isle.EXTENT[b])))
     return far
 

@@ -6,15 +6,16 @@ import math
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
+from ..compiled.records import Rows
 from ..contacts.correction import admissible, least_of, turn_by, unturn
 from ..contacts.works import work_of_forces
 from ..islands.depths import left_to_lift
 from ..islands.intervals import contacts_at
 from ..islands.local import clear_places
 from ..islands.payment import payment
-from ..model.contacts import JointedProblem
+from ..model.contacts import Columns, JointedProblem, Row
 from ..model.joints import Joints
 from ..model.parameters.intervals import CORRECTION_ROUND_OFF
 from ..model.parameters.joints import JOINTED_CORRECTION_SWEEPS
@@ -41,6 +42,21 @@ def raise_gaps(
         if problem.C.LEFT_OUT[i] != 0:
             GAPS[i] = np.inf
     return lift_above_walls(problem, n, GAPS, D, tolerance, JOINTED_CORRECTION_SWEEPS)
+
+
+@kernel
+def fill_at_end(
+    A: Scene, J: Joints, interval: Interval, C: Columns, g: int, INDEX: IntArray, ROWS: Rows[Row], m: int, end: float
+) -> bool:  # fmt: skip
+    """Compute the columns C of the normal impulses of m contacts on group g, a component, at the poses and the instant
+    at the end of an interval; False if there is no response. INDEX (k,): scratch."""
+    isle, motion, s = interval.isle, interval.motion, interval.groups.COMPONENT[g]
+    gather_component(A, J, s, motion.END, motion.V, np.zeros_like(isle.V), isle.IM, isle.II, end, interval.h)
+    size = find_places(A, J, s, INDEX)
+    if not ready_at_poses(J, s):
+        return False
+    fill_group(J, interval.groups, C, g, INDEX, ROWS, m, np.empty((size, 3)), 1)
+    return True
 
 
 @kernel
@@ -107,16 +123,13 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget
     size = least_of(isle.EXTENT, n)
     if deepest >= -left_to_lift(A, end) * size or not budget >= 0.0:
         return 0.0
-    NOTHING, INDEX = np.zeros_like(V), np.full(len(isle.IM), -1, np.int64)
+    INDEX = np.full(len(isle.IM), -1, np.int64)
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
         # The columns of the interval, in which stiff springs resist, so that D hardly strains them; but bounded rows
         # would keep speeds in it.
         if s >= 0 and (build or keeps_speed(J, s)):
-            gather_component(A, J, s, END, V, NOTHING, isle.IM, isle.II, end, h)
-            places = find_places(A, J, s, INDEX)
-            if ready_at_poses(J, s):
-                fill_group(J, groups, C, g, INDEX, ROWS, m, np.empty((places, 3)), 1)
+            fill_at_end(A, J, interval, C, g, INDEX, ROWS, m, end)
     KEEP = ROWS[:m].copy()
     set_effective_masses(groups, C, KEEP, m)
     D = np.zeros_like(V)

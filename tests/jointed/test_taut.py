@@ -12,8 +12,8 @@ import eeca_pymunk as ep
 from eeca_pymunk.arrays import FloatArray
 from eeca_pymunk.compiled.records import Rows, columns, rows
 from eeca_pymunk.impacts.scene import EventLoop
+from eeca_pymunk.jointed import advance
 from eeca_pymunk.jointed.component import answer, ready_in_step
-from eeca_pymunk.jointed.fitting import bring_arms
 from eeca_pymunk.jointed.motors import let_slip
 from eeca_pymunk.joints.taut import is_taut
 from eeca_pymunk.joints.workspace import JointMemory
@@ -268,7 +268,8 @@ def test_arms_are_brought_to_one_point() -> None:
     for arm_n, arm_t, away in (("arm_na", "arm_ta", 0.1), ("arm_nb", "arm_tb", -0.1)):
         put_arms(ROWS, middle + away, arm_n, arm_t)
     before = arms(ROWS, "arm_na", "arm_ta") + arms(ROWS, "arm_nb", "arm_tb")
-    bring_arms(ROWS, END, 4)
+    for i in range(4):
+        advance.join_points(ROWS[i], *advance.apart(ROWS[i], END))
     a, b = arms(ROWS, "arm_na", "arm_ta"), arms(ROWS, "arm_nb", "arm_tb")
     assert np.abs(END[P, :2] + a - END[Q, :2] - b).max() < 1e-14
     assert np.abs(a + b - before).max() < 1e-14
