@@ -15,7 +15,8 @@ from ..jointed.component import answer, fit_speeds, ready_at_poses, size_joints
 from ..jointed.gathered import find_places, gather_component
 from ..jointed.groups import Groups
 from ..joints.correct import hold_closing, keep_speeds
-from ..joints.start import compute_rows, mark_bounded
+from ..joints.frame import supports_rest
+from ..joints.start import compute_rows, release_limits
 from ..joints.workspace import workspace
 from ..model.contacts import Columns
 from ..model.joints import Joints
@@ -24,24 +25,10 @@ from .simultaneous import Block
 
 
 @nonallocating
-def has_prescribed_motion(J: Joints, s: int) -> bool:
-    """Whether what impulses do not change moves a part of component s: a moving partner, or a spin of infinite moment;
-    its bodies are in the scratch of `..joints`."""
-    for i in range(J.COMPONENT[s].end_body - J.COMPONENT[s].first_body):
-        for c in range(3):
-            if J.LOCAL[i].mobility[c] == 0.0 and J.LOCAL[i].v0[c] != 0.0:
-                return True
-    return False
-
-
-@nonallocating
 def begin_impact(J: Joints, groups: Groups) -> None:
     """Let no limit of the components, and no joint of bounded force, take part in the impact."""
     for s in groups.JOINTED:
-        W = workspace(J, s)
-        mark_bounded(W)
-        for k in range(W.joints):
-            W.link[k].side = W.link[k].let_go = 0
+        release_limits(workspace(J, s))
 
 
 @nonallocating
@@ -71,10 +58,9 @@ def answer_impact(A: Scene, J: Joints, block: Block, groups: Groups, C: Columns,
             continue
         length = gather_component(A, J, s, block.POSE, V, np.zeros_like(V), block.IM, block.II, t, 0.0)
         size = find_places(A, J, s, INDEX)
-        PUSH = np.zeros((size, 3))
-        along = has_prescribed_motion(J, s)
-        driven = driven or along
-        if along:
+        PUSH, moved = np.zeros((size, 3)), not supports_rest(workspace(J, s))
+        driven = driven or moved
+        if moved:
             fit_speeds(J, s, length)
             for q in range(n):
                 if groups.GROUP[q] == g:
@@ -83,7 +69,7 @@ def answer_impact(A: Scene, J: Joints, block: Block, groups: Groups, C: Columns,
         if not ready_at_poses(J, s):
             continue
         fill_group(J, groups, C, g, INDEX, ROWS, len(ROWS), PUSH, 2)
-        if not along:
+        if not moved:
             keep_allowed(J, block, groups, g, n, INDEX, PUSH)
     return driven
 
@@ -108,7 +94,7 @@ def keep_allowed(J: Joints, block: Block, groups: Groups, g: int, n: int, INDEX:
     answer(J, groups.COMPONENT[g], PUSH)
     for q in range(n):
         if groups.GROUP[q] == g:
-            for c in range(3):
+            for c in range(3 if block.II[q] > 0.0 else 2):
                 V[q, c] = PUSH[INDEX[q], c]
 
 
@@ -125,11 +111,10 @@ def add_joint_impulses(
         if s < 0:
             continue
         gather_component(A, J, s, block.POSE, FREE, np.zeros_like(FREE), block.IM, block.II, t, 0.0)
-        along = has_prescribed_motion(J, s)
         PUSH = np.zeros((find_places(A, J, s, INDEX), 3))
         if not ready_at_poses(J, s):
             continue
-        if not along:
+        if supports_rest(workspace(J, s)):
             put_momenta(block, groups, g, len(FREE), FREE, INDEX, PUSH)
         for i in range(len(ROWS)):
             push_group(groups, g, INDEX, ROWS[i], L[i, 0], L[i, 1], PUSH)

@@ -10,7 +10,7 @@ from __future__ import annotations
 from ..compiled import nonallocating
 from ..geometry.flight import opening_rate, pose, rate
 from ..geometry.gap import gap
-from ..joints.start import mark_bounded
+from ..joints.start import release_limits
 from ..joints.workspace import workspace
 from ..model.joints import Joints
 from ..model.scene import Scene
@@ -25,9 +25,7 @@ def allowed_velocity(A: Scene, J: Joints, i: int, t: float) -> tuple[float, floa
     if s >= 0 and A.BODY[i].since == t:
         W, first = workspace(J, s), J.COMPONENT[s].first_body
         length = gather_alone(A, J, s, t, 0.0)
-        mark_bounded(W)
-        for k in range(W.joints):
-            W.link[k].side = W.link[k].let_go = 0
+        release_limits(W)
         fit_speeds(J, s, length)
         for w in range(W.bodies):
             if J.JOINED[first + w].body == i:

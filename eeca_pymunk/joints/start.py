@@ -31,6 +31,14 @@ def mark_bounded(W: Workspace) -> None:
 
 
 @nonallocating
+def release_limits(W: Workspace) -> None:
+    """At one instant: `mark_bounded`, and let no limit act, until velocities show which of them close."""
+    mark_bounded(W)
+    for k in range(W.joints):
+        W.link[k].side = W.link[k].let_go = 0
+
+
+@nonallocating
 def spring_torque(W: Workspace, k: int, length: float) -> float:
     """The scale of the torque of joint k, a spring, with arms of the size `length` of the component."""
     joint, link = W.J.JOINT[W.link[k].joint], W.link[k]

@@ -13,7 +13,6 @@ from ..compiled.records import Rows
 from ..model.bodies import Body
 from ..model.joints import NOTHING, Joint, Joints, Workspace, joints_of
 from ..newton.boxes import room_for_boxes
-from ..newton.dual import STRIDE
 from .plan import make_plan, together
 
 
@@ -40,10 +39,10 @@ def measure_plan(J: Joints, ROOM: IntArray) -> bool:
         whole, dual = C.unknowns * (3 * C.band + 1), C.dual_size * (2 * C.dual_band + 1)
         ROOM[0] = max(ROOM[0], C.end_body - C.first_body)
         ROOM[1] = max(ROOM[1], C.end_joint - C.first_joint)
-        ROOM[2] = max(ROOM[2], 2 * C.unknowns, C.dual_size)
+        ROOM[2] = max(ROOM[2], 2 * C.unknowns)
         ROOM[3] = max(ROOM[3], whole, dual if C.dual_for != NOTHING else 0)
         ROOM[4] = max(ROOM[4], 2 * (C.unknowns + C.impulses))
-        ROOM[5] = max(ROOM[5], STRIDE * C.dual_size + room_for_boxes(C.boxes, C.unknowns + C.impulses))
+        ROOM[5] = max(ROOM[5], C.dual_size + room_for_boxes(C.boxes, C.unknowns + C.impulses))
     ROOM[4] = max(ROOM[4], 2)
     small = J.LOCAL.shape[0] < ROOM[0] or J.HINGE.shape[0] < ROOM[1] or J.PIVOTS.shape[0] < ROOM[2]
     return bool(

@@ -76,7 +76,6 @@ class JointStep(Record):
     missing: Annotated[FloatArray, 2]  # what a condensed system still lacks of its rows
     frozen_rows: Annotated[FloatArray, 2, 6]  # scaled J of the factors of a linear system
     frozen_slopes: Annotated[FloatArray, 2, 6]  # scaled G of these
-    dual: int  # the first of its rows that act, in a system in the rows alone
 
 
 STIFF_NONE, STIFF_TURNS, STIFF_ALL = 0, 1, 2  # what of STIFF is there: nothing, [2, 2] and [5, 5], all

@@ -89,7 +89,6 @@ class Component(Record):
     impulses: int  # number of unknowns beside the matrix
     dual_size: int  # of its matrix in the rows alone: size and half-width
     dual_band: int
-    dual_rows: int  # of its rows those that act, in the last factors
     dual_for: int  # what its dual system is taken for: NOTHING, INSTANTS (POSES, SPEEDS) or STEPS too
     taut: int  # 1 if impulses of the last step pull so hard that this one begins with them (`..joints.taut`)
     boxes: int  # most rows of bounded impulses that may act, if few enough for `..newton.boxes`; else 0

@@ -30,7 +30,6 @@ from ..model.joints import BOXED, Coupling, Workspace
 from ..model.parameters import joints as parameters
 from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, on_half_disc, on_interval
 from .condensed import factor, substitute
-from .dual import STRIDE
 from .entries import acting_rows, interval_of, put_free, size_of_terms
 
 
@@ -83,7 +82,7 @@ def measure_boxes(W: Workspace, w: int, u: int, n: int, h: float, fresh: bool) -
     """Write w, if columns are `fresh`; u for the solution in RIGHT; impulses and their bounds."""
     hinge, link, component, more = W.J.HINGE, W.link, W.J.COMPONENT[W.s], W.J.MORE
     size = component.unknowns + component.impulses
-    cols = STRIDE * component.dual_size
+    cols = component.dual_size
     row = 0
     for k in range(W.joints):
         rows = rows_of(link, k)
@@ -202,7 +201,7 @@ def apply_boxes(W: Workspace, u: int, n: int) -> None:
     """Add the effect of the changes of the boxed impulses, and these changes, scaled, to the solution in RIGHT."""
     hinge, link, component, more = W.J.HINGE, W.link, W.J.COMPONENT[W.s], W.J.MORE
     size = component.unknowns + component.impulses
-    cols = STRIDE * component.dual_size
+    cols = component.dual_size
     row = 0
     for k in range(W.joints):
         for r in range(rows_of(link, k)):
@@ -223,7 +222,7 @@ def bound_impulses(W: Workspace, n: int, h: float, fresh: bool) -> None:
     """Complete the solution in RIGHT, which has no change of the n boxed impulses. fresh: whether the columns are new,
     by `solve.find_columns`."""
     component = W.J.COMPONENT[W.s]
-    w = STRIDE * component.dual_size + (n + 1) * (component.unknowns + component.impulses)
+    w = component.dual_size + (n + 1) * (component.unknowns + component.impulses)
     u = w + 3 * n * n
     measure_boxes(W, w, u, n, h, fresh)
     sweep = n * (parameters.BOX_ROW_WORK + parameters.BOX_WORK * n) + parameters.DISC_WORK * count_discs(W.J.MORE, u, n)

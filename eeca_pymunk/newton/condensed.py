@@ -12,8 +12,6 @@ from __future__ import annotations
 
 from ..arrays import FloatArray
 from ..compiled import inlined, nonallocating
-from ..compiled.records import Rows
-from ..model.joint_steps import JointStep
 from ..model.joints import CONDENSED, WHOLE, Workspace
 from ..model.parameters.joints import FACTOR_BAND
 from .entries import put_condensed, put_rows
@@ -96,27 +94,17 @@ def substitute(matrix: FloatArray, size: int, band: int, right: FloatArray, at: 
 
 
 @inlined
-def freeze_end(hinge: Rows[JointStep], k: int, end: int, r: int, slopes: bool, x: float, y: float, z: float) -> None:
-    """Store the entries J and G (`slopes`, else J for both) of row r of joint k for its body at one end: scaled by the
-    row's scale and the body's roots x, y, z."""
-    scale = hinge[k].scale[r]
-    u, v, w, at = scale * x, scale * y, scale * z, 3 * end
-    joint = hinge[k]
-    joint.frozen_rows[r, at] = u * joint.rows[r, at]
-    joint.frozen_rows[r, at + 1] = v * joint.rows[r, at + 1]
-    joint.frozen_rows[r, at + 2] = w * joint.rows[r, at + 2]
-    G = joint.slopes if slopes else joint.rows
-    joint.frozen_slopes[r, at] = u * G[r, at]
-    joint.frozen_slopes[r, at + 1] = v * G[r, at + 1]
-    joint.frozen_slopes[r, at + 2] = w * G[r, at + 2]
-
-
-@inlined
 def freeze_row(W: Workspace, k: int, r: int, slopes: bool) -> None:
-    """`freeze_end` for both ends of row r of joint k."""
+    """Store the entries J and G (`slopes`, else J for both) of row r of joint k, scaled by the row's scale and the
+    roots of its bodies."""
+    joint = W.J.HINGE[k]
+    G = joint.slopes if slopes else joint.rows
     for end in range(2):
-        root = W.J.LOCAL[W.link[k].body[end]].root
-        freeze_end(W.J.HINGE, k, end, r, slopes, root[0], root[1], root[2])
+        root, at = W.J.LOCAL[W.link[k].body[end]].root, 3 * end
+        for c in range(3):
+            factor = joint.scale[r] * root[c]
+            joint.frozen_rows[r, at + c] = factor * joint.rows[r, at + c]
+            joint.frozen_slopes[r, at + c] = factor * G[r, at + c]
 
 
 @inlined

@@ -12,147 +12,98 @@ from ..arrays import FloatArray
 from ..compiled import inlined
 from ..model.joints import Workspace
 from ..model.parameters.joints import LEAST_INERTIA
-from .condensed import factor, freeze_end, substitute
-
-STRIDE = 6  # numbers of scratch in MORE for each row: its J, and its G over the inertia, of one body
+from .condensed import add_column, factor, freeze_row, row_times, substitute
 
 
 @inlined
-def number_rows(W: Workspace) -> int:
-    """Number the rows that act (`JointStep.dual`), in the order of the plan: limits on which no joint stands have no
-    place in the matrix. Returns how many they are. PIVOTS is scratch."""
-    hinge, link, numbers, size = W.J.HINGE, W.link, W.J.PIVOTS, W.J.COMPONENT[W.s].dual_size
-    for i in range(size):
-        numbers[i] = 0
-    for k in range(W.joints):
-        for r in range(link[k].rows):
-            if hinge[k].weight[r] != 0.0:
-                numbers[link[k].first_dual + r] = 1
-    count = 0
-    for i in range(size):
-        acting = numbers[i]
-        numbers[i] = count
-        count += acting
-    for k in range(W.joints):
-        # Rows that do not act come after those of their joint that do.
-        if link[k].rows > 0:
-            hinge[k].dual = numbers[link[k].first_dual]
-    return int(count)
+def freeze_over_inertia(W: Workspace, k: int, r: int, slopes: bool) -> None:
+    """`freeze_row` with G A^-1 in place of G: `inertia` of the bodies is the diagonal of A^-1."""
+    freeze_row(W, k, r, slopes)
+    for end in range(2):
+        for c in range(3):
+            W.J.HINGE[k].frozen_slopes[r, 3 * end + c] *= W.J.LOCAL[W.link[k].body[end]].inertia[c]
+
+
+@inlined
+def put_pairs(W: Workspace, one: int, first: int) -> None:
+    """Add the products of the rows of a joint on a body with those of all joints on it to S. `one`, `first`: that joint
+    and the first of these, as `Coupling.following`."""
+    hinge, link, matrix, band = W.J.HINGE, W.link, W.J.MATRIX, W.J.COMPONENT[W.s].dual_band
+    k, at = one >> 1, 3 * (one & 1)
+    for r in range(link[k].rows):
+        if hinge[k].weight[r] == 0.0:
+            continue
+        G, begin = hinge[k].frozen_slopes, (link[k].first_dual + r) * 2 * band + band
+        gx, gy, gw = G[r, at], G[r, at + 1], G[r, at + 2]
+        other = first
+        while other >= 0:
+            m, to = other >> 1, 3 * (other & 1)
+            for q in range(link[m].rows):
+                if hinge[m].weight[q] != 0.0:
+                    J = hinge[m].frozen_rows
+                    product = gx * J[q, to] + gy * J[q, to + 1] + gw * J[q, to + 2]
+                    matrix[begin + link[m].first_dual + q] += product
+            other = link[m].following[other & 1]
 
 
 @inlined
 def factor_dual(W: Workspace, slopes: bool, add: float) -> bool:
-    """LU factors of S + `add` in `matrix`; False if there are none that can be trusted.
+    """LU factors of S + `add` in MATRIX; False if there are none that can be trusted. Rows that do not act are those of
+    the unit matrix.
 
     Args:
         slopes: whether the rows G are the slopes of the joints, or J; they and the rows J are frozen (`condensed`).
         add: on the diagonal, for rows that are elastic or may be redundant.
 
-    `inertia` of the bodies is the diagonal of A as `systems.assemble` left it; its reciprocal on return. MORE and
-    PIVOTS are scratch, STRIDE and 1 times the rows.
+    `inertia` of the bodies is the diagonal of A as `systems.assemble` left it; its reciprocal on return.
     """
-    hinge, link, local, matrix, more, numbers = W.J.HINGE, W.link, W.J.LOCAL, W.J.MATRIX, W.J.MORE, W.J.PIVOTS
-    size, band = number_rows(W), W.J.COMPONENT[W.s].dual_band
-    W.J.COMPONENT[W.s].dual_rows = size
-    width = 2 * band + 1
-    for i in range(size * width):
-        matrix[i] = 0.0
-    for i in range(size):
-        matrix[i * width + band] = add
+    link, local, matrix, component = W.link, W.J.LOCAL, W.J.MATRIX, W.J.COMPONENT[W.s]
+    size, band = component.dual_size, component.dual_band
     for i in range(W.bodies):
-        freedoms = local[i].freedoms
-        if freedoms == 0:
-            continue
-        a, b, c = local[i].inertia[0], local[i].inertia[1], local[i].inertia[2] if freedoms > 2 else 1.0
-        if not (a > LEAST_INERTIA and b > LEAST_INERTIA and c > LEAST_INERTIA):
-            return False
-        a, b, c = 1.0 / a, 1.0 / b, 1.0 / c
-        local[i].inertia[0], local[i].inertia[1], local[i].inertia[2] = a, b, c
-        x, y, z = local[i].root[0], local[i].root[1], local[i].root[2] if freedoms > 2 else 0.0
-        # The rows on this body, then all pairs of them.
-        count, one = 0, local[i].first
+        for c in range(local[i].freedoms):
+            if not local[i].inertia[c] > LEAST_INERTIA:
+                return False
+            local[i].inertia[c] = 1.0 / local[i].inertia[c]
+    for i in range(size * (2 * band + 1)):
+        matrix[i] = 0.0
+    for k in range(W.joints):
+        for r in range(link[k].rows):
+            acting = W.J.HINGE[k].weight[r] != 0.0
+            matrix[(link[k].first_dual + r) * (2 * band + 1) + band] = add if acting else 1.0
+            if acting:
+                freeze_over_inertia(W, k, r, slopes)
+    for i in range(W.bodies):
+        one = local[i].first if local[i].freedoms > 0 else -1
         while one >= 0:
-            k, end = one >> 1, one & 1  # see `Coupling.following`
-            for r in range(link[k].rows):
-                if hinge[k].weight[r] == 0.0:
-                    continue
-                freeze_end(hinge, k, end, r, slopes, x, y, z)
-                p, J, G = STRIDE * count, hinge[k].frozen_rows, hinge[k].frozen_slopes
-                more[p], more[p + 1], more[p + 2] = J[r, 3 * end], J[r, 3 * end + 1], J[r, 3 * end + 2]
-                more[p + 3], more[p + 4] = G[r, 3 * end] * a, G[r, 3 * end + 1] * b
-                more[p + 5] = G[r, 3 * end + 2] * c
-                numbers[count] = hinge[k].dual + r
-                count += 1
-            one = link[k].following[end]
-        for m in range(count):
-            p = STRIDE * m
-            gx, gy, gw = more[p + 3], more[p + 4], more[p + 5]
-            begin = numbers[m] * 2 * band + band
-            for n in range(count):
-                q = STRIDE * n
-                matrix[begin + numbers[n]] += gx * more[q] + gy * more[q + 1] + gw * more[q + 2]
+            put_pairs(W, one, local[i].first)
+            one = link[one >> 1].following[one & 1]
     return factor(matrix, size, band)
 
 
 @inlined
-def refresh(W: Workspace, slopes: bool) -> None:
+def refresh(W: Workspace) -> None:
     """Freeze the rows of the present iterate for `back_dual`, although the factors are of an earlier one: these rows
     say how impulses change velocities, and they turn in long steps."""
-    local = W.J.LOCAL
     for k in range(W.joints):
-        for end in range(2):
-            i = W.link[k].body[end]
-            if local[i].freedoms == 0:
-                continue
-            x, y, z = local[i].root[0], local[i].root[1], local[i].root[2] if local[i].freedoms > 2 else 0.0
-            for r in range(W.link[k].rows):
-                if W.J.HINGE[k].weight[r] != 0.0:
-                    freeze_end(W.J.HINGE, k, end, r, slopes, x, y, z)
+        for r in range(W.link[k].rows):
+            if W.J.HINGE[k].weight[r] != 0.0:
+                freeze_over_inertia(W, k, r, True)
 
 
 @inlined
 def back_dual(W: Workspace, right: FloatArray) -> None:
     """Solve with the factors of `factor_dual` in place of `right`, bodies and rows; MORE is scratch for the rows."""
     hinge, link, local, more = W.J.HINGE, W.link, W.J.LOCAL, W.J.MORE
+    for k in range(W.joints):
+        for r in range(link[k].rows):
+            left = right[link[k].first_row + r] - row_times(W, k, r, right, 0) if hinge[k].weight[r] != 0.0 else 0.0
+            more[link[k].first_dual + r] = left
+    substitute(W.J.MATRIX, W.J.COMPONENT[W.s].dual_size, W.J.COMPONENT[W.s].dual_band, more, 0)
+    for k in range(W.joints):
+        for r in range(link[k].rows):
+            if hinge[k].weight[r] != 0.0:
+                right[link[k].first_row + r] = more[link[k].first_dual + r]
+                add_column(W, k, r, more[link[k].first_dual + r], right, 0)
     for i in range(W.bodies):
         for c in range(local[i].freedoms):
             right[local[i].column + c] *= local[i].inertia[c]
-    for k in range(W.joints):
-        rows, row = link[k].rows, link[k].first_row
-        for r in range(rows):
-            if hinge[k].weight[r] != 0.0:
-                more[hinge[k].dual + r] = right[row + r]
-        for end in range(2):
-            i = link[k].body[end]
-            first, freedoms = local[i].column, local[i].freedoms
-            if freedoms == 0:
-                continue
-            x, y, w = right[first], right[first + 1], right[first + 2] if freedoms > 2 else 0.0
-            for r in range(rows):
-                if hinge[k].weight[r] == 0.0:
-                    continue
-                at, G = 3 * end, hinge[k].frozen_slopes
-                more[hinge[k].dual + r] -= G[r, at] * x + G[r, at + 1] * y + G[r, at + 2] * w
-    substitute(W.J.MATRIX, W.J.COMPONENT[W.s].dual_rows, W.J.COMPONENT[W.s].dual_band, more, 0)
-    for k in range(W.joints):
-        rows, row = link[k].rows, link[k].first_row
-        for r in range(rows):
-            if hinge[k].weight[r] != 0.0:
-                right[row + r] = more[hinge[k].dual + r]
-        for end in range(2):
-            i = link[k].body[end]
-            first, freedoms = local[i].column, local[i].freedoms
-            if freedoms == 0:
-                continue
-            x = y = w = 0.0
-            for r in range(rows):
-                if hinge[k].weight[r] == 0.0:
-                    continue
-                at, push, J = 3 * end, more[hinge[k].dual + r], hinge[k].frozen_rows
-                x += push * J[r, at]
-                y += push * J[r, at + 1]
-                w += push * J[r, at + 2]
-            right[first] += x * local[i].inertia[0]
-            right[first + 1] += y * local[i].inertia[1]
-            if freedoms > 2:
-                right[first + 2] += w * local[i].inertia[2]

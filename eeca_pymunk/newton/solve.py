@@ -22,7 +22,7 @@ from ..model.parameters.joints import (
     SPACING,
 )
 from .boxes import bound_impulses, boxed_rows, rows_of, unit_impulse
-from .dual import STRIDE, refresh
+from .dual import refresh
 from .motion import balance_velocities, move
 from .systems import apply, back, factorise, first_iterate, first_system, linearise
 
@@ -49,7 +49,7 @@ def find_columns(W: Workspace, system: int, passes: int, boxes: int) -> None:
     unit impulse along each. RIGHT is kept."""
     component, right, more = W.J.COMPONENT[W.s], W.J.RIGHT, W.J.MORE
     size = component.unknowns + component.impulses
-    first = STRIDE * component.dual_size
+    first = component.dual_size
     for i in range(size):
         more[first + boxes * size + i] = right[i]
     at = first
@@ -176,7 +176,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
             if system < 0:
                 return False
         elif system == DUAL:
-            refresh(W, True)
+            refresh(W)
         passes = 1 if give > 0.0 or not fresh else CONDENSED_PASSES - 1 if lasting else CONDENSED_PASSES
         iterate(W, STEP, system, passes, boxes, h, fresh)
         ready = lasting
