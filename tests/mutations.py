@@ -264,7 +264,7 @@ MUTATIONS = (
              "carried += impulse * speed", "carried -= impulse * speed", "joints/test_frame.py",
              "by_impulses"),
     Mutation("ledger: what turns has no frame", "joints/frame.py", "rigid, hangs, turns = W.J.LOCAL, True,",
-             "rigid, hangs, turns = W.J.LOCAL, supports_rest(W),", "joints/test_frame.py", "[96]"),
+             "rigid, hangs, turns = W.J.LOCAL, not has_prescribed_motion(W),", "joints/test_frame.py", "[96]"),
     Mutation("ledger: supports at impacts", "impacts/joint_impact.py",
              "A.PAR.external += gained_energy(", "A.PAR.external += 0.0 * gained_energy(", "jointed/test_supports.py",
              "struck"),

@@ -15,7 +15,7 @@ from ..jointed.component import answer, fit_speeds, ready_at_poses, size_joints
 from ..jointed.gathered import find_places, gather_component
 from ..jointed.groups import Groups
 from ..joints.correct import hold_closing, keep_speeds
-from ..joints.frame import supports_rest
+from ..joints.frame import has_prescribed_motion
 from ..joints.start import compute_rows, release_limits
 from ..joints.workspace import workspace
 from ..model.contacts import Columns
@@ -58,7 +58,7 @@ def answer_impact(A: Scene, J: Joints, block: Block, groups: Groups, C: Columns,
             continue
         length = gather_component(A, J, s, block.POSE, V, np.zeros_like(V), block.IM, block.II, t, 0.0)
         size = find_places(A, J, s, INDEX)
-        PUSH, moved = np.zeros((size, 3)), not supports_rest(workspace(J, s))
+        PUSH, moved = np.zeros((size, 3)), has_prescribed_motion(workspace(J, s))
         driven = driven or moved
         if moved:
             fit_speeds(J, s, length)
@@ -94,7 +94,7 @@ def keep_allowed(J: Joints, block: Block, groups: Groups, g: int, n: int, INDEX:
     answer(J, groups.COMPONENT[g], PUSH)
     for q in range(n):
         if groups.GROUP[q] == g:
-            for c in range(3 if block.II[q] > 0.0 else 2):
+            for c in range(3):
                 V[q, c] = PUSH[INDEX[q], c]
 
 
@@ -114,7 +114,7 @@ def add_joint_impulses(
         PUSH = np.zeros((find_places(A, J, s, INDEX), 3))
         if not ready_at_poses(J, s):
             continue
-        if supports_rest(workspace(J, s)):
+        if not has_prescribed_motion(workspace(J, s)):
             put_momenta(block, groups, g, len(FREE), FREE, INDEX, PUSH)
         for i in range(len(ROWS)):
             push_group(groups, g, INDEX, ROWS[i], L[i, 0], L[i, 1], PUSH)

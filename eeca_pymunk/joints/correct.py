@@ -12,7 +12,7 @@ from ..model.parameters import joints
 from ..newton.entries import acts, along, size_of_terms
 from ..newton.systems import apply, back, factorise, first_iterate, first_system, linearise
 from .bounds import inactive, limit_gap, limit_gap_rate
-from .frame import supports_rest, work_of_change
+from .frame import has_prescribed_motion, work_of_change
 from .lock import restore_momenta
 
 NOW, KEPT, SAVED = 0, 1, 2  # velocities of a kinetic energy
@@ -95,7 +95,7 @@ def fitting_loss(W: Workspace, ledger: JointLedger) -> float:
     supports, 0 unless they move, and enters the ledger.
     """
     gained = kinetic_of(W, NOW) - kinetic_of(W, KEPT)
-    if supports_rest(W):
+    if not has_prescribed_motion(W):
         return -gained
     lost = kinetic_of_change(W)
     ledger.supports += gained + lost

@@ -42,13 +42,14 @@ def supports(body: BodyStep, c: int) -> bool:
 
 
 @nonallocating
-def supports_rest(W: Workspace) -> bool:
-    """Whether all supports of the component are at rest."""
+def has_prescribed_motion(W: Workspace) -> bool:
+    """Whether what impulses do not change moves a part of the component: a partner, or a spin of infinite moment, which
+    joints of angles may hold others to although it is no unknown."""
     for i in range(W.bodies):
         for c in range(3):
-            if W.J.LOCAL[i].v0[c] != 0.0 and supports(W.J.LOCAL[i], c):
-                return False
-    return True
+            if not W.J.LOCAL[i].mobility[c] > 0.0 and W.J.LOCAL[i].v0[c] != 0.0:
+                return True
+    return False
 
 
 @nonallocating
@@ -124,7 +125,7 @@ def frame_of(W: Workspace) -> Frame:
 def account_frame(W: Workspace, h: float) -> None:
     """Add the work of moving supports in a solved part h, by the balance of momentum, to PART_LEDGER: 0 without a
     frame."""
-    if supports_rest(W):
+    if not has_prescribed_motion(W):
         return
     F = frame_of(W)
     if not (F.rigid and (F.hangs or F.turns)):

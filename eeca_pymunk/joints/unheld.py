@@ -11,7 +11,7 @@ from ..newton.solve import drop_impulses
 from .closing import farthest
 from .correct import NOW, SAVED, kinetic_of
 from .foresight import forget_parts
-from .frame import frame_of, relative_energy, supports_rest
+from .frame import frame_of, has_prescribed_motion, relative_energy
 from .ladder import gain_of_rows, restore_start, settle, undo_impulses
 from .ledger import clear_ledger, close_ledger, unexplained
 from .limits import step_with_limits
@@ -52,7 +52,7 @@ def stop_joints(W: Workspace, h: float) -> None:
     move_rigidly(W, h)
     clear_ledger(part)
     part.stored = springs_of(W) - stored
-    if not supports_rest(W):
+    if has_prescribed_motion(W):
         part.carried = unexplained(W) + lost
     close_ledger(W)
     undo_impulses(W)
