@@ -81,6 +81,8 @@ MUTATIONS = (
              "or not activate_limits(A, J, block, groups, t)", "or True", "impacts/test_joint_impact.py", "a_wall"),
     Mutation("impacts: joints of bounded force hold", "joints/start.py",
              'close."""\n    mark_bounded(W)\n', 'close."""\n', "jointed/test_still.py", "flies_into"),
+    Mutation("motors: sweeps alone", "newton/boxes.py", "if turn + 1 < parameters.BOX_ROUNDS:", "if turn < 0:",
+             "jointed/test_bounded.py", "long_arm"),
     Mutation("rest: what ends with a velocity", "jointed/rest.py", "rest.end_vx, rest.end_vy, rest.end_spin, reach)",
              "0.0, 0.0, 0.0, reach)", "jointed/test_still.py", "damping"),
     Mutation("rest: other laws of springs wake nothing", "jointed/rest.py", "if joint.push != kept.push or",

@@ -21,7 +21,7 @@ from ..model.parameters.joints import (
     REDUNDANT_EPSILON,
     SPACING,
 )
-from .boxes import bound_impulses, boxed_rows, rows_of, unit_impulse
+from .boxes import bound_impulses, boxed_rows, boxes_of, rows_of, unit_impulse
 from .dual import refresh
 from .motion import balance_velocities, move
 from .systems import apply, back, factorise, first_iterate, first_system, linearise
@@ -47,21 +47,18 @@ def has_bounded(W: Workspace) -> bool:
 def find_columns(W: Workspace, system: int, passes: int, boxes: int) -> None:
     """Compute the columns of the `boxes` boxed rows with the factors of `decompose`: the change of all unknowns by a
     unit impulse along each. RIGHT is kept."""
-    component, right, more = W.J.COMPONENT[W.s], W.J.RIGHT, W.J.MORE
-    size = component.unknowns + component.impulses
-    first = component.dual_size
-    for i in range(size):
-        more[first + boxes * size + i] = right[i]
-    at = first
+    B, right, at = boxes_of(W, boxes), W.J.RIGHT, 0
+    for i in range(B.size):
+        B.KEPT[i] = right[i]
     for k in range(W.joints):
         for r in range(rows_of(W.link, k)):
             unit_impulse(W, k, r)
             back(W, system, passes, right)
-            for i in range(size):
-                more[at + i] = right[i]
-            at += size
-    for i in range(size):
-        right[i] = more[at + i]
+            for i in range(B.size):
+                B.COLUMN[at + i] = right[i]
+            at += B.size
+    for i in range(B.size):
+        right[i] = B.KEPT[i]
 
 
 @nonallocating

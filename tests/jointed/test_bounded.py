@@ -252,3 +252,21 @@ def test_a_motor_at_different_bounds_in_parts_of_a_step_is_given(spin: float) ->
     list_rows(scene, J, B, 0, 0.1, np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 1.0 + spin]]))
     assert B.ROWS[0].now == 0.2
     assert (B.ROWS[0].low, B.ROWS[0].high) == ((-0.5, 0.5) if spin == 0.0 else (0.2, 0.2))
+
+
+def test_motors_of_a_long_arm_are_solved_together() -> None:
+    """Each of twelve motors bears all links beyond it: sweeps over their torques alone do not converge."""
+    space = pymunk.Space()
+    space.gravity = (0.0, -9.81)
+    before = space.static_body
+    for i in range(12):
+        link = pymunk.Body(1.0, 0.1)
+        link.position = i + 0.5, 0.0
+        motor = pymunk.SimpleMotor(before, link, 0.0)
+        motor.max_force = 100.0 * (12 - i) ** 2
+        space.add(link, pymunk.PivotJoint(before, link, (float(i), 0.0)), motor)
+        before = link
+    stepper = ep.EECA(space)
+    for _ in range(10):
+        assert stepper.step(1 / 60).converged
+    assert before.position == pytest.approx((11.5, 0.0), abs=1e-10)

@@ -115,10 +115,10 @@ BACK: list[Part] = [
     (systems, "back_dual", lambda W, right: dual(W, 30)),
 ]
 REFINEMENTS: list[Part] = [(systems, "back_condensed", lambda W, passes, *_: passes * W.joints)]
-BOX_SWEEPS: list[Part] = [(boxes, "sweep_boxes", lambda more, w, u, n: n * n)]
-BOX_ROWS: list[Part] = [(boxes, "sweep_boxes", lambda more, w, u, n: n)]
+BOX_SWEEPS: list[Part] = [(boxes, "sweep_boxes", lambda B: B.n**2)]
+BOX_ROWS: list[Part] = [(boxes, "sweep_boxes", lambda B: B.n)]
 BOX_DISCS: list[Part] = [(boxes, "sweep_boxes", lambda *_: 1)]
-BOX_COLUMNS: list[Part] = [(boxes, "measure_boxes", lambda W, w, u, n, *_: n * size_of(W))]
+BOX_COLUMNS: list[Part] = [(boxes, "measure_boxes", lambda W, B, *_: B.n * size_of(W))]
 # The box is the only body: each contact and each row has one entry.
 SWEEPS: list[Part] = [(columns, "sweep_bounded", lambda B, L, m, V: m + B.USED[0])]
 SLIPS: list[Part] = [(columns, "lawful", lambda *given: lawful(*given)[2])]
