@@ -37,8 +37,7 @@ def flag_pairs(TABLE: Table) -> None:
     A = scene_of(TABLE)
     for c in range(A.COUNT.pushes):
         if A.PUSHED_BY[c].root >= 0:
-            a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
-            mark_pair(A, a, b, 1)
+            mark_pair(A, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 1)
 
 
 @nonallocating

@@ -61,15 +61,13 @@ def disturb(A: Scene, i: int) -> None:
 
 
 @nonallocating
-def renew_forces(A: Scene, c: int, stamp: float) -> None:
-    """Set the stamp of the remembered forces of contact c, if they are of the last step, to that of the step
-    `stamp`."""
-    a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
-    key = key_of(A, a, b)
+def renew_forces(A: Scene, c: int) -> None:
+    """Let the remembered forces of contact c, if they are of the last step, be of this one."""
+    key = key_of(A, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b)
     for z in range(2):
         row = find(A.KEYS, key + z)
-        if row >= 0 and A.FORCES[row].stamp >= stamp - 1.0:
-            A.FORCES[row].stamp = stamp
+        if row >= 0 and A.FORCES[row].stamp >= A.PAR.stamp - 1.0:
+            A.FORCES[row].stamp = A.PAR.stamp
 
 
 @nonallocating
@@ -178,7 +176,7 @@ def set_awake(A: Scene, root: int) -> None:
     other. The remembered forces of its contacts count as those of this step."""
     for c in range(A.COUNT.pushes):
         if A.PUSHED_BY[c].root == root:
-            renew_forces(A, c, A.PAR.stamp)
+            renew_forces(A, c)
     i = root
     while i >= 0:
         A.MEMBER[i].rest = AWAKE
@@ -203,7 +201,7 @@ def log_contact(A: Scene, c: int, part: float, duration: float) -> None:
 def report_at_rest(A: Scene, c: int) -> None:
     """At the end of a step: log the impulse of contact c of an island at rest, which was that of the step as planned,
     and renew its remembered forces."""
-    renew_forces(A, c, A.PAR.stamp)
+    renew_forces(A, c)
     if A.PUSHED[c].normal != 0.0 or A.PUSHED[c].tangential != 0.0:
         log_contact(A, c, A.PAR.dt / A.PAR.planned, A.PAR.dt)
 

@@ -139,7 +139,7 @@ def change_box(B: Boxes, i: int, to: float) -> float:
         B.X[i] = to
         for j in range(B.n):
             B.U[j] += B.W[j * B.n + i] * change
-    return abs(change)
+    return float(abs(change))
 
 
 @nonallocating
@@ -166,7 +166,7 @@ def free_of_bounds(B: Boxes, i: int) -> bool:
     """Whether impulse i is inside of its bounds."""
     inside = B.LOW[i] < B.X[i] < B.HIGH[i]
     if B.PART[i] == SINGLE:
-        return inside
+        return bool(inside)
     y, bound = B.X[i + 1 if B.PART[i] == FIRST_OF_DISC else i - 1], max(B.HIGH[i], -B.LOW[i])
     return bool(inside and B.X[i] * B.X[i] + y * y < bound * bound * (1.0 - 1e-14))
 
