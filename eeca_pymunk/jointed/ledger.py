@@ -43,7 +43,7 @@ def mark_edited(A: Scene, J: Joints, STATES: FloatArray, IDS: IntArray) -> None:
         for c in range(6):
             same = same and now[k, c] == before[k, c]
             known = known or before[k, c] == before[k, c]  # NaN is unknown
-        A.PLACE[i] = -1 if same else 1 if known else 0
+        A.PLACE[i] = -1 if same else 1 if known else 0  # scratch until the end of this function
         if not same:
             A.RESTING[i].longest = math.inf
     n = A.PLACE.shape[0]

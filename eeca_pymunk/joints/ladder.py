@@ -1,11 +1,9 @@
 """The ladder of a step: where Newton's method does not converge, the step is divided, then joints become elastic.
 
 Order 2 (midpoint with discrete gradients), or 4 by Suzuki's composition (s, s, 1 - 4s, s, s) h, s = 1/(4 - 4^(1/3)), if
-nothing in the component dissipates, drives or meets a limit. The rungs are tried in turn; of each the number of parts
-and the compliance of the joints over (h/7)^2:
-
-    ORDER_4 = -1: 5 parts, 0           WHOLE_STEP = 0: 1 part, 0     1, 2, 3: 2, 4, 7 parts, 0
-    ELASTIC_RUNG = 4: 1 part, 1e-9     5 to 9: 7 parts, 1e-9, 1e-8, 1e-7, 1e-6, 1e-4
+nothing in the component dissipates, drives or meets a limit. The rungs are tried in turn: ORDER_4, WHOLE_STEP, three
+of more parts, then those of elastic joints, from ELASTIC_RUNG on. PARTS_ON and COMPLIANCE_ON have their numbers of
+parts, and the compliances of the joints over (h/7)^2.
 
 Joints that contradict one another (`contradiction`) become elastic at once: all rungs before would fail alike. Where a
 shorter interval is tried instead (PROGRESS.long), exact joints take the step as a whole or not at all. The work of all
@@ -14,6 +12,9 @@ rungs together is bounded. Elastic joints keep at least the same compliance in l
 
 from __future__ import annotations
 
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
 from ..compiled import nonallocating
 from ..model.joint_steps import ELASTIC, EXACT, HALVED, LINEAR
 from ..model.joints import GIVES_WAY, ROTARY_SPRING, SPRING, Workspace
@@ -31,7 +32,9 @@ from .lock import lock_energy, restore_momenta
 from .start import load_of
 
 SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
-ORDER_4, WHOLE_STEP, ELASTIC_RUNG, RUNGS = -1, 0, 4, 10
+ORDER_4, WHOLE_STEP, ELASTIC_RUNG, RUNGS = 0, 1, 5, 11
+PARTS_ON: IntArray = np.array([PARTS, 1, 2, 4, joints.ELASTIC_PARTS, 1, *5 * [joints.ELASTIC_PARTS]])
+COMPLIANCE_ON: FloatArray = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1e-9, 1e-9, 1e-8, 1e-7, 1e-6, 1e-4])
 TAKEN, FAILED, CONTRADICTED = 0, 1, 2  # what becomes of a rung
 
 
@@ -67,13 +70,10 @@ def limit_work(W: Workspace) -> None:
 
 @nonallocating
 def compliance_on(rung: int, h: float, yields: bool, before: float) -> float:
-    """The compliance (time²) of joints on a rung; if joints are elastic already (`yields`), not less than `before`."""
-    if rung < ELASTIC_RUNG:
-        return 0.0
-    steps = max(rung - ELASTIC_RUNG - 1, 0)
-    relative = 1e-4 if rung + 1 == RUNGS else 1e-9 * 10.0**steps
-    compliance = relative * (h / joints.ELASTIC_PARTS) ** 2
-    return max(compliance if relative > 1e-9 else 0.0, before) if yields else compliance
+    """The compliance (time²) of joints on a rung; if joints are elastic already (`yields`), not less than `before`, and
+    just that on the first two rungs."""
+    compliance = float(COMPLIANCE_ON[rung] * (h / joints.ELASTIC_PARTS) ** 2)
+    return max(compliance if rung > ELASTIC_RUNG + 1 else 0.0, before) if yields else compliance
 
 
 @nonallocating
@@ -89,7 +89,7 @@ def take_parts(W: Workspace, h: float, length: float, rung: int, parts: int, giv
     for p in range(parts):
         if parts > 1:
             W.J.COMPONENT[W.s].parts = 0
-        piece = h / parts if rung >= 0 else (1.0 - 4.0 * SUZUKI) * h if p == PARTS // 2 else SUZUKI * h
+        piece = h / parts if rung > ORDER_4 else (1.0 - 4.0 * SUZUKI) * h if p == PARTS // 2 else SUZUKI * h
         warm = 0.0 if cold else piece / before
         for k in range(W.joints):
             W.J.HINGE[k].lam[0] *= warm
@@ -186,10 +186,7 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
     while rung < RUNGS and not progress.effort > progress.limit:
         if progress.long > 0 and WHOLE_STEP < rung < ELASTIC_RUNG:
             break
-        parts = (
-            PARTS if rung == ORDER_4 else 1 if rung == ELASTIC_RUNG else 1 << rung if rung < 3 else joints.ELASTIC_PARTS
-        )
-        compliance = compliance_on(rung, h, yields, first.compliance)
+        parts, compliance = int(PARTS_ON[rung]), compliance_on(rung, h, yields, first.compliance)
         clear_ledger(W.J.PART_LEDGER)
         outcome = take_parts(W, h, length, rung, parts, compliance / (h / parts) ** 2, cold)
         if outcome == TAKEN and (rung >= ELASTIC_RUNG or repaid(W, h, length, own)):
