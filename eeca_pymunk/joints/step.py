@@ -17,9 +17,9 @@ from ..newton.motion import save
 from ..newton.solve import drop_impulses
 from .bounds import closes_on_limit, hold_present_gaps, standing
 from .closing import close_joints, farthest
-from .correct import NOW, fitting_loss, kinetic_of, project
+from .correct import fitting_loss, project
 from .ladder import climb, limit_work
-from .ledger import add_part, clear_ledger, close_ledger
+from .ledger import add_part, clear_ledger
 from .start import bounded_targets, compute_rows, read_joints
 from .taut import is_taut
 from .unheld import keeps_gain, step_linearly, stop_joints, take_gain
@@ -98,8 +98,6 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
     elif keeps_gain(W, h, length, own):
         stop_joints(W, h)
         status = LINEAR
-    elif abs(W.J.PART_LEDGER.closed) > kinetic_of(W, NOW):  # but for round-off they cancel
-        close_ledger(W)
     if status >= ELASTIC:
         compute_rows(W)  # they were those before the last correction
     ledger.gave = max(farthest(W) - ledger.apart, 0.0) if status >= ELASTIC else 0.0
