@@ -67,8 +67,6 @@ MUTATIONS = (
              "joints/test_limits.py", "opens_first"),
     Mutation("limits: what is let go is never held", "joints/bounds.py", "link[k].let_go == side and", "False and",
              "joints/test_limits.py", "another"),
-    Mutation("limits: round-off is closed", "joints/step.py", "    if stands:", "    if False:",
-             "joints/test_limits.py", "shortest"),
     Mutation("limits: targets of free ones", "joints/closing.py", "if acts(link, k, r) else 0.0", "if True else 0.0",
              "joints/test_limits.py", "closing"),
     Mutation("limits: round-off lets go", "joints/limits.py", "    if at_once:", "    if False:",

@@ -47,22 +47,6 @@ def passed_side(W: Workspace, k: int, least: float) -> int:
 
 
 @nonallocating
-def hold_present_gaps(W: Workspace) -> None:
-    """Let joints that stand on a limit keep their present gap, if it is round-off. To close it within a short part of a
-    step would take a force without bound. Rows must be those of the present poses."""
-    hinge, link = W.J.HINGE, W.link
-    for k in range(W.joints):
-        side, last = link[k].side, link[k].rows - 1
-        if side == 0 or link[k].bounded != 0:
-            continue
-        room = limit_gap(W, k, side)
-        if abs(room) <= JOINT_TOUCH * hinge[k].size:
-            at = hinge[k].measure
-            bound = at + side * room
-            hinge[k].target[last] = 0.5 * (at * at / bound - bound) if link[k].kind == SLIDE else at - bound
-
-
-@nonallocating
 def limit_gap_rate(joint: JointStep, rows: int, side: int, v_a: FloatArray, v_b: FloatArray) -> float:
     """Rate of the gap at this side, negative if it closes: by the last of a joint's `rows` rows J and the velocities
     v_a and v_b (3,) of its bodies."""

@@ -57,7 +57,6 @@ def stop_at(W: Workspace, k: int, side: int, at_once: bool, stays: bool) -> None
         link[k].side = side  # a velocity that released it is round-off: forces press it to its bound at once
     W.J.PART_LEDGER.limited += fitting_loss(W, W.J.PART_LEDGER)
     drop_impulses(W)
-    bounds.hold_present_gaps(W)
 
 
 @nonallocating

@@ -15,7 +15,7 @@ from ..model.joints import APART, GIVES_WAY, LEFT_APART, RATCHET, Workspace
 from ..model.parameters.joints import NEARLY_HELD
 from ..newton.motion import save
 from ..newton.solve import drop_impulses
-from .bounds import closes_on_limit, hold_present_gaps, standing
+from .bounds import closes_on_limit, standing
 from .closing import close_joints, farthest
 from .correct import fitting_loss, project
 from .ladder import climb, limit_work
@@ -85,8 +85,6 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
         project(W, SPEEDS)
         ledger.limited += fitting_loss(W, ledger)
         save(W)
-    if stands:
-        hold_present_gaps(W)
     for k in range(W.joints):
         W.J.JOINT[W.link[k].joint].side = W.link[k].side  # to which the ladder returns
     limit_work(W)
