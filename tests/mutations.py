@@ -127,6 +127,8 @@ MUTATIONS = (
              "g, m)", "prediction/test_heap.py", "nobody_leaves"),
     Mutation("loop: walls of a container count many times in margins", "pairs/margins.py",
              "if squared * part > 1.0:", "if False:", "pairs/test_lists.py", "container_counts"),
+    Mutation("prediction: what is beyond a face closes it again", "prediction/turning.py",
+             "if opening(one, two, nx, ny, px, py) >= 0.0:", "if True:", "prediction/test_turning.py", "free_end"),
     Mutation("prediction: what a fast shape sweeps is its core", "prediction/turning.py",
              "A.SHAPE[b].extent if fast_b else", "A.SHAPE[b].rounding if fast_b else", "prediction/test_turning.py",
              "fast_shapes"),

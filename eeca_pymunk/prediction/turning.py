@@ -51,20 +51,47 @@ def time_to_contact_again(
 
 
 @nonallocating
+def points_of_face(
+    A: Scene, a: int, b: int, nx: float, ny: float, x: float, y: float, d: float
+) -> tuple[float, float, float, float]:  # fmt: skip
+    """The two points (2, 2) at which an impact of shapes a < b would act.
+
+    Args:
+        nx, ny: normal from a to b.  x, y: point of a's core.  d: gap of the cores.
+    """
+    g = d - A.SHAPE[a].rounding - A.SHAPE[b].rounding
+    away, tolerance = A.SHAPE[a].rounding + 0.5 * g, face_tolerance(A, a, b)
+    _, px, py, qx, qy = face_points(A, a, b, g, nx, ny, x + away * nx, y + away * ny, tolerance)
+    return px, py, qx, qy
+
+
+@nonallocating
 def face_closes(
     A: Scene, a: int, b: int, nx: float, ny: float, x: float, y: float, d: float, one: MotionState, two: MotionState,
     still: float,
 ) -> bool:  # fmt: skip
     """Whether the gap closes, faster than `still` (length/time), at a point at which an impact of shapes a < b would
-    act: shapes that overlap may approach elsewhere, inside each other.
-
-    Args:
-        nx, ny: normal from a to b.  x, y: point of a's core.  d: gap of the cores.  one, two: motions of the bodies.
-    """
-    g = d - A.SHAPE[a].rounding - A.SHAPE[b].rounding
-    away, tolerance = A.SHAPE[a].rounding + 0.5 * g, face_tolerance(A, a, b)
-    _, px, py, qx, qy = face_points(A, a, b, g, nx, ny, x + away * nx, y + away * ny, tolerance)
+    act: shapes that overlap may approach elsewhere, inside each other. one, two: motions of the bodies; other arguments
+    as of `points_of_face`."""
+    px, py, qx, qy = points_of_face(A, a, b, nx, ny, x, y, d)
     return bool(min(opening(one, two, nx, ny, px, py), opening(one, two, nx, ny, qx, qy)) < -still)
+
+
+@nonallocating
+def face_closes_again(
+    A: Scene, a: int, b: int, nx: float, ny: float, x: float, y: float, d: float, one: MotionState, two: MotionState,
+    t: float,
+) -> float:  # fmt: skip
+    """`time_to_contact_again` of shapes a < b that touch, at instant t. Where the point that is nearest approaches, it
+    is beyond the end of the face that both have in common, as that of a rod on a shorter plank is: then at the ends of
+    this face."""
+    BODY, i, j = A.BODY, A.LINK[a].owner, A.LINK[b].owner
+    px, py = x + A.SHAPE[a].rounding * nx, y + A.SHAPE[a].rounding * ny
+    if opening(one, two, nx, ny, px, py) >= 0.0:
+        return time_to_contact_again(BODY, i, j, t, nx, ny, px, py)
+    px, py, qx, qy = points_of_face(A, a, b, nx, ny, x, y, d)
+    again = time_to_contact_again(BODY, i, j, t, nx, ny, px, py)
+    return min(again, time_to_contact_again(BODY, i, j, t, nx, ny, qx, qy))
 
 
 @nonallocating
@@ -206,9 +233,7 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float, most: float) 
         if met and near < -tolerance and not face_closes(A, a, b, nx, ny, px, py, d, one, two, still):
             met, safe = False, max(safe, duration / ADVANCES)
         if not met and near <= tolerance:
-            back = time_to_contact_again(
-                BODY, i, j, start + s, nx, ny, px + SHAPE[a].rounding * nx, py + SHAPE[a].rounding * ny
-            )
+            back = face_closes_again(A, a, b, nx, ny, px, py, d, one, two, start + s)
             if back <= min(safe, interval):
                 return start + s + back, True
         if met:

@@ -121,6 +121,17 @@ def test_boxes_that_touch() -> None:
     assert next_impact(world, 0, 1, 1.0) == (0.0, True)
 
 
+@pytest.mark.parametrize("unit", UNITS)
+def test_a_rod_whose_free_end_sinks_beside_a_plank_that_it_leaves_does_not_meet_it(unit: float) -> None:
+    """The common face opens at both of its ends; the end of the rod, which is as near as they are, is beyond it."""
+    line = [([(-unit, 0.0), (unit, 0.0)], 0.0)]
+    rod = Thing(line, rate=(0.0, 0.2 * unit, 0.5), pull=(0.0, -0.1 * unit, 0.0))
+    plank = Thing(box(2.2 * unit, 0.2 * unit), (unit, -0.1 * unit, 0.0))
+    t, certain = next_impact(World([rod, plank]), 0, 1, 0.5)
+    assert t >= 0.5
+    assert not certain or t == math.inf
+
+
 def test_flat_landing_of_a_box_and_a_plate_that_is_carried() -> None:
     world = World([Thing(box(1.0, 1.0), (0.0, 1.5, 0.0), (0.0, 0.0, 0.0), (0.0, -10.0, 0.0))], FLOOR)
     assert next_impact(world, 0, 1, 1.0) == (pytest.approx(math.sqrt(0.2), rel=1e-13), True)
