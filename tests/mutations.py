@@ -329,6 +329,8 @@ MUTATIONS = (
              "contacts/test_turning.py", "drum and False and 0.1"),
     Mutation("correction: impacts do not pay for what is deep", "islands/payment.py", " or deep(A, ROWS, m)", "",
              "islands/test_large_steps.py", "on_one_another and 1.0"),
+    Mutation("joints: islands of the last one go on", "impacts/new_scene.py", "if MEMBER[i].tied >= 0 and s < 0:",
+             "if False:", "jointed/test_ledger.py", "last_joint_was_removed"),
     Mutation("joints: bodies that are let go keep no mobility", "impacts/scene.py",
              "        self.release(BODY)\n        self.joint,", "        self.joint,", "jointed/test_welds.py",
              "come_and_go"),

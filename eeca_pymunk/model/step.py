@@ -59,7 +59,7 @@ class Count(Record):
     disks: int  # number of single disks of the scene
     solved: int  # number of bodies of all solves
     may_support: int  # 1 if islands at rest may support moving ones (`islands/support.py`)
-    any_placed: int  # 1 if the program has placed bodies, which may overlap; 2 if the rows are others, too
+    any_placed: int  # 1 if the program has placed bodies, or freed them of joints; 2 if the rows are others, too
 
 
 class Missed(Record):

@@ -206,3 +206,27 @@ def test_slip_on_a_belt_is_exact_however_short_the_interval() -> None:
         way = np.array([[h * 2e-3, 0.0, 0.0], [0.0, 0.0, 0.0]])
         slip = slip_of(row[0], way, h)
         assert slip == pytest.approx(h * (1.0 + 2e-3), rel=1e-14, abs=0.0)
+
+
+@pytest.mark.parametrize("springs", [1, 2])
+def test_bodies_fall_after_the_last_joint_was_removed(springs: int) -> None:
+    """They touch nothing, so that no island would be built for them; those of the joint are over."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -10.0
+    one, two = pymunk.Body(1.0, 1.0), pymunk.Body(1.0, 1.0)
+    two.position, one.velocity = (3.0, 0.0), (1.0, 2.0)
+    space.add(one, two, *(pymunk.Circle(body, 0.3) for body in (one, two)))
+    for _ in range(springs):
+        space.add(pymunk.DampedSpring(one, two, (0.1, 0.0), (0.0, 0.1), 1.0, 20.0, 0.5))
+    stepper = ep.EECA(space)
+    for joint in space.constraints:
+        for _ in range(3):
+            stepper.step(0.02)
+        space.remove(joint)
+    y, v = one.position.y, one.velocity.y
+    for _ in range(10):
+        book = stepper.step(0.02).ledger
+        assert book is not None
+        assert abs(book.residual) <= 1e-13
+    assert one.velocity.y == pytest.approx(v - 10.0 * 0.2, abs=1e-13)
+    assert one.position.y == pytest.approx(y + 0.2 * v - 5.0 * 0.04, abs=1e-13)
