@@ -219,7 +219,7 @@ def test_bodies_fall_after_the_last_joint_was_removed(springs: int) -> None:
     for _ in range(springs):
         space.add(pymunk.DampedSpring(one, two, (0.1, 0.0), (0.0, 0.1), 1.0, 20.0, 0.5))
     stepper = ep.EECA(space)
-    for joint in space.constraints:
+    for joint in list(space.constraints):
         for _ in range(3):
             stepper.step(0.02)
         space.remove(joint)
