@@ -34,7 +34,7 @@ from .start import load_of
 SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
 ORDER_4, WHOLE_STEP, ELASTIC_RUNG, RUNGS = 0, 1, 5, 11
 PARTS_ON: IntArray = np.array([PARTS, 1, 2, 4, joints.ELASTIC_PARTS, 1, *5 * [joints.ELASTIC_PARTS]])
-COMPLIANCE_ON: FloatArray = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1e-9, 1e-9, 1e-8, 1e-7, 1e-6, 1e-4])
+COMPLIANCE_ON: FloatArray = np.array([*5 * [0.0], 1e-9, *(1e-9 * 10.0**k for k in range(4)), 1e-4])
 TAKEN, FAILED, CONTRADICTED = 0, 1, 2  # what becomes of a rung
 
 
