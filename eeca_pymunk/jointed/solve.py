@@ -51,13 +51,12 @@ def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
     # One as short as PAR.instant would be empty (`ends.end_here`).
     least = min(h, 2.0 * A.PAR.instant)
     # How a step was cut does not tell how short the intervals of the next one have to be.
-    h = min(h, rest.longest if t > 0.0 else max(rest.longest, h / RESOLUTION**2))
+    tried = h = min(h, rest.longest if t > 0.0 else max(rest.longest, h / RESOLUTION**2))
     for attempt in range(INTERVAL_TRIES):
         h = max(h, least)
         last = attempt + 1 == INTERVAL_TRIES or A.COUNT.together > 0 or h <= least
         if t > 0.0 and work_left(A, J) < 0.0:
-            # The next step begins with a quarter of the length for which there was too little work (RESOLUTION below).
-            rest.longest = UNSOLVED_PART**2 * h
+            rest.longest = max(h, tried / UNSOLVED_PART)  # where the next step begins
             return SPENT
         status, then = try_jointed(A, J, root, t, h, last)
         if status != AGAIN:
@@ -70,7 +69,7 @@ def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
                 if t == 0.0 and h == longest:
                     rest_if_still(A, J, root)
             return status
-        h = then
+        tried, h = h, then
     return DONE
 
 
