@@ -99,7 +99,7 @@ MUTATIONS = (
     Mutation("jointed: what joints do not allow opens a gap", "jointed/meet.py",
              "            S.rate, S.t = allowed, S.least\n", "            pass\n", "jointed/test_meet.py",
              "do_not_allow"),
-    Mutation("jointed: what is carried along passes limits", "joints/closing.py",
+    Mutation("jointed: what is carried along passes limits", "joints/bounds.py",
              "passed_side(W, k, JOINT_TOUCH)", "passed_side(W, k, 1e9)",
              "jointed/test_meet.py", "carries_along"),
     Mutation("work: the search for an impact goes on", "jointed/meet.py", "        if spent:\n            break\n", "",

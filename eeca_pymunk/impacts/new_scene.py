@@ -65,13 +65,14 @@ def begin_scene(table: Table, limit: int, disks: int, together: int, budget: int
 def tie_components(table: Table, joints: Table) -> None:
     """Make a ring of the bodies of each component. Predictions by earlier components are void; where bodies have lost
     theirs, islands are built in the next step, even if no component remains."""
-    MEMBER, OF, BODY, COUNT = scene_of(table).MEMBER, joints_of(joints).OF, scene_of(table).BODY, scene_of(table).COUNT
+    A, OF = scene_of(table), joints_of(joints).OF
+    MEMBER, BODY, COUNT = A.MEMBER, A.BODY, A.COUNT
     first, last = np.full(OF.shape[0], -1, np.int64), np.full(OF.shape[0], -1, np.int64)
     for i in range(MEMBER.shape[0]):
         BODY[i].due = min(BODY[i].due, -1.0)
         s = OF[i]
         if MEMBER[i].rest == AT_REST:
-            MEMBER[scene_of(table).STATE[i].island].rest = CHANGED  # joints may hold it otherwise now
+            MEMBER[A.STATE[i].island].rest = CHANGED  # joints may hold it otherwise now
         if MEMBER[i].tied >= 0 and s < 0:
             COUNT.any_placed = max(COUNT.any_placed, 1)
         MEMBER[i].tied, MEMBER[i].next_tied = -1, -1

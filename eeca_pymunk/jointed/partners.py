@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from ..compiled import kernel
-from ..joints.closing import close_poses, farthest, hold_passed
+from ..joints.bounds import hold_passed
+from ..joints.closing import close_poses, farthest
 from ..joints.start import compute_rows, springs_of
 from ..joints.workspace import workspace
 from ..model.joints import Joints

@@ -108,11 +108,16 @@ def begin_part(W: Workspace) -> None:
 
 
 @nonallocating
-def hold_passed(W: Workspace) -> None:
-    """Let all limits act that the present iterate has passed. Only after `first_bound`, which computes their rows."""
+def hold_passed(W: Workspace) -> bool:
+    """Let all limits act, at their bounds, that the present iterate has passed; whether there are any. Only after
+    `first_bound` or `start.compute_rows`, which compute their rows."""
+    hinge, link, found = W.J.HINGE, W.link, False
     for k in range(W.joints):
-        if in_reach(W, k):
-            W.link[k].side = passed_side(W, k, JOINT_TOUCH)
+        side = passed_side(W, k, JOINT_TOUCH) if in_reach(W, k) else 0
+        if side != 0:
+            link[k].side, hinge[k].target[link[k].rows - 1] = side, 0.0
+            found = True
+    return found
 
 
 @nonallocating

@@ -7,11 +7,11 @@ import numpy as np
 from ..compiled import nonallocating
 from ..model.joint_steps import POSES, SPEEDS, STEP, JointLedger
 from ..model.joints import APART, EDITED, GIVES_WAY, LEFT_APART, TAKEN_OVER, Workspace
-from ..model.parameters.joints import JOINT_APART, JOINT_TOUCH
+from ..model.parameters.joints import JOINT_APART
 from ..newton.entries import acts
 from ..newton.motion import go_back, save
 from ..newton.rows import joint_rows, shared_part, shares_point
-from .bounds import inactive, limit_gap, passed_side
+from .bounds import hold_passed, limit_gap, passed_side
 from .correct import fitting_loss, project, restore_speeds, speeds_fit, steps_left
 from .frame import work_of_shift
 from .lock import lock_energy
@@ -86,19 +86,6 @@ def closing_work(W: Workspace) -> float:
             if local[i].mobility[c] > 0.0:
                 work -= local[i].acceleration[c] * (local[i].pose[c] - local[i].saved_pose[c]) / local[i].mobility[c]
     return work
-
-
-@nonallocating
-def hold_passed(W: Workspace) -> bool:
-    """Let all inactive limits that are passed act, at their bounds; whether there are any. Rows must be those of the
-    present poses."""
-    hinge, link, found = W.J.HINGE, W.link, False
-    for k in range(W.joints):
-        side = passed_side(W, k, JOINT_TOUCH) if inactive(link, k) else 0
-        if side != 0:
-            link[k].side, hinge[k].target[link[k].rows - 1] = side, 0.0
-            found = True
-    return found
 
 
 @nonallocating
