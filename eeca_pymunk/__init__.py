@@ -11,7 +11,6 @@ from .baselines.penalty import PenaltyEnergyMomentum
 from .closures.dashpot import Dashpot
 from .closures.midstep import Midstep
 from .closures.time_of_impact import TimeOfImpact
-from .compiled import warmup
 from .datasets import Rollouts
 from .eeca import EECA, Closure
 from .energy.invariants import Invariants
@@ -26,6 +25,7 @@ from .space.bodies import measure
 from .stepper import Stepper
 from .sweep import SweepError, sweep
 from .unmet import Unmet
+from .warming import warmup
 
 __all__ = [
     "EECA",

@@ -44,7 +44,7 @@ FLOORS = (
     "states",
     "runs",
     "eeca baselines",
-    "events",
+    "events warming",
     "recording rolling datasets",
     "build recorder sweep",
     "rollouts",

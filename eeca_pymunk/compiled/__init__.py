@@ -10,8 +10,6 @@ Open first `backend.py`, which chooses among the three. `entries.py` declares th
 `frontend/` import numba; builds and the JIT import them, other processes only read the version number there.
 """
 
-import time
-
 from .backend import start
 from .kernels import Choice, Kernel, fetch, inlined, kernel, nonallocating, prepare
 from .tables import Opener, Table, replaced, table_of
@@ -30,24 +28,9 @@ __all__ = [
     "replaced",
     "start",
     "table_of",
-    "warmup",
 ]
 
 
 def plain() -> bool:
     """Whether kernels run as plain Python."""
     return start().kind == "python"
-
-
-def warmup() -> float:
-    """Load the library of kernels now, and build it if it is missing. Returns the seconds that it took.
-
-    Otherwise this happens at the first step. Installed packages contain their library, which loads in milliseconds; a
-    clone builds it after every edit of a kernel (`python -m eeca_pymunk.build`), which takes up to two minutes.
-    `python -m eeca_pymunk` prints which code runs. No object of the caller is changed.
-
-        python -c "import eeca_pymunk as ep; print(ep.warmup())"
-    """
-    begun = time.perf_counter()
-    prepare()
-    return time.perf_counter() - begun

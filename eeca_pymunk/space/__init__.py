@@ -13,16 +13,17 @@ earlier reading of the space, of which everything that has not changed is used a
 | reading bodies and shapes | `bodies.py` (also energy and momenta), `outlines.py` (also for pictures), `packing.py` |
 | reading joints | `joints.py`, `constraints.py`, `listing.py`, `partners.py`, `spring_functions.py` |
 | states in and out | `body_states.py` |
-| edits by the program | `edits.py` (shapes, bodies), `joint_edits.py`, `patching.py` (rows after edits in place) |
+| edits by the program | `edits.py` (shapes, bodies), `listing.py` (joints), `patching.py` (rows after edits in place) |
 | functions of the program | `hooks.py`; of handlers `rehearsal.py`, `handled_pairs.py`, `watched.py`, `decisions.py` |
 | pymunk's shapes after a step | `sync.py`, `rest_step.py`, `late_shapes.py` |
 | what else pymunk shows of a step | `arbiters.py` (contacts), `constraint_impulses.py` |
 | sleeping bodies | `sleeping.py`, `sleep_groups.py` |
 | a line of text | `describe.py` |
+| a space to step before those of programs | `small_space.py` |
 | private names of pymunk | the room `private` |
 
 Five files replace methods or properties of pymunk's classes, which then act as before for all other spaces:
-`edits.py` (setters of shapes and bodies; `Body.sleep` at import), `joint_edits.py` (`Constraint.__setattr__`),
+`edits.py` (setters of shapes and bodies; `Body.sleep` at import), `listing.py` (`Constraint.__setattr__`),
 `constraint_impulses.py` (`Constraint.impulse`), `arbiters.py` (`each_arbiter`, `batch.get_space_arbiters`,
 `debug_draw`), `late_shapes.py` (queries, `Shape.bb`, `Space.remove`; `Space.use_spatial_hash` at import). They are not
 restored.

@@ -15,8 +15,7 @@ from ..model.joints import Joint
 from ..reentry import FunctionsCalled
 from .constraint_impulses import ConstraintImpulses
 from .constraints import read
-from .joint_edits import Edits
-from .listing import Listing, calls_of
+from .listing import Edits, Listing, calls_of
 from .partners import Partners
 from .private import spaces as private
 from .spring_functions import BodyMotion, Rate, force_function, write_law
