@@ -79,12 +79,12 @@ class PackedStepper(HookedStepper):
             if self.sync:
                 self._sync.call_back()
             return StepReport(self.time, world.without_contacts, book=self._idle_book)
-        if changed or (sleep.any_asleep and sleep.wake_ahead(dt)):
+        if other := changed or (sleep.any_asleep and sleep.wake_ahead(dt)):
             world = self._update_world(anew=True)
-        report = self._step(world, dt)
+        report = self._step(world, dt, gathered=not (other or sleep.all_asleep))
         present = self._sleep  # another one if the world was read again
         if present is not None and present.world is self._world and present.rest(dt) and present.world.current():
-            present.fall_asleep(report.contacts, dt)
+            present.fall_asleep(report, dt)
         return report
 
     def rewound(self, world: World) -> list[AnyArray]:
@@ -165,15 +165,17 @@ class PackedStepper(HookedStepper):
         self._sync.finish_rehearsal(left_out)
         return report
 
-    def _step(self, world: World, dt: float) -> StepReport:
-        """A step of the awake bodies, of the kind that the functions of the space require."""
+    def _step(self, world: World, dt: float, gathered: bool = False) -> StepReport:
+        """A step of the awake bodies, of the kind that the functions of the space require. `gathered`: whether the
+        present states were read."""
         half_damping = world.half_damping(dt)
         if not world.plain and self._calls(world):
             known = self._sleep is None and not self.decisions.laws
             if known and world.only_handlers and world.rehearsal.is_silent_again(dt, half_damping, self._sync):
                 return self._silent_step(world, dt, half_damping)
             return self._hooked_step(world, dt)
-        world.gather()
+        if not gathered:
+            world.gather()
         before = [] if self._sleep is None else self._rewound_copy(world)
         if before:
             self._allow(1.0)

@@ -156,7 +156,8 @@ class BodyStates:
 
     def same_bodies(self) -> bool:
         """Whether `gather` has read these bodies and no others."""
-        return np.array_equal(self.IDS[layout.READ_ID], self.IDS[layout.KNOWN_ID])
+        now, known = self.IDS[layout.READ_ID].tobytes(), self.IDS[layout.KNOWN_ID].tobytes()
+        return bool(now == known)  # numpy takes five times as long to compare few numbers
 
     def moved_static(self) -> bool:
         """Whether a static body was moved since the rows were made, by the states that `gather` has read."""

@@ -30,7 +30,7 @@ from ..compiled.records import over
 from ..layout import BODY_ROW
 from ..model.contacts import Impulse
 from ..model.parameters.rest import SLEEP_PATIENCE, SLEEP_RETRY, SLEEP_SHARE, SLEEP_SPEED
-from ..report import Contacts
+from ..report import Contacts, StepReport
 from ..sleepers import approaches, rests, touches_sleeper
 from .private import shapes as private_shapes
 from .private import sleep as private_sleep
@@ -86,8 +86,12 @@ class Sleep:
         self._nears: dict[bool, tuple[IntArray, Callable[[float, float], int]]] = {}
 
     def changed(self) -> bool:
-        """Whether other bodies may sleep now than when this was made, or pymunk has taken a step since."""
-        return self._timestamp() not in (self._stamp, self._sync.stamp) or self.woken()
+        """Read the states, unless all bodies sleep; returns whether other bodies may sleep now than when this was made,
+        or pymunk has taken a step since."""
+        if (late := self._timestamp() not in (self._stamp, self._sync.stamp)) or self.all_asleep:
+            return late or self.woken()
+        self.world.gather()
+        return self.any_asleep and not self.world.same_bodies()
 
     def woken(self) -> bool:
         """Whether a body that slept when this was made may be awake: pymunk's order of bodies has changed."""
@@ -115,13 +119,10 @@ class Sleep:
             body.activate()
 
     def wake_ahead(self, dt: float) -> bool:
-        """Wake the sleeping bodies that a kinematic body may meet in the step; unless the world is plain, those that
-        any body may meet, since a step that calls functions cannot be repeated. Returns whether there was one."""
+        """Wake the sleeping bodies that a kinematic body may meet in the step that begins with the states read; unless
+        the world is plain, all that may be met, since steps that call functions are not repeated. Whether any woke."""
         world, found = self.world, False
-        if len(self._moves[world.plain]) == 0:
-            return False
-        world.gather()
-        for i in self._near(dt, math.hypot(*world.gravity)):
+        for i in self._near(dt, math.hypot(*world.gravity)) if len(self._moves[world.plain]) else ():
             if (box := self._reached(i, dt)) is not None:
                 found |= self._wake_within(box)
         return found
@@ -140,8 +141,7 @@ class Sleep:
     def _left_alone(self, groups: list[list[pymunk.Body]], dt: float) -> list[list[pymunk.Body]]:
         """Those of the groups that `wake_ahead` would not wake in the next step; all others may move in it."""
         row, moves = self.world.bodies.row, self._moves[self.world.plain].tolist()
-        if moves:
-            self.world.gather()
+        self.world.gather()
         while True:
             sleepers = {row[body] for group in groups for body in group}
             boxes = [box for i in moves if i not in sleepers and (box := self._reached(i, dt)) is not None]
@@ -157,8 +157,8 @@ class Sleep:
         plain, world = self.world.plain, self.world
         if plain not in self._nears:
             near = np.zeros(len(self._moves[plain]), np.int64)
-            arrays = self._far, world.bodies.inverse_mass.copy(), self._boxes, near
-            self._nears[plain] = near, approaches.bind(world.STATES, self._moves[plain], *arrays)
+            of = world.STATES, self._moves[plain], self._far, world.bodies.inverse_mass.copy(), self._boxes
+            self._nears[plain] = near, approaches.bind(*of, near)
         near, call = self._nears[plain]
         return near[: call(dt, pull)].tolist()  # type: ignore[no-any-return]
 
@@ -189,15 +189,15 @@ class Sleep:
             return
         for shape in self.world.records.keys() - set(self.space.shapes):
             if self.world.records[shape] is not None:
-                room = 1e-3 * (shape.bb.right - shape.bb.left + shape.bb.top - shape.bb.bottom)
-                low, high = (shape.bb.left - room, shape.bb.bottom - room), (shape.bb.right + room, shape.bb.top + room)
-                self._wake_within(pymunk.BB(*low, *high))
+                left, bottom, right, top = shape.bb
+                room = 1e-3 * (right - left + top - bottom)
+                self._wake_within(pymunk.BB(left - room, bottom - room, right + room, top + room))
         if (self.world.same_bodies() and self.world.moved_static()) or self.world.edited():
             self.wake()
 
     def _wake_within(self, box: pymunk.BB) -> bool:
-        woken = {s.body for s in self.space.bb_query(box, pymunk.ShapeFilter()) if s.body is not None}
-        woken = {body for body in woken if body.is_sleeping}
+        shapes = self.space.bb_query(box, pymunk.ShapeFilter())
+        woken = {body for shape in shapes if (body := shape.body) is not None and body.is_sleeping}
         self.wake(woken)
         return bool(woken)
 
@@ -226,17 +226,19 @@ class Sleep:
         self._since += 1
         return self._wait == 0 and ready == 1
 
-    def fall_asleep(self, contacts: Contacts, dt: float) -> None:
+    def fall_asleep(self, report: StepReport, dt: float) -> None:
         """Put groups to sleep all of whose bodies have been at rest for long enough, unless something would wake them
-        in a step of length dt."""
+        in a step of length dt. `report`: of the last step."""
         bodies, joints = self.world.bodies, self.world.joints
         self._wait = SLEEP_RETRY
         # After bodies have fallen asleep the world is read again and contact forces are lost, so small groups wait.
-        enough = np.count_nonzero(bodies.dynamic) / SLEEP_SHARE if self._since < SLEEP_PATIENCE else 0.0
-        if np.count_nonzero(self._ready) < enough:
+        enough = max(np.count_nonzero(bodies.dynamic) / SLEEP_SHARE if self._since < SLEEP_PATIENCE else 0.0, 1.0)
+        ready = [[bodies.items[i]] for i in self._ready.nonzero()[0].tolist()]
+        # A group is left alone only if each of its bodies would be.
+        if len(ready) < enough or len(self._left_alone(ready, dt)) < enough:
             return
-        jointed = () if joints is None else joints.pairs.values()
-        islands = self._left_alone(resting_groups(self.space, bodies, self._ready, contacts, jointed), dt)
+        pairs = () if joints is None else joints.pairs.values()
+        islands = self._left_alone(resting_groups(self.space, bodies, self._ready, report.contacts, pairs), dt)
         if sum(map(len, islands)) < enough:
             return
         self._since = 0
