@@ -170,17 +170,17 @@ class Rehearsal:
 
     def _step_without_calls(self, dt: float, sync: Sync) -> None:
         """The rehearsal of a silent step. Arbiters that were read will probably be read again."""
-        if not sync.arbiters_read and self.left_out < private_shapes.REINDEXINGS:
-            self.left_out += 1
-            return
-        self.left_out = 0
-        self.world.scatter(TURNS)
-        self._step(dt)
+        taken = sync.arbiters_read or self.left_out >= private_shapes.REINDEXINGS
+        self.left_out = 0 if taken else self.left_out + 1
+        if taken:
+            self.world.scatter(TURNS)
+            self._step(dt)
 
     def _step(self, dt: float) -> None:
-        hooks = self.world.hooks
-        called = None if hooks.joints is None or hooks.none_within_steps() else hooks.joints
-        with hooks.silent, nullcontext() if called is None else silent_joints(self, called):
+        if (hooks := self.world.hooks).none_within_steps():
+            private.step_without_end(self.space, dt)
+            return
+        with hooks.silent, nullcontext() if hooks.joints is None else silent_joints(self, hooks.joints):
             private.step_without_end(self.space, dt)
 
     def _bound(self, pairs: HandledPairs | None) -> Callable[[float, float, float, float], int]:
