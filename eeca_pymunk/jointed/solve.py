@@ -144,7 +144,7 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     if p > 0:
         m = gather_contacts(A, isle, contacts, isle.POSE + 0.5 * h * isle.V, REACH, h, k == n)
     interval = Interval(isle, groups, ROWS, motion, make_columns(groups, ROWS, m), m, n, t, h)
-    outcome, before = SOLVED, J.PROGRESS.effort
+    outcome, before, J.PROGRESS.shorter = SOLVED, J.PROGRESS.effort, int(not last)
     J.PROGRESS.share = before + INTERVAL_SHARE * max(work_left(A, J), 0.0)
     if m > 0:
         recall(A, ROWS, m, h, m > COLUMN_CONTACTS, L, EXPECTED)
@@ -161,7 +161,7 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     solved, far = outcome == SOLVED, UNSOLVED_PART
     if outcome != GIVEN_UP:
         far = excess_length(A, J, interval, L, root, J.PROGRESS.effort - before, solved, last)
-    J.PROGRESS.long = 0
+    J.PROGRESS.long = J.PROGRESS.shorter = 0
     if far > INTERVAL_RETRY and not last:
         if work_left(A, J) < 0.0:
             far = max(far, RESOLUTION)  # few more attempts follow

@@ -6,8 +6,10 @@ of more parts, then those of elastic joints, from ELASTIC_RUNG on. PARTS_ON and 
 parts, and the compliances of the joints over (h/7)^2.
 
 Joints that contradict one another (`contradiction`) become elastic at once: all rungs before would fail alike. Where a
-shorter interval is tried instead (PROGRESS.long), exact joints take the step as a whole or not at all. The work of all
-rungs together is bounded. Elastic joints keep at least the same compliance in later steps until they are closed.
+shorter interval is tried instead, exact joints take the step as a whole or not at all if the interval is long
+(PROGRESS.long), or if the budget does not pay RESOLUTION times for what the rungs before have taken. The work of all
+rungs together is bounded; without work for more than LEAST_SOLUTIONS the order is 2. Elastic joints keep at least the
+same compliance in later steps until they are closed.
 """
 
 from __future__ import annotations
@@ -19,6 +21,7 @@ from ..compiled import nonallocating
 from ..model.joint_steps import ELASTIC, EXACT, HALVED, LINEAR
 from ..model.joints import GIVES_WAY, ROTARY_SPRING, SPRING, Workspace
 from ..model.parameters import joints
+from ..model.parameters.events import RESOLUTION
 from ..newton.effort import work_of_iteration
 from ..newton.motion import go_back
 from ..newton.solve import drop_impulses
@@ -59,13 +62,14 @@ def has_elastic_joint(W: Workspace) -> bool:
 
 
 @nonallocating
-def limit_work(W: Workspace) -> None:
-    """Set the work that this component may take in a step, PROGRESS.limit."""
+def limit_work(W: Workspace) -> bool:
+    """Set the work that this component may take in a step, PROGRESS.limit; whether it is more than the least."""
     component, progress = W.J.COMPONENT[W.s], W.J.PROGRESS
     one = work_of_iteration(component.system, joints.CONDENSED_PASSES, component.boxes, W.joints, component)
     # With no work left, components that are solved easily still are.
-    share = max((progress.budget - progress.effort) * joints.COMPONENT_BUDGET, joints.LEAST_SOLUTIONS * one)
-    progress.limit = progress.effort + share
+    share, least = (progress.budget - progress.effort) * joints.COMPONENT_BUDGET, joints.LEAST_SOLUTIONS * one
+    progress.limit = progress.effort + max(share, least)
+    return bool(share > least)
 
 
 @nonallocating
@@ -182,9 +186,10 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
     rung = ELASTIC_RUNG if yields else ORDER_4 if order == 4 and smooth(W) else WHOLE_STEP
     if rung != ORDER_4 or touched:
         forget_parts(W)
-    progress.most_epsilon = joints.REDUNDANT_MOST
+    progress.most_epsilon, begun = joints.REDUNDANT_MOST, progress.effort
     while rung < RUNGS and not progress.effort > progress.limit:
-        if progress.long > 0 and WHOLE_STEP < rung < ELASTIC_RUNG:
+        dear = progress.shorter > 0 and RESOLUTION * (progress.effort - begun) > progress.budget
+        if (progress.long > 0 or dear) and WHOLE_STEP < rung < ELASTIC_RUNG:
             break
         parts, compliance = int(PARTS_ON[rung]), compliance_on(rung, h, yields, first.compliance)
         clear_ledger(W.J.PART_LEDGER)

@@ -87,7 +87,7 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
         save(W)
     for k in range(W.joints):
         W.J.JOINT[W.link[k].joint].side = W.link[k].side  # to which the ladder returns
-    limit_work(W)
+    order = order if limit_work(W) else 2
     ledger.apart = farthest(W)
     status = climb(W, h, order, length, touched, own)
     before = step_linearly(W, h, length) if status == LINEAR else 0.0

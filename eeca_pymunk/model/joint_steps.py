@@ -94,7 +94,8 @@ class Progress(Record):
     share: float  # of `effort`, at which an interval gives up
     limit: float  # of `effort`, at which the step of a component gives up what its ladder has before linear rows
     most_epsilon: float  # largest term on the diagonal of redundant rows (`..newton.solve`)
-    long: int  # 1 if an interval with contacts may be shorter: no component is stepped in parts in it
+    shorter: int  # 1 if an interval with contacts may be shorter
+    long: int  # 1 if so, and it is long: no component is stepped in parts in it
 
 
 class Parts(Record):
