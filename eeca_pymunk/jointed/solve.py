@@ -84,7 +84,7 @@ def excess_length(
         solved: whether contacts are.  last: whether no other attempt follows, see `try_jointed`.
     """
     m, n = interval.m, interval.n
-    far = 2.0 if not solved and J.PROGRESS.effort > J.PROGRESS.share else 0.0
+    far = 2.0 if not solved and J.PROGRESS.long > 0 and J.PROGRESS.effort > J.PROGRESS.share else 0.0
     for s in interval.groups.JOINTED:
         if gave_way(J, s):
             far = 2.0

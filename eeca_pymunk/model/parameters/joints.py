@@ -104,7 +104,7 @@ JOINTED_CORRECTION_SWEEPS = work(40, "sweeps", "Sweeps of the penetration correc
 STEP_WORK = work(54000000.0, "operations",
     "Work of a step with joints besides STEP_WORK_BODY; 4e9 operations take about a second.")
 INTERVAL_SHARE = work(0.25, "of what is left of the budget",
-    "Work of an interval after which it is solved again, shorter, if it has not converged.")
+    "Work of a long interval after which it is solved again, shorter, if it has not converged.")
 STEP_WORK_BODY = work(250000.0, "operations", "Work of a step with joints for each body of the scene.")
 CUT_WORK = work(8000000.0, "operations",
     "Work for the intervals with joints that end where a step is cut short, beside its budget.")
