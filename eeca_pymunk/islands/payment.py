@@ -49,28 +49,24 @@ def was_placed(A: Scene, isle: Island, n: int) -> bool:
 
 
 @nonallocating
-def deep(A: Scene, ROWS: Rows[Row], m: int) -> bool:
-    """Whether any of m contacts is deeper than SLIGHT_DEPTH."""
+def how_deep(
+    A: Scene, isle: Island, ROWS: Rows[Row], L: FloatArray, V: FloatArray, n: int, m: int
+) -> tuple[bool, bool]:  # fmt: skip
+    """Whether any of m contacts of an island of n bodies is deeper than SLIGHT_DEPTH; and whether one is deeper than an
+    interval allows in a body that moves by itself, but for contacts that push with no impulse L (m, 2) and open at
+    velocities V (k, 3), as they part without it."""
+    deep = False
     for z in range(m):
-        a, b = shapes_of(A, ROWS[z])
-        if ROWS[z].gap < -SLIGHT_DEPTH * depth_limit(A, a, b):
-            return True
-    return False
-
-
-@nonallocating
-def driven(A: Scene, isle: Island, ROWS: Rows[Row], L: FloatArray, V: FloatArray, n: int, m: int) -> bool:
-    """Whether a body that moves by itself is deeper in an island of n bodies, at any of m contacts, than an interval
-    allows; but for contacts that push with no impulse L (m, 2) and open at velocities V (k, 3), as they part without
-    it."""
-    for z in range(m):
-        q = max(ROWS[z].a, ROWS[z].b)  # bodies without mobility are the last ones
-        if q < n or not moves_itself(A, isle.WHO[q]) or (L[z, 0] == 0.0 and normal_rate(ROWS[z], V) > 0.0):
+        if ROWS[z].gap >= 0.0:
             continue
         a, b = shapes_of(A, ROWS[z])
-        if ROWS[z].gap < -depth_limit(A, a, b):
-            return True
-    return False
+        most = depth_limit(A, a, b)
+        deep = deep or ROWS[z].gap < -SLIGHT_DEPTH * most
+        q = max(ROWS[z].a, ROWS[z].b)  # bodies without mobility are the last ones
+        if ROWS[z].gap < -most and q >= n and moves_itself(A, isle.WHO[q]):
+            if L[z, 0] != 0.0 or not normal_rate(ROWS[z], V) > 0.0:
+                return True, True
+    return deep, False
 
 
 @nonallocating
@@ -86,9 +82,9 @@ def payment(
         before: earlier in this step; what is owed if below 0.
         placed: whether it `was_placed` into.  jointed: whether the island has joints.
     """
-    drives = driven(A, isle, ROWS, L, V, n, m)
-    counts = jointed or n == 1 or len(isle.WHO) == n or deep(A, ROWS, m)
+    deep, driven = how_deep(A, isle, ROWS, L, V, n, m)
+    counts = jointed or n == 1 or len(isle.WHO) == n or deep
     # Elastic contacts have no losses; what they seem to lose is round-off.
     losses = -1.0 if conserves(ROWS, m) else lost + (before if counts else min(before, 0.0))
-    payable = 0.0 if placed else max(losses, 0.0) if drives else math.inf
+    payable = 0.0 if placed else max(losses, 0.0) if driven else math.inf
     return Payment(math.inf if payable < math.inf else losses, payable)

@@ -31,7 +31,8 @@ def test_walls_drive_into_what_does_not_part_by_itself(
     rows[0].b, rows[0].ny, rows[0].gap = 1, -1.0, gap
     velocities[0, 1] = rate
     isle = cast(Any, SimpleNamespace(WHO=(0, 1)))
-    assert payment.driven(cast(Any, None), isle, rows, np.array([[impulse, 0.0]]), velocities, 1, 1) == drives
+    pushes = np.array([[impulse, 0.0]])
+    assert payment.how_deep(cast(Any, None), isle, rows, pushes, velocities, 1, 1) == (True, drives)
 
 
 @pytest.mark.skipif(not prepare().entries, reason="kernels as plain Python")
