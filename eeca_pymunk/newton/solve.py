@@ -26,6 +26,8 @@ from .dual import refresh
 from .motion import balance_velocities, move
 from .systems import apply, back, factorise, first_iterate, first_system, linearise
 
+KEPT, NEW, FULL = 0, 1, 2  # factors of an iteration
+
 
 @nonallocating
 def drop_impulses(W: Workspace) -> None:
@@ -100,39 +102,36 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
 
     At convergence g is within JOINT_TOLERANCE of that size (or at round-off) of its targets, or within PROGRESS.near if
     that is more, and the balance of momentum holds to round-off. False if there is none after NEWTON_ITERATIONS,
-    beyond PROGRESS.limit, or after more than 6 that have `stalled`: the error has come to no smaller one than before,
-    or, below NEWTON_FLOOR, not to half of the last one. After two of these an error below NEWTON_FLOOR is round-off, as
-    bodies in line leave it. The factors of an iteration:
+    beyond PROGRESS.limit, or after more than 6 that have stalled (`stalls`): the error has come to no smaller one than
+    before, or, below NEWTON_FLOOR, not to half of the last one. After two of these an error below NEWTON_FLOOR is
+    round-off, as bodies in line leave it. The factors of an iteration:
 
-    | state | `lasting`, `ready` | factors | next |
-    |---|---|---|---|
-    | kept | yes, yes | of an earlier iteration or part of the step | kept; new if `slow`: errors fall too little |
-    | new | yes, no | computed now (`fresh`) | kept; full if `slow` |
-    | full | no, no | computed now, of `component.system` | full |
+    | `factors` | are | of the next iteration |
+    |---|---|---|
+    | KEPT | those of an earlier iteration, or part of the step | KEPT; NEW if errors fall too little (`slow`) |
+    | NEW | computed now | KEPT; FULL if these are `slow` |
+    | FULL | computed now, of `component.system` | FULL |
+
+    It begins KEPT if the component has factors, FULL if bounded rows are in the matrix, which change it in each
+    iteration, else NEW. Entering FULL, redundant rows begin again without impulses.
 
     Impulses of elastic joints that contradict one another are as large as they are stiff, and cancel but for round-off:
     at this error the solve ends, and it fails if that is more than ELASTIC_ROUND_OFF, as joints have to be softer.
-
-    It begins kept if the component has factors, full if bounded rows are in the matrix, which change it in each
-    iteration, else new. Entering full, redundant rows begin again without impulses.
 
     Args:
         loops: whether rows may be redundant, and begin without impulses.  give: compliance over h², see `systems`.
     """
     component, progress = W.J.COMPONENT[W.s], W.J.PROGRESS
     first_iterate(W, STEP, h)
-    best, last, stalls = 1e300, 1e300, 0
-    system = first_system(component, STEP)
-    lasting = system == DUAL or not has_bounded(W)
-    # ready: factors can be used again; fresh: those of the last iteration were new; since: iteration from which on each
-    # has new ones (full Newton).
-    ready, fresh, since = lasting and component.factored > 0, False, 0
+    system, boxes = first_system(component, STEP), boxed_rows(W)
+    factors = FULL if system != DUAL and has_bounded(W) else KEPT if component.factored > 0 else NEW
     component.factored = 0
-    boxes = boxed_rows(W)
+    # since: iteration in which the solve has begun again, with FULL.  renewed: whether the last iteration was NEW.
+    best, last, stalls, since, renewed = 1e300, 1e300, 0, 0, False
     for iteration in range(NEWTON_ITERATIONS + 1):
-        built = not ready
+        built = factors != KEPT
         worst = linearise(W, STEP, h, length, give, False, system, built)
-        floor = JOINT_ROUND_OFF_KEPT if lasting else NEWTON_FLOOR if stalls > 1 else JOINT_ROUND_OFF
+        floor = JOINT_ROUND_OFF_KEPT if factors != FULL else NEWTON_FLOOR if stalls > 1 else JOINT_ROUND_OFF
         at_floor = iteration > since + 1 and 0.5 * best < worst < floor
         if give > 0.0 and iteration > 1:
             left = round_off_of_impulses(W, h, length)
@@ -141,7 +140,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
             at_floor = at_floor or worst <= left
         if iteration > 0 and (worst <= max(JOINT_TOLERANCE, progress.near) or at_floor):
             # A wide matrix is expensive to factor: the parts of a step share one while errors fall with it.
-            component.factored = 1 if ready and system == CONDENSED and boxes == 0 else 0
+            component.factored = 1 if factors == KEPT and system == CONDENSED and boxes == 0 else 0
             balance_velocities(W, h)
             return True
         # Next to the solution errors cannot fall by much.
@@ -152,18 +151,15 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
         if not worst < 1e100 or stalls > 6 or iteration == NEWTON_ITERATIONS or progress.effort > progress.limit:
             return False
         last = worst
-        if ready and slow:
-            ready = False
-            if fresh:
-                # Only nearly singular or long steps come here: full Newton from now on.
-                lasting, system, since = False, component.system, iteration
-                best, stalls = worst, 0
+        if factors == KEPT and slow:
+            factors = FULL if renewed else NEW
+            if factors == FULL:  # only nearly singular or long steps come here
+                system, since, stalls, best = component.system, iteration, 0, worst
                 if loops:
                     drop_impulses(W)
                     first_iterate(W, STEP, h)
                     best = 1e300
-        fresh = not ready
-        if fresh:
+        if factors != KEPT:
             if not built:
                 linearise(W, STEP, h, length, give, False, system, True)
             # Compliance makes rows independent; a term beside it would divide errors only by 1 + give/epsilon.
@@ -174,9 +170,9 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
                 return False
         elif system == DUAL:
             refresh(W)
-        passes = 1 if give > 0.0 or not fresh else CONDENSED_PASSES - 1 if lasting else CONDENSED_PASSES
-        iterate(W, STEP, system, passes, boxes, h, fresh)
-        ready = lasting
+        passes = 1 if give > 0.0 or factors == KEPT else CONDENSED_PASSES - 1 if factors == NEW else CONDENSED_PASSES
+        iterate(W, STEP, system, passes, boxes, h, factors != KEPT)
+        renewed, factors = factors == NEW, FULL if factors == FULL else KEPT
     return False
 
 
