@@ -157,8 +157,3 @@ class Layout(Generic[T]):
         word = self._plan.first_word[name]
         first = (self._table[word] - self._memory.address) // 8
         return slice(first, first + self._table[word + 1] * self._plan.dtypes[name].itemsize // 8)
-
-    def until(self, name: str) -> IntArray:
-        """The memory before this array, as integers."""
-        end = self._table[self._plan.first_word[name]] - self._memory.address
-        return self._memory.bytes[:end].view(np.int64)

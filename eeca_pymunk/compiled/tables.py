@@ -50,29 +50,17 @@ def _type_of(dtype: np.dtype[Any], dimensions: int) -> str:
     return f"{dtype.type.__name__}[{dimensions}]"
 
 
-def table_of(arrays: Any, like: Table | None = None) -> Table:
+def table_of(arrays: Any) -> Table:
     """The table of a named tuple of arrays. If one of them is replaced, a new table is needed; the arrays must exist as
     long as the table is used.
-
-    Args:
-        like: another table of the same kind, None for none: of the very arrays that both have, words are copied.
 
     Raises:
         TypeError: an array is not C-contiguous, or not of the dtype and dimensions that `entries.TABLES` declares.
     """
     if not start().entries:
         return arrays
-    if isinstance(like, Pointers) and like.arrays is arrays:
-        return like
     name = type(arrays).__name__
     fields = table_fields(name) if name in TABLES else [(field, None, 0) for field in arrays._fields]
-    if isinstance(like, Pointers) and type(like.arrays) is type(arrays):
-        copied = like.words.copy()
-        for place, (array, known) in enumerate(zip(arrays, like.arrays, strict=True)):
-            if array is not known:
-                field, dtype, dimensions = fields[place]
-                copied[WORDS * place : WORDS * (place + 1)] = _words(name, field, dtype, dimensions, array)
-        return Pointers(lambda: arrays, copied)
     numbers: list[int] = []
     for (field, dtype, dimensions), array in zip(fields, arrays, strict=True):
         numbers += _words(name, field, dtype, dimensions, array)

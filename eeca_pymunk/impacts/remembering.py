@@ -28,7 +28,7 @@ _UNMET, _SOLVES, _BLOCKS, _LOGGED, _LOSSY = map(_COUNT.index, ("unmet", "solves"
 _IMPULSE = Impulse.TYPE.itemsize // 8
 UNBOUND: tuple[Table, Callable[..., int]] = None, int
 # Attributes that no copy has.
-_OF_PROCESS = "table", "ties", "_bound", "own", "fresh", "_first", "_par", "_count", "log", "_book", "_laid", "_memory"
+_OF_PROCESS = "table", "ties", "_bound", "own", "fresh", "_first", "_par", "_count", "log", "_book", "_memory"
 
 
 class Remembering:
@@ -44,8 +44,7 @@ class Remembering:
     partner: Rows[Body]
     table: Table = None
     fresh: IntArray = np.empty(0, np.int64)
-    _laid: Table = None
-    _memory: SceneMemory  # of the table that was made first, `_laid`
+    _memory: SceneMemory
     _listed: bool | None
 
     @property
@@ -60,7 +59,7 @@ class Remembering:
 
     @scene.setter
     def scene(self, arrays: Scene) -> None:
-        self.table = table_of(arrays, self.table)
+        self.table = table_of(arrays)
         self._bound: tuple[Table, Callable[..., int]] = UNBOUND  # with the reading to which it is bound
         # These are read in every step. Fields of records take thirty times as long, entries of arrays three times.
         self._view(numbers(arrays.PAR).data, numbers(arrays.COUNT).data, as_integers(arrays.LOG).data)
@@ -71,10 +70,7 @@ class Remembering:
 
     def exchange(self, name: str, array: AnyArray) -> None:
         """Use another array of this name, which steps only read."""
-        laid = self.table is self._laid
         self.table, self._bound = replaced(self.table, Scene, name, array), UNBOUND
-        if laid:
-            self._laid = self.table
 
     @property
     def joints(self) -> Joints:
@@ -166,8 +162,6 @@ class Remembering:
 
     def _gather(self) -> IntArray:
         """Put what steps change, apart from poses and velocities, into one piece of memory; returns it as integers."""
-        if not self.jointed and self.table is self._laid:
-            return self._memory.own()
         if not self.jointed:
             (self.scene,), memory = gathered((self.scene, OF_SCENE))
             return memory

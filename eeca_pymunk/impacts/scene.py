@@ -79,7 +79,7 @@ class EventLoop(Remembering):
         self.table = memory.scene(laid, self.pinned, limit, together, budget)
         self._view(*memory.records())
         self._bound = UNBOUND
-        self._laid, self._memory, self.thin = self.table, memory, memory.thin > 0
+        self._memory, self.thin = memory, memory.thin > 0
         self._rules: dict[tuple[int, int], tuple[float, float, float, float]] = {}  # those of the table
         self._plan(BODY)
         if self.jointed:

@@ -117,10 +117,6 @@ class SceneMemory:
         layout = self._layout
         return layout.floats("PAR"), layout.integers("COUNT"), layout.integers("LOG")
 
-    def own(self) -> IntArray:
-        """The memory of the arrays of the last scene that `OF_SCENE` names, as integers."""
-        return self._layout.until(_ZEROS[len(OF_SCENE)])
-
     def unjointed(self, n: int) -> Table:
         """The table `Joints` of a scene without joints, of n bodies."""
         if self._unjointed[1] < n:

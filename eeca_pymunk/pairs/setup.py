@@ -23,16 +23,15 @@ def pool_sizes(moving: int) -> tuple[int, int]:
     return 32 * moving + 1024, 1 << max(1, (2 * moving + 1).bit_length())
 
 
-def near_lists(scene: Scene, moving: int, like: Table | None = None) -> Scene:
-    """The scene with lists of the shapes [0, moving), for the present poses in BODY; `like`: its table, if there is
-    one."""
+def near_lists(scene: Scene, moving: int) -> Scene:
+    """The scene with lists of the shapes [0, moving), for the present poses in BODY."""
     walls, (pool, heads) = len(scene.SHAPE) - moving, pool_sizes(moving)
     MARK, CELL, LIST, POOL, FLAG, HEAD, GRID, BOX = side_by_side(
         ((moving,), Mark.TYPE), ((moving,), Cell.TYPE), ((moving,), List.TYPE), ((pool,), np.int32),
         ((pool,), np.uint8), ((heads,), np.int64), ((1,), Grid.TYPE), ((walls, 4), np.float64),
     )  # fmt: skip
     scene = scene._replace(**dict(zip(NEAR, (MARK, CELL, LIST, POOL, FLAG, HEAD, GRID[0], BOX, NO_GRID), strict=True)))
-    table = table_of(scene, like)
+    table = table_of(scene)
     return scene_of(filled(table, scene.SHAPE, moving, begin_lists(table)))
 
 
@@ -41,7 +40,7 @@ def refilled(table: Table) -> Table:
     scene = scene_of(table)
     moving, room = len(scene.LIST), (len(scene.POOL), len(scene.HEAD))
     if room != pool_sizes(moving):
-        return table_of(near_lists(scene, moving, table), table)
+        return table_of(near_lists(scene, moving))
     for name in NEAR:
         if name != "CSR":
             array = np.asarray(getattr(scene, name))
@@ -53,12 +52,12 @@ def filled(table: Table, SHAPE: Rows[Shape], moving: int, found: int, CSR: IntAr
     """The table of a scene with these shapes, the first ones of which move, and with arrays NEAR as in a new one, with
     its first lists. found: the result of `begin_lists`.  CSR: that of the table, to be written if it fits."""
     if found < 0:
-        return table if found == LISTS_MADE else table_of(with_more_room(scene_of(table), 0.0, table), table)
+        return table if found == LISTS_MADE else table_of(with_more_room(scene_of(table), 0.0))
     if found > 0 and (CSR is NO_GRID or len(CSR) != found):
         table = replaced(table, Scene, "CSR", np.zeros(found, np.int64))
     bounds = np.sort(SHAPE["bound"][:moving])
     while not fill_lists(table, bounds, NEIGHBOURS):
-        table = table_of(_with_larger_pool(scene_of(table)), table)
+        table = table_of(_with_larger_pool(scene_of(table)))
     return table
 
 
@@ -68,13 +67,12 @@ def _with_larger_pool(scene: Scene) -> Scene:
     return scene._replace(POOL=np.zeros(room, np.int32), FLAG=np.zeros(room, np.uint8))
 
 
-def with_more_room(scene: Scene, t: float, like: Table | None = None) -> Scene:
-    """The scene with its lists built at instant t, with a pool at least twice as long; `like`: a table of the scene, as
-    it was, if there is one."""
+def with_more_room(scene: Scene, t: float) -> Scene:
+    """The scene with its lists built at instant t, with a pool at least twice as long."""
     built = False
     while not built:
         scene = _with_larger_pool(scene)
-        built = build(table_of(scene, like), t)
+        built = build(table_of(scene), t)
     return scene
 
 

@@ -117,17 +117,6 @@ def test_tables_of_other_arrays_are_refused(wrong: dict[str, np.ndarray], told: 
         table_of(arrays._replace(**wrong))
 
 
-def test_table_like_another_has_the_words_of_what_was_replaced() -> None:
-    arrays = scene_with()
-    table = table_of(arrays)
-    if table is arrays:
-        pytest.skip("kernels run as plain Python, which has no words")
-    other = arrays._replace(LOG=np.zeros(3, arrays.LOG.dtype), BEGAN=np.zeros((2, 3)))
-    like = table_of(other, table)
-    assert like.arrays is other
-    assert like.words.tolist() == table_of(other).words.tolist() != table.words.tolist()
-
-
 def test_a_replaced_array_is_in_the_words_and_in_the_arrays() -> None:
     arrays, other = scene_with(), np.zeros((2, 3))
     table = table_of(arrays)
