@@ -23,16 +23,12 @@ from ..model.joints import GIVES_WAY, ROTARY_SPRING, SPRING, Workspace
 from ..model.parameters import joints
 from ..model.parameters.events import RESOLUTION
 from ..newton.effort import work_of_iteration
-from ..newton.motion import go_back
-from ..newton.solve import drop_impulses
 from .contradiction import contradicts
-from .correct import NOW, SAVED, kinetic_of
 from .foresight import PARTS, forget_parts, predict_part, recalls, remember_part
-from .frame import frame_of
-from .ledger import clear_ledger, close_ledger, unexplained
+from .gains import repaid
+from .ledger import clear_ledger
 from .limits import step_with_limits
-from .lock import lock_energy, restore_momenta
-from .start import load_of
+from .unheld import restore_start
 
 SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
 ORDER_4, WHOLE_STEP, ELASTIC_RUNG, RUNGS = 0, 1, 5, 11
@@ -106,70 +102,6 @@ def take_parts(W: Workspace, h: float, length: float, rung: int, parts: int, giv
         if rung == ORDER_4:
             remember_part(W, piece)
     return TAKEN
-
-
-@nonallocating
-def gain_of_rows(W: Workspace, own: bool) -> float:
-    """The energy that exact rows have given in a step. What limits lose pays for round-off of joints that hold, but not
-    for closing what an earlier step left apart (`own`)."""
-    part = W.J.PART_LEDGER
-    return float(part.closed - (0.0 if own else max(part.limited, 0.0)))
-
-
-@nonallocating
-def settle(W: Workspace, h: float, length: float) -> None:
-    """Restore the momenta of a step, and close its ledger, where they are off by more than round-off of the energy and
-    of the work of forces over the size `length`: impulses that are large change both by their round-off, and their
-    works cancel only up to that."""
-    part, load = W.J.PART_LEDGER, load_of(W, h, length)
-    least = joints.JOINT_GAIN * (kinetic_of(W, SAVED) + kinetic_of(W, NOW) + load)
-    part.closed += restore_momenta(W, h, length, load)
-    apart = unexplained(W) - (part.supports + part.closed - part.limited)
-    if not abs(apart) <= least:
-        close_ledger(W)
-
-
-@nonallocating
-def repaid(W: Workspace, h: float, length: float, own: bool) -> bool:
-    """Whether exact rows have given no energy, or little, which is then taken from the motion.
-
-    Joints that an earlier step left apart (`own`) close at once; if that gives much energy beside what was there, the
-    step fails. Other rows hold to round-off e of their places, and give e times their impulse over h: more in shorter
-    steps. What is taken of a gain that is much larger than the energy has its round-off: the rest is taken again.
-    """
-    part, before = W.J.PART_LEDGER, kinetic_of(W, SAVED)
-    if not frame_of(W).rigid:
-        return True
-    for turn in range(2):
-        settle(W, h, length)
-        gain = gain_of_rows(W, own)
-        known = joints.JOINT_GAIN * (before + kinetic_of(W, NOW))
-        if own and gain > 0.0 and not gain <= joints.REPAID * before:
-            return False
-        if not gain > 0.0 or not (gain > known or (own and turn == 0)):
-            break
-        part.closed -= lock_energy(W, gain, part)
-    return True
-
-
-@nonallocating
-def undo_impulses(W: Workspace) -> None:
-    """Set the impulses of the step to 0, and the accelerations and works of joints."""
-    drop_impulses(W)
-    for i in range(W.bodies):
-        for c in range(3):
-            W.J.LOCAL[i].lead[c] = 0.0
-    for k in range(W.joints):
-        W.J.HINGE[k].total[0] = W.J.HINGE[k].total[1] = W.J.JOINT[W.link[k].joint].work = 0.0
-
-
-@nonallocating
-def restore_start(W: Workspace) -> None:
-    """Return to the start of the step, without impulses."""
-    go_back(W)
-    undo_impulses(W)
-    for k in range(W.joints):
-        W.link[k].side = W.J.JOINT[W.link[k].joint].side
 
 
 @nonallocating

@@ -1,8 +1,8 @@
 """One step of a component without contacts.
 
 Joints that are apart, by an edit or by earlier steps, are closed. The ladder (`ladder`) takes the step, or one linear
-system if it fails (`unheld`). Joints store what the next step begins with. Energy that elastic and linear joints gain
-is taken from the motion (`lock`).
+system if it fails (`unheld`). Energy that joints have given is taken from the motion (`gains`). Joints store what the
+next step begins with.
 """
 
 from __future__ import annotations
@@ -18,11 +18,12 @@ from ..newton.solve import drop_impulses
 from .bounds import closes_on_limit, standing
 from .closing import close_joints, farthest
 from .correct import fitting_loss, project
+from .gains import take_gain
 from .ladder import climb, limit_work
 from .ledger import add_part, clear_ledger
 from .start import bounded_targets, compute_rows, read_joints
 from .taut import is_taut
-from .unheld import keeps_gain, step_linearly, stop_joints, take_gain
+from .unheld import step_linearly
 
 
 @nonallocating
@@ -91,11 +92,7 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
     ledger.apart = farthest(W)
     status = climb(W, h, order, length, touched, own)
     before = step_linearly(W, h, length) if status == LINEAR else 0.0
-    if status >= ELASTIC:
-        status = take_gain(W, h, length, status, before)
-    elif keeps_gain(W, h, length, own):
-        stop_joints(W, h)
-        status = LINEAR
+    status = take_gain(W, h, length, status, own, before)
     if status >= ELASTIC:
         compute_rows(W)  # they were those before the last correction
     ledger.gave = max(farthest(W) - ledger.apart, 0.0) if status >= ELASTIC else 0.0

@@ -1,0 +1,122 @@
+"""Energy that joints have given in a step: how much it is, and how the motion pays it back.
+
+| status of the step | what joints have given | paid in | if the motion cannot pay |
+|---|---|---|---|
+| EXACT, HALVED | what exact rows have (`gain_of_rows`) | `repaid`, on the ladder | the rung fails; or see below |
+| ELASTIC, LINEAR | all that nothing else explains (`close_ledger`) | `take_gain` | bodies move as one |
+
+Where the motion is too slow to pay what exact rows have given, bodies keep a gain that is round-off; of a larger one
+(`keeps_gain`) they move as one, too (`unheld.stop_joints`). `lock` takes energy from the motion. Before, momenta and
+ledger are put right (`clear_errors`). Without a frame of the supports (`frame`) these may do any work: nothing is a
+gain.
+"""
+
+from __future__ import annotations
+
+from ..compiled import nonallocating
+from ..model.joint_steps import ELASTIC, LINEAR
+from ..model.joints import Workspace
+from ..model.parameters.joints import GAIN_KEPT, JOINT_GAIN, JOINT_TOLERANCE, LINEAR_APART, REPAID
+from .closing import farthest
+from .correct import NOW, SAVED, kinetic_of
+from .frame import frame_of
+from .ledger import close_ledger, unexplained
+from .lock import lock_energy, restore_momenta
+from .start import load_of
+from .unheld import stop_joints
+
+
+@nonallocating
+def gain_of_rows(W: Workspace, own: bool) -> float:
+    """The energy that exact rows have given in a step. What limits lose pays for round-off of joints that hold, but not
+    for closing what an earlier step left apart (`own`)."""
+    part = W.J.PART_LEDGER
+    return float(part.closed - (0.0 if own else max(part.limited, 0.0)))
+
+
+@nonallocating
+def clear_errors(W: Workspace, h: float, length: float) -> None:
+    """Restore the momenta of a step, and close its ledger, where they are off by more than round-off of the energy and
+    of the work of forces over the size `length`: impulses that are large change both by their round-off, and their
+    works cancel only up to that."""
+    part, load = W.J.PART_LEDGER, load_of(W, h, length)
+    least = JOINT_GAIN * (kinetic_of(W, SAVED) + kinetic_of(W, NOW) + load)
+    part.closed += restore_momenta(W, h, length, load)
+    apart = unexplained(W) - (part.supports + part.closed - part.limited)
+    if not abs(apart) <= least:
+        close_ledger(W)
+
+
+@nonallocating
+def repaid(W: Workspace, h: float, length: float, own: bool) -> bool:
+    """Whether exact rows have given no energy, or little, which is then taken from the motion.
+
+    Joints that an earlier step left apart (`own`) close at once; if that gives much energy beside what was there, the
+    step fails. Other rows hold to round-off e of their places, and give e times their impulse over h: more in shorter
+    steps. What is taken of a gain that is much larger than the energy has its round-off: the rest is taken again.
+    """
+    part, before = W.J.PART_LEDGER, kinetic_of(W, SAVED)
+    if not frame_of(W).rigid:
+        return True
+    for turn in range(2):
+        clear_errors(W, h, length)
+        gain = gain_of_rows(W, own)
+        known = JOINT_GAIN * (before + kinetic_of(W, NOW))
+        if own and gain > 0.0 and not gain <= REPAID * before:
+            return False
+        if not gain > 0.0 or not (gain > known or (own and turn == 0)):
+            break
+        part.closed -= lock_energy(W, gain, part)
+    return True
+
+
+@nonallocating
+def keeps_gain(W: Workspace, h: float, length: float, own: bool) -> bool:
+    """Whether bodies keep what exact rows have given: more than GAIN_KEPT of what they had and of the work of forces
+    over the size `length` of the component, and more than that of the velocities which round-off of places is over h.
+    Not where joints need not be exact yet."""
+    if W.J.PROGRESS.near > 0.0:
+        return False
+    gain, mass = min(gain_of_rows(W, own), unexplained(W) - W.J.PART_LEDGER.carried), 0.0
+    if not gain > 0.0 or not frame_of(W).rigid:
+        return False
+    for i in range(W.bodies):
+        mass += 1.0 / W.J.LOCAL[i].mobility[0] if W.J.LOCAL[i].mobility[0] > 0.0 else 0.0
+    noise = mass * (JOINT_TOLERANCE * length / h) ** 2
+    had = kinetic_of(W, SAVED) + load_of(W, h, length)
+    return bool(gain > noise + GAIN_KEPT * had)
+
+
+@nonallocating
+def gain_taken(W: Workspace, h: float, length: float) -> bool:
+    """Close the ledger of a step whose joints did not hold exactly, and take its gain from the motion; returns whether
+    what is left of it is round-off of the kinetic energies before and after.
+
+    Joints that close within a short h make bodies fast, and the lock then takes most of this, and leaves its round-off,
+    of momenta too: both are put right once more.
+    """
+    part = W.J.PART_LEDGER
+    for _ in range(2):
+        clear_errors(W, h, length)
+        close_ledger(W)
+        if part.closed > 0.0:
+            lock_energy(W, part.closed, part)
+            close_ledger(W)
+    return not part.closed > JOINT_GAIN * (kinetic_of(W, SAVED) + kinetic_of(W, NOW))
+
+
+@nonallocating
+def take_gain(W: Workspace, h: float, length: float, status: int, own: bool, before: float) -> int:
+    """Take from the motion what joints have given in a step of this status, if `repaid` has not; returns the status.
+
+    If the motion cannot pay, or linear rows leave joints farther apart than `before`, all bodies move as one: LINEAR.
+    `own`: see `repaid`.
+    """
+    if status < ELASTIC:
+        fails = keeps_gain(W, h, length, own)
+    else:
+        fails = not gain_taken(W, h, length) or (status == LINEAR and not farthest(W) <= before + LINEAR_APART)
+        fails = fails and frame_of(W).rigid
+    if fails:
+        stop_joints(W, h)
+    return LINEAR if fails else status
