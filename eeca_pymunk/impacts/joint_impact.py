@@ -12,9 +12,8 @@ from ..compiled.records import Rows, zeros
 from ..contacts.counts import spend
 from ..contacts.works import external_work, gained_energy, kinetic_energy
 from ..geometry.sides import pair_of
-from ..islands.building import persists_from
 from ..islands.local import clear_places
-from ..islands.membership import jointed, members
+from ..islands.membership import jointed, members, persists_from
 from ..jointed.columns import count_operations, fill_free, make_columns, set_effective_masses
 from ..jointed.ends import shorten, under_way
 from ..jointed.groups import find_groups

@@ -12,8 +12,8 @@ from ..contacts.memory import table_has_room
 from ..contacts.single import alone, strike_disk
 from ..geometry.sides import remembers
 from ..islands.accounting import end_interval, lift_within_step
-from ..islands.building import hits_of, most_hits, passed_over, persists_from
-from ..islands.membership import jointed, members
+from ..islands.hits import hits_of, most_hits, passed_over
+from ..islands.membership import jointed, members, persists_from
 from ..jointed.ends import end_here
 from ..jointed.ledger import most_looks, work_left
 from ..model.bodies import LEAVE, RENEW

@@ -1,8 +1,5 @@
-"""Islands at the start of a step, and whether contacts persist that begin within it.
-
-Contacts that lasted to the end of the last step are examined again; bodies that touch an island join it. New contacts
-begin by events, and persist if their bounces would all be over within the step.
-"""
+"""Islands at the start of a step: contacts that lasted to the end of the last step are examined again, and bodies that
+touch an island join it."""
 
 from __future__ import annotations
 
@@ -11,12 +8,11 @@ import numpy as np
 from ..arrays import IntArray
 from ..compiled import kernel, nonallocating
 from ..contacts.memory import table_has_room
-from ..geometry.flight import fastest, move_to, norm
-from ..geometry.sides import half_width, smaller
+from ..geometry.flight import fastest, move_to
+from ..geometry.sides import smaller
 from ..model.bodies import AT_REST
 from ..model.contacts import ENDED, LASTED
-from ..model.parameters.events import BUSY_STEPS, RESOLUTION, WORK_JOINTED
-from ..model.parameters.intervals import INTERVAL_DEPTH_WIDTH, TOUCH, TRAVEL_MARGIN
+from ..model.parameters.intervals import TOUCH, TRAVEL_MARGIN
 from ..model.scene import Scene
 from ..model.step import DONE, PUSHES_FULL
 from ..pairs.lists import far_apart
@@ -25,7 +21,7 @@ from .accounting import end_interval
 from .at_rest import wake_changed
 from .intervals import begin_interval
 from .local import drop_contacts
-from .membership import approach, budget_spent, fixed_support, jointed, largest_island, members_of, persists, unite
+from .membership import approach, budget_spent, fixed_support, persists, unite
 from .partial_rest import rests_in_part
 from .penetration import hold_penetrating, wake_penetrated
 from .support import support
@@ -111,7 +107,7 @@ def build_islands(A: Scene) -> int:
             continue
         if STATE[i].island >= 0 and STATE[i].island == STATE[j].island:
             continue  # together already
-        if persists(A, a, b, 0.0, law(A, a, b)[0] < 1.0):
+        if persists(A, a, b, 0.0):
             unite(A, i, j)
     for i in range(n):
         if A.MEMBER[i].tied >= 0:
@@ -151,87 +147,3 @@ def build_islands(A: Scene) -> int:
             begin_interval(A, root, 0.0)
     support(A)
     return DONE
-
-
-@nonallocating
-def persists_from(A: Scene, a: int, b: int, t: float) -> bool:
-    """Whether the contact of shapes a and b, which meet at instant t, persists from then on.
-
-    e < 1: all bounces of e |u| under the acceleration a_n of the gap end within the step, 2 e |u| <= -a_n (1 - e)
-    (dt - t); or a body had n >= RESOLUTION impacts in the step, or e^n <= 1/RESOLUTION if no force or gravity acts on
-    any body.
-    e = 1: as `membership.persists`, if |a| > 0; or a body had n >= RESOLUTION impacts, and either a_n < 0, without
-    contacts or on the present paths, and |u| < |a| dt / RESOLUTION, or a body is in an island with joints and n would
-    exceed COUNT.limit at the end of the step.
-    """
-    i, j = A.LINK[a].owner, A.LINK[b].owner
-    if A.BODY[i].inv_mass > 0.0:
-        move_to(A.BODY, i, t)
-    if A.BODY[j].inv_mass > 0.0:
-        move_to(A.BODY, j, t)
-    e = law(A, a, b)[0]
-    _, u, closing, present, _ = approach(A, a, b, t)
-    end = A.PAR.dt
-    met = max(A.STATE[i].events, A.STATE[j].events)
-    if e < 1.0:
-        if A.PAR.pulled == 0.0 and e**met * RESOLUTION <= 1.0:
-            return True
-        return met >= RESOLUTION or (closing > 0.0 and 2.0 * e * max(-u, 0.0) <= closing * (1.0 - e) * (end - t))
-    if met >= RESOLUTION and max(closing, present) > 0.0 and -u * RESOLUTION < A.PAR.pulled * end:
-        return True
-    if met >= RESOLUTION and t * A.COUNT.limit < met * end and (jointed(A, i) or jointed(A, j)):
-        return True
-    return A.PAR.pulled > 0.0 and persists(A, a, b, t, False)
-
-
-@nonallocating
-def hits_of(A: Scene, a: int, b: int) -> int:
-    """Number of hits in this step on the islands of shapes a and b, the larger one."""
-    hits = 0
-    for s in (a, b):
-        root = A.STATE[A.LINK[s].owner].island
-        if root >= 0:
-            hits = max(hits, A.MEMBER[root].hits)
-    return hits
-
-
-@nonallocating
-def most_hits(A: Scene, a: int, b: int) -> int:
-    """Largest number of hits in a step on the islands of shapes a and b: RESOLUTION; of lossy ones that divided by the
-    number of bodies, or by half of it where joints connect bodies, as a hit moves all of these at once."""
-    if law(A, a, b)[0] >= 1.0:
-        return RESOLUTION
-    hung = jointed(A, A.LINK[a].owner) or jointed(A, A.LINK[b].owner)
-    return max(1, (WORK_JOINTED if hung else 1) * RESOLUTION // max(1, largest_island(A, a, b)))
-
-
-@kernel
-def passed_over(A: Scene, a: int, b: int, t: float) -> bool:
-    """Whether an impact of shapes a and b at instant t on an island is passed over, since the budget of the island is
-    spent and they would not get deep within the step. Bodies of a lossy one then are `busy`. One without losses whose
-    contact persists from then on is not: friction of other contacts makes such bounces ever shorter."""
-    STATE = A.STATE
-    i, j = A.LINK[a].owner, A.LINK[b].owner
-    hits, most, lossy = hits_of(A, a, b), most_hits(A, a, b), law(A, a, b)[0] < 1.0
-    spent = budget_spent(A, STATE[i].island) or budget_spent(A, STATE[j].island)
-    if hits < most and not spent:
-        return False
-    if not lossy and not jointed(A, i) and not jointed(A, j) and persists_from(A, a, b, t):
-        return False
-    h = A.PAR.dt - t
-    speed = norm(A.BODY[i].vx - A.BODY[j].vx, A.BODY[i].vy - A.BODY[j].vy)
-    speed += abs(A.BODY[i].spin) * A.BODY[i].extent + abs(A.BODY[j].spin) * A.BODY[j].extent
-    # Joints may pull harder than gravity, as the present paths show.
-    pulled = norm(A.BODY[i].ax - A.BODY[j].ax, A.BODY[i].ay - A.BODY[j].ay)
-    pulled += abs(A.BODY[i].angular) * A.BODY[i].extent + abs(A.BODY[j].angular) * A.BODY[j].extent
-    thick = half_width(A, a) + half_width(A, b)
-    if (speed + max(A.PAR.pulled, pulled) * h) * h > INTERVAL_DEPTH_WIDTH * thick:
-        return False
-    if lossy:
-        for k in (i, j):
-            if A.BODY[k].inv_mass > 0.0:
-                A.MEMBER[k].busy = BUSY_STEPS
-            if STATE[k].island >= 0:
-                for member in members_of(A, STATE[k].island):
-                    A.MEMBER[member].busy = BUSY_STEPS
-    return True

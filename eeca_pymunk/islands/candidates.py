@@ -80,7 +80,7 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                         continue
                     e = law(A, s, o)[0]
                     if e >= 1.0 and not lossy and not together:
-                        if not persists(A, s, o, t, False):
+                        if not persists(A, s, o, t):
                             continue
                     elif g > intervals.TOUCH * small and not (together or busy):
                         load = remembered_force(A, s, o, since)[1] if lossy else 0.0

@@ -8,11 +8,11 @@ from ..arrays import IntArray
 from ..compiled import kernel, nonallocating
 from ..contacts.memory import find, key_of
 from ..contacts.targets import hardly_bounces
-from ..geometry.flight import opening_rate
+from ..geometry.flight import move_to, opening_rate
 from ..geometry.gap import gap_at
 from ..geometry.sides import smaller
 from ..model.bodies import AT_REST
-from ..model.parameters.events import WORK_JOINTED
+from ..model.parameters.events import RESOLUTION, WORK_JOINTED
 from ..model.parameters.intervals import ELASTIC_REST, ELASTIC_REST_ON, LARGE_ISLAND, SOLVES_BEFORE_HASTE, TOUCH
 from ..model.scene import Scene
 from ..pairs.rules import law
@@ -179,19 +179,20 @@ def approach(A: Scene, a: int, b: int, t: float) -> tuple[float, float, float, f
 
 
 @nonallocating
-def persists(A: Scene, a: int, b: int, t: float, lossy: bool) -> bool:
-    """Whether the contact of shapes a and b, whose bodies are at instant t, persists to the end of the step.
+def persists(A: Scene, a: int, b: int, t: float) -> bool:
+    """Whether shapes a and b, whose bodies are at instant t and need not touch, are in contact from there to the end of
+    the step, by what they carried before; of shapes that meet at t see `persists_from`.
 
     e < 1: its bounce e |u| is below half of P = max(-a_n h, A_nn f h), with the load f that it carried; and it touches
-    with u <= P, or carried a force and closes again. e = 1, unless the contact is `lossy`: it touches with almost no
-    speed, and a contact with a body without mobility is pressed together, perhaps by joints or other contacts.
+    with u <= P, or carried a force and closes again. e = 1: it touches with almost no speed, and a contact with a body
+    without mobility is pressed together, perhaps by joints or other contacts.
     """
     e = law(A, a, b)[0]
     g, u, closing, present, mass = approach(A, a, b, t)
     h = A.PAR.dt - t
     small = smaller(A, a, b)
     force, load = remembered_force(A, a, b, A.PAR.stamp - 1.0)
-    if e >= 1.0 and not lossy:
+    if e >= 1.0:
         limit = (ELASTIC_REST_ON if force > 0.0 else ELASTIC_REST) * A.PAR.pulled * A.PAR.dt
         i, j = A.LINK[a].owner, A.LINK[b].owner
         fixed = A.BODY[j].inv_mass == 0.0 or A.BODY[i].inv_mass == 0.0
@@ -203,3 +204,34 @@ def persists(A: Scene, a: int, b: int, t: float, lossy: bool) -> bool:
     if g <= TOUCH * small:
         return u <= press
     return force > 0.0 and g + u * h - 0.5 * press * h <= 0.0
+
+
+@nonallocating
+def persists_from(A: Scene, a: int, b: int, t: float) -> bool:
+    """Whether the contact of shapes a and b, which meet at instant t, persists from then on: their impact is the last.
+
+    e < 1: all bounces of e |u| under the acceleration a_n of the gap end within the step, 2 e |u| <= -a_n (1 - e)
+    (dt - t); or a body had n >= RESOLUTION impacts in the step, or e^n <= 1/RESOLUTION if no force or gravity acts on
+    any body.
+    e = 1: as `persists`, if |a| > 0; or a body had n >= RESOLUTION impacts, and either a_n < 0, without
+    contacts or on the present paths, and |u| < |a| dt / RESOLUTION, or a body is in an island with joints and n would
+    exceed COUNT.limit at the end of the step.
+    """
+    i, j = A.LINK[a].owner, A.LINK[b].owner
+    if A.BODY[i].inv_mass > 0.0:
+        move_to(A.BODY, i, t)
+    if A.BODY[j].inv_mass > 0.0:
+        move_to(A.BODY, j, t)
+    e = law(A, a, b)[0]
+    _, u, closing, present, _ = approach(A, a, b, t)
+    end = A.PAR.dt
+    met = max(A.STATE[i].events, A.STATE[j].events)
+    if e < 1.0:
+        if A.PAR.pulled == 0.0 and e**met * RESOLUTION <= 1.0:
+            return True
+        return met >= RESOLUTION or (closing > 0.0 and 2.0 * e * max(-u, 0.0) <= closing * (1.0 - e) * (end - t))
+    if met >= RESOLUTION and max(closing, present) > 0.0 and -u * RESOLUTION < A.PAR.pulled * end:
+        return True
+    if met >= RESOLUTION and t * A.COUNT.limit < met * end and (jointed(A, i) or jointed(A, j)):
+        return True
+    return A.PAR.pulled > 0.0 and persists(A, a, b, t)
