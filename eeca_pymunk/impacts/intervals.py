@@ -69,35 +69,48 @@ def start_waiting(A: Scene, J: Joints) -> int:
     return DONE
 
 
+@nonallocating
+def note_cut(A: Scene, J: Joints, i: int) -> None:
+    """Note that the step ends at the event of body i, since its budget is spent."""
+    own, other = A.STATE[i].own, A.STATE[i].other
+    if other < 0:  # the end of an interval, without a partner
+        own, other = A.STATE[i].first_shape if A.STATE[i].shapes > 0 else -1, -1
+    note_unmet(A, SOLVES, own, other, A.COUNT.work + most_work(A) - most_looks(A, J), most_work(A))
+
+
 @kernel
 def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
-    """End the step at instant t, that of the event of body i, since its budget is spent; so no impact is ignored."""
-    met = A.STATE[i].other >= 0  # else the event is the end of an interval, without a partner
-    own, other = (A.STATE[i].own, A.STATE[i].other) if met else (-1, -1)
-    if not met and A.STATE[i].shapes > 0:
-        own = A.STATE[i].first_shape
-    note_unmet(A, SOLVES, own, other, A.COUNT.work + most_work(A) - most_looks(A, J), most_work(A))
+    """End the step at instant t, that of the event of body i, since its budget is spent; so no impact is ignored.
+
+    Impacts of jointed bodies come later than predicted, or earlier (`..jointed.meet`), so that bodies may have been
+    brought beyond t. What becomes of an island that is not at rest:
+
+    | island | in the first loop | in the last one |
+    |---|---|---|
+    | without joints | its interval ends at t, or where it begins after t | it is lifted |
+    | with joints, in an interval | if that begins after t, it moves with its partners | it is solved again, up to t |
+    | with joints, whose interval has ended | it moves with its partners | it is lifted |
+
+    In between all bodies whose intervals have ended, or that are beyond t, count as there at t.
+    """
+    note_cut(A, J, i)
     A.PAR.dt = t
     A.COUNT.heap = 0
     if J.TALLY.components > 0:
         # The shortened intervals are solved again below, beyond the budget that is spent, of events or of joints.
         A.COUNT.work, J.PROGRESS.budget = 0.0, J.PROGRESS.effort + CUT_WORK
-    # Impacts of jointed bodies come later than predicted, or earlier (`..jointed.meet`), so that bodies may have been
-    # brought beyond t. Islands in an interval go back to t on its path; bodies of ended intervals, and others that are
-    # beyond t, count as there at t.
     for k in range(A.BODY.shape[0] - 1):
-        if A.STATE[k].island == k and A.MEMBER[k].rest != AT_REST and A.MEMBER[k].jointed == 0 and A.MEMBER[k].open > 0:
+        if A.STATE[k].island != k or A.MEMBER[k].rest == AT_REST:
+            continue
+        if A.MEMBER[k].jointed == 0 and A.MEMBER[k].open > 0:
             first, after = contact_range(A, k)
             close_interval(A, k, max(A.PUSHED[first].start, t) if first < after else t)
-    for k in range(A.BODY.shape[0] - 1 if J.TALLY.components > 0 else 0):
-        ahead = A.MEMBER[k].open == 0 or A.BODY[k].since > t
-        if A.STATE[k].island == k and A.MEMBER[k].jointed > 0 and A.MEMBER[k].rest != AT_REST and ahead:
+        elif A.MEMBER[k].jointed > 0 and (A.MEMBER[k].open == 0 or A.BODY[k].since > t):
             carry(A, J, k, t)
     for k in range(A.BODY.shape[0] - 1):
         root = A.STATE[k].island
         over = root >= 0 and A.MEMBER[root].rest != AT_REST and A.MEMBER[root].open == 0
         A.BODY[k].since = t if over else min(A.BODY[k].since, t)
-    count = 0  # islands with joints whose intervals have ended before
     for k in range(A.BODY.shape[0] - 1):
         if A.STATE[k].island != k or A.MEMBER[k].rest == AT_REST:
             continue
@@ -107,8 +120,5 @@ def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
             shorten(A, J, k, t)
             end_before(A, J, k, t, False, False)
         else:
-            A.BLOCK[count] = k
-            count += 1
-    for c in range(count):
-        lift_at_cut(A, J, A.BLOCK[c], t)
+            lift_at_cut(A, J, k, t)
     return DONE
