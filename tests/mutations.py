@@ -199,7 +199,7 @@ MUTATIONS = (
     Mutation("equilibrium: sign of the residual", "rows/equilibrium.py", "PROXIMAL_STATICS * (V[i, c] - LEFT[i, c])",
              "PROXIMAL_STATICS * (V[i, c] + LEFT[i, c])", "rows/test_equilibrium.py", "guess"),
     Mutation("statics: what moves is held like what rests", "contacts/statics.py",
-             "START[i, c] += V[i, c] / max(steps, 1.0)", "START[i, c] += 0.0", "islands/test_freeze.py", "slides"),
+             "START[i, c] += V[i, c] / max(steps, 1.0)", "START[i, c] += 0.0", "islands/test_large_piles.py", "slides"),
     Mutation("rest: free spins count", "islands/rest.py", "i < A.COUNT.disks and", "i < 0 and",
              "islands/test_at_rest.py", "spins_on"),
     Mutation("ledger: factor 1/2 of friction", "rows/energy.py", "tangential = -0.5 * L[i, 1]", "tangential = -L[i, 1]",

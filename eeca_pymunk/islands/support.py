@@ -109,7 +109,7 @@ def supports_load(A: Scene, root: int, past: bool) -> bool:
         m += 1
     clear_places(A, MINE)
     problem, slow = Problem(ROWS, IMS, IIS, POSE, n, m), REST_SPEED * A.PAR.pulled * dt
-    found, factors = equilibrium(problem, L, START, FELT, slow, SUPPORT_FACTORS, False)
+    found, factors = equilibrium(problem, L, START, FELT, slow, SUPPORT_FACTORS)
     A.COUNT.direct += factors
     if found:
         for z in range(m):

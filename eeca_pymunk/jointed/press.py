@@ -123,8 +123,6 @@ def solve_contacts(
         if n >= LARGE_ISLAND:
             most = sweeps_of(n, interval.t)
     # While many contacts have not converged, joints need not be exact before the last step of the components.
-    if J.PROGRESS.effort > J.PROGRESS.budget:
-        rounds, most = joints.OUTER_PART, min(most, joints.PRESS_SWEEPS)
     J.PROGRESS.near = 0.0 if exactly or slow < pull * h else joints.JOINTS_NEAR
     # off: difference between the velocities of contacts and components, best: its smallest value since contacts last
     # gained energy (in iteration `better`), reached: of all; worst: residual of the laws; bent: error of the arms;

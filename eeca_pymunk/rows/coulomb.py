@@ -37,14 +37,12 @@ def slip_freely(ROWS: Rows[Row], m: int) -> None:
 def coulomb(
     qn: float, qt: float, ann: float, ant: float, att: float, mu: float, un: float, ut: float, target: float
 ) -> tuple[float, float]:
-    """(lam, beta) of one contact whose velocities without its impulse are u_n = target + qn and u_t = qt.
+    """(lam, beta) of one contact whose velocities without its impulse are u_n = target + qn, qn < 0, and u_t = qt.
 
     Args:
         ann, ant, att: its matrix.  mu: friction.
         un, ut: its velocities before the interval or impact, from which the loss counts.
     """
-    if qn >= 0.0:
-        return 0.0, 0.0
     det = ann * att - ant * ant
     lam, beta = 0.0, 0.0
     done = False
@@ -159,14 +157,5 @@ def lawful(row: Row, V: FloatArray, lam0: float, beta0: float, stays: bool) -> t
         closed = beta * row.ut > 0.0 and abs(beta) <= mu * lam
         return (lam, beta, False) if closed else (0.0, 0.0, False)
     qt = ut - beta0 * att - lam0 * ant
-    if not (sticks or stays):
-        # Nearly all others slip in the direction of the motion without friction.
-        slope = -mu if qt * ann > qn * ant else mu
-        felt = ann + slope * ant
-        if felt > JAMMED * ann:
-            lam = -qn / felt
-            beta = slope * lam
-            if slope * (qt + ant * lam + att * beta) <= 0.0 and beta * row.ut <= 0.0:
-                return lam, beta, True
     lam, beta = coulomb(qn, qt, ann, ant, att, mu, row.un, row.ut, row.target)
     return lam, beta, True

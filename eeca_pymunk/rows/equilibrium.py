@@ -11,7 +11,8 @@ multipliers y of B x = f, which are velocities,
     (1/R + B Theta B^T) dy = r,   Theta = 1 / (A_gg + s / x),   s >= 0 those of x >= 0,
 
 with the factor of `cholesky.py` and R = PROXIMAL_STATICS. Where many contacts share the loads, one or two steps
-suffice; active-set methods, whose set has to be right to the last contact, may need a hundred.
+suffice; active-set methods, whose set has to be right to the last contact, may need a hundred. The iteration ends with
+the first x that balances.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from ..compiled.records import Rows, zeros
 from ..model.contacts import EDGE as EDGE_KIND
 from ..model.contacts import ROW, Edge, Problem, Row
 from ..model.parameters.impulses import PROXIMAL_STATICS
-from ..model.parameters.rest import STATICS_GAP, STATICS_START, STATICS_STEP
+from ..model.parameters.rest import STATICS_START, STATICS_STEP
 from .build import normal_rate
 from .cholesky import Factor, assemble_blocks, factor_blocks, make_factor, roots_of, solve_blocks
 from .cones import add_impulses, cone_edges, impulses_of
@@ -157,7 +158,7 @@ def leave(
 
 @kernel
 def equilibrium(
-    problem: Problem, L: FloatArray, START: FloatArray, EXTENT: FloatArray, tolerance: float, most: int, nearest: bool
+    problem: Problem, L: FloatArray, START: FloatArray, EXTENT: FloatArray, tolerance: float, most: int
 ) -> tuple[bool, int]:
     """Search contact impulses that bring the n bodies of a problem from velocities START to rest.
 
@@ -169,7 +170,6 @@ def equilibrium(
             the multipliers y, since they grow along it.
         EXTENT: (k,) largest distance of a point of the body from its centre of mass.
         tolerance: speed of points that may remain.  most: largest number of factorisations.
-        nearest: whether to iterate up to the impulses nearest to the guess.
     Returns:
         Whether impulses are found, and the number of factorisations.
     """
@@ -187,18 +187,14 @@ def equilibrium(
     held, stuck = np.ones(K, np.int64), np.zeros(K, np.int64)
     SCALE, factor = roots_of(IM, II), make_factor(G, K, n, held, problem.POSE)
     problem_of_edges = Problem(G, IM, II, problem.POSE, n, K)
-    found, free, first = False, True, 0.0
+    free = True
     for done in range(most + 1):
-        centre = mean_product(EDGE, K, 0.0, 0.0)
         if speed <= tolerance:
-            found = True
             impulses_of(problem.ROWS, EDGE, OF, K, L, m)
-            if not nearest or centre <= STATICS_GAP * first:
-                return True, done
+            return True, done
+        centre = mean_product(EDGE, K, 0.0, 0.0)
         if done == most or not (speed < np.inf and (centre > 0.0 or free)):
-            if not found:
-                copy(START, Y)
-            return found, done
+            break
         if done == 0 or not free:
             for e in range(K):
                 G[e].k_n = 1.0 / (EDGE[e].a_gg + (0.0 if free else EDGE[e].s / EDGE[e].x))
@@ -208,10 +204,10 @@ def equilibrium(
         if free:
             # Without regard to the cones, the nearest balancing impulses need one linear solve: often they are inside.
             free = moves_into_cones(EDGE, K)
-            first = mean_product(EDGE, K, 0.0, 0.0)
         else:
             reduced = mean_product(EDGE, K, step_length(EDGE, K, False), step_length(EDGE, K, True)) / centre
             newton_step(problem_of_edges, EDGE, SCALE, factor, LEFT, Y, f, V, DY, centre * reduced**3, True)
             update_iterate(EDGE, K, Y, DY, step_length(EDGE, K, False), step_length(EDGE, K, True))
         speed = leave(G, EDGE, K, IM, II, START, EXTENT, n, LEFT)
-    return found, most
+    copy(START, Y)
+    return False, done

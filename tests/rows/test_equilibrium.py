@@ -34,11 +34,11 @@ class Pile:
             row.a, row.b, row.nx, row.ny, row.friction = a, b, nx, ny, mu
             place_row(row, x, y, pose, im, ii)
 
-    def solve(self, most: int = 20, nearest: bool = False, tolerance: float = 1e-9) -> bool:
+    def solve(self, most: int = 20, tolerance: float = 1e-9) -> bool:
         speed = float(np.abs(self.start).max())
         problem = Problem(self.rows, self.im, self.ii, self.pose, len(self.im) - 1, self.m)
         self.found, self.factors = equilibrium(
-            problem, self.L, self.start, np.ones(len(self.im)), tolerance * speed, most, nearest
+            problem, self.L, self.start, np.ones(len(self.im)), tolerance * speed, most
         )
         return self.found
 
@@ -169,7 +169,7 @@ def test_loads_that_many_can_bear_stay_next_to_the_guess(unit: float) -> None:
     pile = Pile(np.zeros((2, 3)), np.array([1.0, 0.0]), np.array([0.7 / unit**2, 0.0]), contacts, 0.0, start)
     guess = G * unit * np.array([0.3, 0.1, 0.2, 0.25, 0.1])
     pile.L[:, 0] = guess
-    assert pile.solve(nearest=True)
+    assert pile.solve()
     pile.balances()
     J = np.array([np.ones(5), at])
     A = 1.0 + 0.7 / unit**2 * at**2
@@ -195,5 +195,5 @@ def test_self_stress_between_walls_stays_what_it_was() -> None:
     start = np.array([[0.0, -1.0, 0.0], [0.0, 0.0, 0.0]])
     pile = Pile(np.zeros((2, 3)), np.array([1.0, 0.0]), np.array([6.0, 0.0]), contacts, 0.0, start)
     pile.L[:, 0] = 3.0, 3.0, 0.9
-    assert pile.solve(nearest=True)
+    assert pile.solve()
     assert pile.L[:, 0] == pytest.approx([3.0, 3.0, 1.0], rel=1e-6)
