@@ -7,11 +7,10 @@ from ..compiled import kernel, nonallocating
 from ..contacts.counts import note_unmet
 from ..islands.accounting import close_interval
 from ..islands.building import build_islands
-from ..islands.intervals import begin_interval, find_lifts_at_cut
+from ..islands.intervals import begin_interval
 from ..islands.local import contact_range
 from ..jointed.ends import shorten, under_way
 from ..jointed.ledger import most_looks
-from ..jointed.lifting import lift_at_cut
 from ..jointed.meet import end_before
 from ..jointed.partners import carry
 from ..jointed.rest import wake_disturbed
@@ -87,11 +86,12 @@ def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
 
     | island | in the first loop | in the last one |
     |---|---|---|
-    | without joints | its interval ends at t, or where it begins after t | it is lifted |
+    | without joints | its interval ends at t, or where it begins after t | |
     | with joints, in an interval | if that begins after t, it moves with its partners | it is solved again, up to t |
-    | with joints, whose interval has ended | it moves with its partners | it is lifted |
+    | with joints, whose interval has ended | it moves with its partners | |
 
-    In between all bodies whose intervals have ended, or that are beyond t, count as there at t.
+    In between all bodies whose intervals have ended, or that are beyond t, count as there at t. What would be corrected
+    at the planned ends of these intervals is left to the next step.
     """
     note_cut(A, J, i)
     A.PAR.dt = t
@@ -111,14 +111,11 @@ def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
         root = A.STATE[k].island
         over = root >= 0 and A.MEMBER[root].rest != AT_REST and A.MEMBER[root].open == 0
         A.BODY[k].since = t if over else min(A.BODY[k].since, t)
+        if over and A.MEMBER[root].jointed == 0:
+            rest = A.RESTING[k]
+            rest.lift_x = rest.lift_y = rest.lift_angle = rest.lift_vx = rest.lift_vy = rest.lift_spin = 0.0
     for k in range(A.BODY.shape[0] - 1):
-        if A.STATE[k].island != k or A.MEMBER[k].rest == AT_REST:
-            continue
-        if A.MEMBER[k].jointed == 0:
-            find_lifts_at_cut(A, k, t)
-        elif under_way(A, k):
+        if A.STATE[k].island == k and A.MEMBER[k].rest != AT_REST and A.MEMBER[k].jointed > 0 and under_way(A, k):
             shorten(A, J, k, t)
             end_before(A, J, k, t, False, False)
-        else:
-            lift_at_cut(A, J, k, t)
     return DONE

@@ -10,7 +10,6 @@ from ..arrays import FlagArray, FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..contacts.correction import lifting
 from ..contacts.counts import count_solve, note_lock, note_unmet
-from ..contacts.geometry import gather_contacts
 from ..contacts.interval import make_contacts, step_island
 from ..model.contacts import Problem
 from ..model.islands import Island, IslandContacts
@@ -18,7 +17,6 @@ from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES
 from ..model.scene import Scene
 from ..model.step import AGAIN, CONTACTS, DONE, PUSHES_FULL
-from ..rows.build import rates
 from . import candidates
 from .at_rest import put_to_rest
 from .depths import left_to_lift, times_too_long
@@ -162,34 +160,6 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
         if at_rest:
             put_to_rest(A, head)
     return DONE, 0.0
-
-
-@kernel
-def contacts_at(A: Scene, root: int, t: float) -> tuple[Island, IslandContacts, IntArray, int]:
-    """An island at instant t, at which its bodies are: its bodies, its contacts, (n,) rows of the bodies that impulses
-    move, with their places until `clear_places`, and the number of contacts."""
-    MINE = number_bodies(A, root)
-    n = len(MINE)
-    found = candidates.pairs_within(A, root, t, 0.0, True, MINE)
-    isle = local_island(A, MINE, found, t)
-    k, contacts = len(isle.WHO), make_contacts(len(found), len(isle.WHO))
-    m = gather_contacts(A, isle, contacts, isle.POSE, np.zeros(k), 0.0, k == n)
-    return isle, contacts, MINE, m
-
-
-@kernel
-def find_lifts_at_cut(A: Scene, root: int, t: float) -> None:
-    """Set the penetration correction of an island whose interval has been cut at instant t, at which its bodies are;
-    `accounting.apply_correction` applies it. What the island has lost in the step pays (`payment`)."""
-    isle, contacts, MINE, m = contacts_at(A, root, t)
-    n = len(MINE)
-    clear_places(A, MINE)
-    if m > 0:
-        rates(contacts.ROWS, isle.V, m)
-        lost = A.RESTING[root].lost
-        payable = find_lifts(A, isle, contacts, n, m, isle.POSE, isle.V, 0.0, lost, 0.0, False, A.PAR.dt)
-        A.RESTING[root].payable = payable
-    set_lifts(A, MINE, contacts.JUMP)
 
 
 @kernel

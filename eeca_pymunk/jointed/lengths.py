@@ -20,7 +20,7 @@ from ..geometry.sides import depth_limit, smaller
 from ..islands.depths import closes_too_far, too_deep_at_end
 from ..model.joints import Joints
 from ..model.parameters.events import RESOLUTION
-from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_WAY, SAGITTA, SLIGHT_DEPTH
+from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_WAY, SAGITTA
 from ..model.scene import Scene
 from ..pairs.lists import far_apart
 from ..pairs.rules import barred
@@ -155,15 +155,3 @@ def forced_deeper(A: Scene, interval: Interval) -> int:
         if LEFT_OUT[z] != 0 and closed < 0.0 and ROWS[z].gap + closed < -depth_limit(A, a, b):
             return z
     return -1
-
-
-@nonallocating
-def sinks(A: Scene, interval: Interval) -> bool:
-    """Whether any contact becomes deeper in an interval by more than SLIGHT_DEPTH of its depth limit."""
-    ROWS, WAY = interval.ROWS, interval.motion.WAY
-    for z in range(interval.m):
-        closed = normal_rate(ROWS[z], WAY)
-        a, b = shapes_of(A, ROWS[z])
-        if closed + max(ROWS[z].gap, 0.0) < -SLIGHT_DEPTH * depth_limit(A, a, b):
-            return True
-    return False

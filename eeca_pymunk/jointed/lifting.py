@@ -12,8 +12,6 @@ from ..compiled.records import Rows
 from ..contacts.correction import admissible, least_of, turn_by, unturn
 from ..contacts.works import work_of_forces
 from ..islands.depths import left_to_lift
-from ..islands.intervals import contacts_at
-from ..islands.local import clear_places
 from ..islands.payment import payment
 from ..model.contacts import Columns, JointedProblem, Row
 from ..model.joints import Joints
@@ -21,14 +19,14 @@ from ..model.parameters.intervals import CORRECTION_ROUND_OFF
 from ..model.parameters.joints import JOINTED_CORRECTION_SWEEPS
 from ..model.scene import Scene
 from ..rows.bounded import room_for_rows
-from ..rows.build import conserves, normal_rate
+from ..rows.build import normal_rate
 from ..rows.inplace import copy
 from ..rows.lifting import lift_above_walls
-from .advance import Interval, motion_at_start
-from .columns import fill_free, fill_group, make_columns, set_effective_masses
+from .advance import Interval
+from .columns import fill_group, set_effective_masses
 from .component import close_at_poses, ready_at_poses
 from .gathered import find_places, gather_component
-from .groups import find_groups, is_free
+from .groups import is_free
 from .motors import keeps_speed
 
 
@@ -61,36 +59,17 @@ def fill_at_end(
 
 @kernel
 def lift_island(
-    A: Scene, J: Joints, interval: Interval, L: FloatArray, root: int, end: float, lost: float, build: bool
+    A: Scene, J: Joints, interval: Interval, L: FloatArray, root: int, end: float, lost: float
 ) -> None:  # fmt: skip
     """Correct penetration at the end of an island's motion under impulses L (m, 2) of its contacts, which have `lost`
-    energy in it. `build`: whether the columns of all components have to be computed."""
+    energy in it."""
     isle, groups, ROWS, motion, _, m, n, _, _ = interval
     budget, payable = payment(A, isle, ROWS, L, motion.V, n, m, lost, A.RESTING[root].lost, False, True)
-    spent = correct_overlaps(A, J, interval, end, budget, build)
+    spent = correct_overlaps(A, J, interval, end, budget)
     if len(groups.JOINTED) > 0:
         paid, one = min(spent, payable), J.STEPPED[groups.JOINTED[0]]
         one.lifted += paid
         one.supports += spent - paid
-
-
-@kernel
-def lift_at_cut(A: Scene, J: Joints, root: int, t: float) -> None:
-    """`..islands.intervals.find_lifts_at_cut` of an island with joints, whose interval is over at instant t."""
-    isle, contacts, MINE, m = contacts_at(A, root, t)
-    n, k, ROWS = len(MINE), len(isle.WHO), contacts.ROWS
-    if not conserves(ROWS, m):
-        groups, motion = find_groups(isle.WHO, isle.IM, J), motion_at_start(isle, k)
-        interval = Interval(isle, groups, ROWS, motion, make_columns(groups, ROWS, m), m, n, t, 0.0)
-        fill_free(groups, interval.C, ROWS, isle.IM, isle.II, m)
-        lift_island(A, J, interval, contacts.L, root, t, 0.0, True)
-        for g in range(len(groups.JOINTED)):
-            A.RESTING[root].lost -= J.STEPPED[groups.JOINTED[g]].lifted
-        for q in range(n):
-            body = A.BODY[MINE[q]]
-            body.x, body.y, body.angle = motion.END[q, 0], motion.END[q, 1], motion.END[q, 2]
-            body.vx, body.vy, body.spin = motion.V[q, 0], motion.V[q, 1], motion.V[q, 2]
-    clear_places(A, MINE)
 
 
 @nonallocating
@@ -106,7 +85,7 @@ def keep_centre(D: FloatArray, IM: FloatArray, n: int) -> None:
 
 
 @kernel
-def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget: float, build: bool) -> float:
+def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget: float) -> float:
     """Move the poses at the end of an island's motion out of each other, at a cost of at most `budget`, not at all if
     that is below 0; returns the cost.
 
@@ -128,7 +107,7 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget
         s = groups.COMPONENT[g]
         # The columns of the interval, in which stiff springs resist, so that D hardly strains them; but bounded rows
         # would keep speeds in it.
-        if s >= 0 and (build or keeps_speed(J, s)):
+        if s >= 0 and keeps_speed(J, s):
             fill_at_end(A, J, interval, C, g, INDEX, ROWS, m, end)
     KEEP = ROWS[:m].copy()
     set_effective_masses(groups, C, KEEP, m)

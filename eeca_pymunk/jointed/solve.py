@@ -15,7 +15,7 @@ from ..islands.candidates import pairs_within
 from ..islands.membership import lossy
 from ..model.joints import Joints
 from ..model.parameters.events import RESOLUTION
-from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, LARGE_ISLAND, REACH_ROUND_OFF, UNSOLVED_PART
+from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, REACH_ROUND_OFF, UNSOLVED_PART
 from ..model.parameters.joints import COLUMN_CONTACTS, INTERVAL_SHARE, INTERVAL_WORK, SPACING
 from ..model.scene import Scene
 from ..model.step import AGAIN, DONE, PUSHES_FULL, SPENT
@@ -28,7 +28,7 @@ from .fitting import project_velocities
 from .gathered import gave_way, restore_joints, save_joints
 from .groups import find_groups
 from .ledger import work_left
-from .lengths import excess, sinks, too_deep_on_way, within_sagitta
+from .lengths import excess, too_deep_on_way, within_sagitta
 from .lifting import lift_island
 from .losses import lost, slip_of
 from .press import GIVEN_UP, SOLVED, solve_contacts
@@ -83,7 +83,6 @@ def excess_length(
     Args:
         solved: whether contacts are.  last: whether no other attempt follows, see `try_jointed`.
     """
-    m, n = interval.m, interval.n
     far = 2.0 if not solved and J.PROGRESS.long > 0 and J.PROGRESS.effort > J.PROGRESS.share else 0.0
     for s in interval.groups.JOINTED:
         if gave_way(J, s):
@@ -96,10 +95,8 @@ def excess_length(
     if solved:
         return far
     # A motion that is no solution does not tell how long the interval may be. Contacts that are not solved in a long
-    # interval may be in a short one, if the step has work for many of these; and bodies that sink into others by
-    # unsolved contacts would sink further in the next interval.
-    payable = RESOLUTION * effort <= J.PROGRESS.budget
-    hard = (m <= COLUMN_CONTACTS and payable) or (n < LARGE_ISLAND and sinks(A, interval))
+    # interval may be in a short one, if the step has work for many of these.
+    hard = interval.m <= COLUMN_CONTACTS and RESOLUTION * effort <= J.PROGRESS.budget
     return UNSOLVED_PART if hard and J.PROGRESS.long > 0 else min(far, UNSOLVED_PART)
 
 
@@ -179,7 +176,7 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     # Corrected at the end of the interval: within a short one, paths would be steep.
     WHERE, HELD = motion.END.copy(), np.zeros(m)
     if not conserves(ROWS, m):
-        lift_island(A, J, interval, L, root, t + h, lost(interval, L), False)
+        lift_island(A, J, interval, L, root, t + h, lost(interval, L))
         HELD = project_velocities(A, J, interval, L, t + h, slow + pull * h)
     local.clear_places(A, MINE)
     first = COUNT.pushes

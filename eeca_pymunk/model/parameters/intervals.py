@@ -45,8 +45,7 @@ UNSOLVED_PART = work(4.0, "ratio",
     "Factor by which an interval with joints becomes shorter, at most, where its contacts are not solved, and may be "
     "longer after an impact.")
 SLIGHT_DEPTH = heuristic(0.1, "of what an interval allows",
-    "Depth of a contact that may stay: beyond it all losses of the step pay for lifting, and an interval of a small "
-    "island with joints that is not solved becomes shorter whatever work is left. Smaller: piles move on.")
+    "Depth of a contact that may stay: beyond it all losses of the step pay for lifting. Smaller: piles move on.")
 INTERVAL_TRIES = work(12, "number", "Attempts at an interval, each shorter, at most.")
 MIDSTEP_PASSES = work(3, "solves", "Further solves of `Midstep` for bodies that impulses move into others, at most.")
 LARGE_ISLAND = heuristic(24, "bodies",
