@@ -9,16 +9,19 @@ from ..compiled import kernel
 from ..model.contacts import Bounded, JointedProblem
 from ..model.joints import Joints
 from ..model.scene import Scene
-from ..rows.gentle import sweep_gently
+from ..rows.gentle import excessive, sweep_gently
 from .advance import Interval, advance, align
 from .bounded_rows import with_bounded
 from .columns import count_operations, fill_free, set_effective_masses
 
 
 @kernel
-def solve_gently(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, free: bool) -> None:
-    """Impulses L (m, 2) by sweeps that begin at 0, about the motion without impulses; and the motion under them."""
-    isle, groups, ROWS, _, C, m, _, _, _ = interval
+def solve_gently(
+    A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, free: bool, quick: float
+) -> None:  # fmt: skip
+    """Impulses L (m, 2) by sweeps that begin at 0, about the motion without impulses; none if these are excessive for
+    bodies of the speed `quick`; and the motion under them."""
+    isle, groups, ROWS, _, C, m, n, _, _ = interval
     L[:m] = 0.0
     advance(A, J, interval, L, B, True, np.empty((0, 3)))
     if free:
@@ -32,3 +35,6 @@ def solve_gently(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Boun
     for i in range(m):
         L[i, 0], L[i, 1] = BOTH[i, 0], BOTH[i, 1]
     advance(A, J, interval, L, B, False, np.empty((0, 3)))
+    if excessive(L, m, isle.IM, n, quick):
+        L[:] = 0.0
+        advance(A, J, interval, L, B, False, np.empty((0, 3)))

@@ -14,49 +14,29 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import kernel, nonallocating
+from ..compiled import kernel
 from ..contacts.targets import target
-from ..contacts.walls import stop_at_walls
-from ..islands.candidates import before_end, sweeps_of
 from ..model.contacts import Bounded, JointedProblem
 from ..model.joints import Joints
 from ..model.parameters import joints
 from ..model.parameters.events import RESOLUTION
-from ..model.parameters.impulses import WEDGED
-from ..model.parameters.intervals import LARGE_ISLAND
 from ..model.scene import Scene
-from ..rows.build import conserves, rates, rubs
+from ..rows.build import rates
 from ..rows.columns import push_columns
-from ..rows.conjugate import sweep_conjugate
 from ..rows.gentle import excessive
 from ..rows.inplace import copy
-from ..rows.laws import give_slips, solve_columns, solve_wedged, take_slips
-from ..rows.sweeps import sweep
+from ..rows.laws import give_slips, take_slips
 from .advance import Interval, advance, advance_aligned, align, farthest_apart
-from .bounded_rows import make_bounded, settle_bounded, with_bounded
-from .columns import count_operations, fill_free, leave_out, set_effective_masses
+from .bounded_rows import make_bounded, settle_bounded
+from .columns import fill_free, set_effective_masses
 from .gathered import some_give, some_refused, some_taut
 from .gentle import solve_gently
 from .groups import is_free
 from .losses import lock_jointed, lost, work_error
+from .press_laws import aims, manner_of, solve_laws
 from .secant import fit_columns
 
 GIVEN_UP, UNSOLVED, SOLVED = -1, 0, 1  # what becomes of the contacts of an interval
-
-
-@nonallocating
-def aims(change: float, slow: float, fast: float, elastic: bool) -> tuple[float, float, float]:
-    """Three tolerances of the iterations, each a velocity: the unit of errors; the difference between the velocities of
-    contacts and components at which iterations end; the residual of the contacts' laws. change: |a| h.  slow, fast:
-    speeds of the island."""
-    if elastic:
-        return change + fast, joints.AGREE_ELASTIC * (change + fast), 1e-15 * (change + fast)
-    scale, rests = change + slow, slow < change
-    return (
-        scale,
-        (joints.AGREE_REST if rests else joints.AGREE) * scale,
-        (joints.PRESS_RESIDUAL_REST if rests else joints.PRESS_RESIDUAL) * scale,
-    )
 
 
 @kernel
@@ -69,15 +49,6 @@ def accelerations(interval: Interval, L: FloatArray, B: Bounded) -> tuple[FloatA
     settle_bounded(B, EFFECT)
     EFFECT = (EFFECT - isle.V) / h
     return EFFECT, farthest_apart(EFFECT, np.zeros_like(EFFECT), isle.EXTENT, interval.n)
-
-
-@kernel
-def begin_laws(interval: Interval, L: FloatArray, B: Bounded, FORESEEN: FloatArray) -> FloatArray:
-    """The impulses with which the solution of the contacts' laws begins: L, without contacts that are left out, and
-    those of the bounded rows. FORESEEN becomes the velocities by the columns under these."""
-    copy(FORESEEN, interval.motion.MEAN)
-    leave_out(interval.C, L, interval.m, FORESEEN)
-    return with_bounded(B, L, interval.m)
 
 
 @kernel
@@ -112,29 +83,22 @@ def solve_contacts(
     isle, groups, ROWS, motion, C, m, n, _, h = interval
     fill_free(groups, C, ROWS, isle.IM, isle.II, m)
     rates(ROWS, isle.V, m)
-    SLIP, limited, quick = take_slips(ROWS, m), False, fast + pull * h
-    elastic = conserves(ROWS, m)
+    SLIP, limited, quick, manner = take_slips(ROWS, m), False, fast + pull * h, manner_of(A, interval)
+    elastic, exactly = manner.elastic, manner.exactly
     scale, agree, fine = aims(pull * h, slow, fast, elastic)
-    few = m <= joints.COLUMN_CONTACTS
-    most = joints.PRESS_SWEEPS_ELASTIC if elastic else joints.PRESS_SWEEPS_FEW if few else joints.PRESS_SWEEPS
-    exactly, rounds = elastic or few, joints.OUTER
-    if not exactly:
-        rounds = joints.OUTER_PART if before_end(A, interval.t + h) else joints.OUTER_MANY
-        if n >= LARGE_ISLAND:
-            most = sweeps_of(n, interval.t)
     # While many contacts have not converged, joints need not be exact before the last step of the components.
     J.PROGRESS.near = 0.0 if exactly or slow < pull * h else joints.JOINTS_NEAR
     # off: difference between the velocities of contacts and components, best: its smallest value since contacts last
-    # gained energy (in iteration `better`), reached: of all; worst: residual of the laws; bent: error of the arms;
-    # limited: friction is limited by energy; rough: laws are solved by sweeps, as exact impulses are excessive.
+    # gained energy (in iteration `better`), reached: of all; worst, rough: see `solve_laws`; bent: error of the arms;
+    # limited: friction is limited by energy.
     VELOCITIES, k = np.empty((2 * len(isle.IM), 3)), len(isle.IM)
     PREVIOUS, FORESEEN, UNKNOWN = VELOCITIES[:k], VELOCITIES[k:], VELOCITIES[:0]
     converged, best, worst, LEAST, USED, agreed = False, np.inf, 0.0, L.copy(), L.copy(), False
-    better, bent, rough, reached, B = 0, 0.0, False, np.inf, make_bounded(J, groups, few)
+    better, bent, rough, reached, B = 0, 0.0, False, np.inf, make_bounded(J, groups, manner.few)
     NOW = np.empty(len(B.OF))
     problem = JointedProblem(ROWS, C, B, m)
     free, begun = is_free(isle, groups, n, J), J.PROGRESS.effort
-    for outer in range(rounds):
+    for outer in range(manner.rounds):
         if J.PROGRESS.effort > J.PROGRESS.share:
             break
         J.PROGRESS.effort += joints.CONTACT_WORK * (m + 2)
@@ -192,24 +156,10 @@ def solve_contacts(
         copy(USED, L)
         for i in range(B.USED[0]):
             NOW[i] = B.ROWS[i].now
-        BOTH = begin_laws(interval, L, B, FORESEEN)
-        work = J.PROGRESS.share - J.PROGRESS.effort
         sweeps = joints.COLUMN_SWEEPS if build else 0
-        worst = solve_columns(problem, BOTH, FORESEEN, fine, sweeps, most, work)
-        if worst > WEDGED * scale and few and rubs(ROWS, m):
-            worst = solve_wedged(problem, BOTH, FORESEEN, fine, most, work)
-        rough = outer == 0 and exactly and excessive(BOTH, m, isle.IM, n, quick)
-        if rough:
-            # Far from the solution laws may contradict one another, by as much as the columns are wrong.
-            copy(L, USED)
-            BOTH = begin_laws(interval, L, B, FORESEEN)
-            worst = sweep(problem, BOTH, FORESEEN)
-            worst = sweep_conjugate(problem, BOTH, FORESEEN, joints.LAWS_ROUGH * worst, most)[1]
-        if not exactly:
-            stop_at_walls(A, problem, n, C.LEFT_OUT, BOTH, FORESEEN)
-        count_operations(J, C)
-        for i in range(m):
-            L[i, 0], L[i, 1] = BOTH[i, 0], BOTH[i, 1]
+        worst, rough = solve_laws(
+            A, J, interval, problem, manner, L, FORESEEN, scale, fine, quick, sweeps, outer == 0
+        )  # fmt: skip
         converged = worst <= 10.0 * max(fine, min(agree, joints.AGREE * scale))
         if farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n) <= 1e-3 * agree:
             # The motion is that of USED: others have the same effect by the columns, but perhaps not in a step.
@@ -229,12 +179,9 @@ def solve_contacts(
         converged = (converged and off <= agree) or (best <= joints.AGREE * scale and some_give(J, groups))
     # Impulses that are no solution may let walls do any work.
     quick = fast + pull * h
-    if excessive(L, m, isle.IM, n, quick) or (not converged and few):
-        solve_gently(A, J, interval, L, B, free)
+    if excessive(L, m, isle.IM, n, quick) or (not converged and manner.few):
+        solve_gently(A, J, interval, L, B, free, quick)
         converged, bent = False, np.inf if free else 0.0
-        if excessive(L, m, isle.IM, n, quick):
-            L[:] = 0.0
-            advance(A, J, interval, L, B, False, UNKNOWN)
     if bent > joints.ARM_ERROR:
         advance_aligned(A, J, interval, L, B, free)
     # If joints pull hard, velocities, and so works, are only as exact as they agree.

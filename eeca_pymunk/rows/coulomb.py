@@ -6,6 +6,12 @@ its own 2 x 2 matrix ((A_nn, A_nt), (A_nt, A_tt)) included: sticking, else slipp
 friction; so it is where several contacts together have no solution (`slip_freely`). Newton's law with friction creates
 energy where the slip reverses; therefore each contact's loss D_n + D_t = -lam (u_n- + b)/2 - beta (u_t- + u_t+)/2 is
 kept non-negative, by less friction where it would be negative.
+
+| function | of a contact whose | gives | for |
+|---|---|---|---|
+| `coulomb` | velocities without its impulse are known | the impulse; it states all of the law | `lawful` |
+| `lawful` | impulse has a value now | the impulse: that of sticking, as of most, else `coulomb` | sweeps |
+| `mode_of` | impulse has a value now | the equations that hold for it | direct solutions, homotopies, residuals |
 """
 
 from __future__ import annotations

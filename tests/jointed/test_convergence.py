@@ -12,7 +12,7 @@ import pytest
 import eeca_pymunk as ep
 from comparisons import meeting_scenes, program_joints
 from eeca_pymunk.contacts.interval import make_contacts
-from eeca_pymunk.jointed import press
+from eeca_pymunk.jointed import press, press_laws
 from eeca_pymunk.jointed.advance import Interval, Motion
 from eeca_pymunk.jointed.groups import Groups
 from eeca_pymunk.jointed.secant import fit_columns
@@ -132,8 +132,8 @@ def test_iterations_that_do_not_come_to_agree_end(monkeypatch: pytest.MonkeyPatc
         solved.append(1)
         return solve(*arguments)
 
-    solve = press.solve_columns
-    monkeypatch.setattr(press, "solve_columns", laws)
+    solve = press_laws.solve_columns
+    monkeypatch.setattr(press_laws, "solve_columns", laws)
     monkeypatch.setattr(press, "farthest_apart", lambda *_: off)
     interval(*box_with(with_weight, True))
     assert len(solved) == most

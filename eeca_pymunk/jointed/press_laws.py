@@ -1,0 +1,112 @@
+"""How the contacts of an island with joints are solved, and one solution of their laws, with the columns of components
+(`press` alternates between these and steps of the components)."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from ..arrays import FloatArray
+from ..compiled import kernel, nonallocating
+from ..contacts.walls import stop_at_walls
+from ..islands.candidates import before_end, sweeps_of
+from ..model.contacts import JointedProblem
+from ..model.joints import Joints
+from ..model.parameters import joints
+from ..model.parameters.impulses import WEDGED
+from ..model.parameters.intervals import LARGE_ISLAND
+from ..model.scene import Scene
+from ..rows.build import conserves, rubs
+from ..rows.conjugate import sweep_conjugate
+from ..rows.gentle import excessive
+from ..rows.inplace import copy
+from ..rows.laws import solve_columns, solve_wedged
+from ..rows.sweeps import sweep
+from .advance import Interval
+from .bounded_rows import with_bounded
+from .columns import count_operations, leave_out
+
+
+class Manner(NamedTuple):
+    """How contacts are solved: `exactly`, to round-off, if they are `elastic`, as none of them loses energy, or `few`,
+    so that homotopies solve them; else roughly. rounds: steps of the components, at most. sweeps: of one solution of
+    the laws, at most."""
+
+    elastic: bool
+    few: bool
+    exactly: bool
+    rounds: int
+    sweeps: int
+
+
+@nonallocating
+def manner_of(A: Scene, interval: Interval) -> Manner:
+    """How the contacts of an interval are solved."""
+    elastic, few = conserves(interval.ROWS, interval.m), interval.m <= joints.COLUMN_CONTACTS
+    if elastic:
+        return Manner(True, few, True, joints.OUTER, joints.PRESS_SWEEPS_ELASTIC)
+    if few:
+        return Manner(False, True, True, joints.OUTER, joints.PRESS_SWEEPS_FEW)
+    rounds = joints.OUTER_PART if before_end(A, interval.t + interval.h) else joints.OUTER_MANY
+    most = sweeps_of(interval.n, interval.t) if interval.n >= LARGE_ISLAND else joints.PRESS_SWEEPS
+    return Manner(False, False, False, rounds, most)
+
+
+@nonallocating
+def aims(change: float, slow: float, fast: float, elastic: bool) -> tuple[float, float, float]:
+    """Three tolerances of the iterations, each a velocity: the unit of errors; the difference between the velocities of
+    contacts and components at which iterations end; the residual of the contacts' laws. change: |a| h.  slow, fast:
+    speeds of the island."""
+    if elastic:
+        return change + fast, joints.AGREE_ELASTIC * (change + fast), 1e-15 * (change + fast)
+    scale, rests = change + slow, slow < change
+    return (
+        scale,
+        (joints.AGREE_REST if rests else joints.AGREE) * scale,
+        (joints.PRESS_RESIDUAL_REST if rests else joints.PRESS_RESIDUAL) * scale,
+    )
+
+
+@kernel
+def begin_laws(interval: Interval, problem: JointedProblem, L: FloatArray, FORESEEN: FloatArray) -> FloatArray:
+    """The impulses with which a solution of the laws begins: L, without contacts that are left out, and those of the
+    bounded rows. FORESEEN becomes the velocities by the columns under these."""
+    copy(FORESEEN, interval.motion.MEAN)
+    leave_out(interval.C, L, interval.m, FORESEEN)
+    return with_bounded(problem.D, L, interval.m)
+
+
+@kernel
+def solve_laws(
+    A: Scene, J: Joints, interval: Interval, problem: JointedProblem, manner: Manner, L: FloatArray,
+    FORESEEN: FloatArray, scale: float, fine: float, quick: float, sweeps: int, first: bool,
+) -> tuple[float, bool]:  # fmt: skip
+    """Solve the laws of the contacts with the columns, from impulses L, which are replaced. FORESEEN: out, the
+    velocities by the columns.
+
+    Args:
+        scale, fine: see `aims`.  quick: largest speed that contacts may explain.  sweeps: before the first homotopy.
+        first: whether this is the first solution of the interval.
+
+    Returns:
+        the velocity by which laws are broken, or of a change in the last sweep; and whether the solution is rough, by
+        sweeps, as the exact one of the `first` has excessive impulses.
+    """
+    m, C, USED = interval.m, interval.C, L.copy()
+    BOTH = begin_laws(interval, problem, L, FORESEEN)
+    work = J.PROGRESS.share - J.PROGRESS.effort
+    worst = solve_columns(problem, BOTH, FORESEEN, fine, sweeps, manner.sweeps, work)
+    if worst > WEDGED * scale and manner.few and rubs(interval.ROWS, m):
+        worst = solve_wedged(problem, BOTH, FORESEEN, fine, manner.sweeps, work)
+    rough = first and manner.exactly and excessive(BOTH, m, interval.isle.IM, interval.n, quick)
+    if rough:
+        # Far from the solution laws may contradict one another, by as much as the columns are wrong.
+        copy(L, USED)
+        BOTH = begin_laws(interval, problem, L, FORESEEN)
+        worst = sweep(problem, BOTH, FORESEEN)
+        worst = sweep_conjugate(problem, BOTH, FORESEEN, joints.LAWS_ROUGH * worst, manner.sweeps)[1]
+    if not manner.exactly:
+        stop_at_walls(A, problem, interval.n, C.LEFT_OUT, BOTH, FORESEEN)
+    count_operations(J, C)
+    for i in range(m):
+        L[i, 0], L[i, 1] = BOTH[i, 0], BOTH[i, 1]
+    return worst, rough
