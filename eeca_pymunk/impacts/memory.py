@@ -1,6 +1,14 @@
 """What steps change in the arrays of a scene besides poses and velocities, in one piece of memory.
 
-If this memory is that of a new scene, the scene follows the path of a new one, from any poses and velocities.
+If this memory is that of a new scene, the scene follows the path of a new one, from any poses and velocities. Memory of
+a scene is made and used again in four ways:
+
+| by | memory | made | so that |
+|---|---|---|---|
+| `scene_memory.SceneMemory` | of all arrays | for a stepper; readings use it in turn | few are made |
+| `scene.EventLoop._grow` | of GROWN_ARRAYS, and near lists | where a step needs more | the step goes on |
+| `Remembering.keep_fresh` | of OF_SCENE in one piece, and a copy | before the first step | `reset_to` copies it |
+| `remembered`, `recalled` | of a state: rows that are used | by `get_state` | `set_state` returns to it |
 """
 
 from __future__ import annotations

@@ -29,21 +29,7 @@ from .allowed import gap_and_rate
 from .ends import end_here, left_apart, shorten, under_way
 from .ledger import work_left
 from .partners import carry
-from .paths import crossing_of_paths, passes_through
-
-
-@nonallocating
-def begun(A: Scene, i: int) -> float:
-    """The latest instant at which an interval of an island without joints has begun or ended, of those islands that
-    shapes of body i may touch."""
-    latest = 0.0
-    for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
-        for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
-            j = A.LINK[A.POOL[w]].owner
-            root = A.STATE[j].island
-            if root >= 0 and A.MEMBER[root].jointed == 0:
-                latest = max(latest, A.BODY[j].since)
-    return latest
+from .paths import crossing_of_paths, instants_between, passes_through
 
 
 @kernel
@@ -67,26 +53,6 @@ def end_before(A: Scene, J: Joints, root: int, t: float, fits: bool, spent: bool
     for i in members_of(A, root):
         A.BODY[i].since = then if spent else t
     return bool(then < t)
-
-
-@nonallocating
-def instants_between(A: Scene, i: int, j: int, roots: tuple[int, int], t: float) -> tuple[float, float]:
-    """The least and the latest instant at which bodies i and j may meet, as predicted for t: not before any path
-    begins, where overlapping shapes would have met, nor after an interval's end or the next event of other bodies."""
-    least, latest = A.BODY[i].since, A.PAR.dt
-    if A.BODY[j].inv_mass > 0.0:
-        least = max(least, A.BODY[j].since)
-    for end in range(2):
-        root = roots[end]
-        if under_way(A, root):
-            least, latest = max(least, A.BODY[root].since), min(latest, A.RESTING[root].until)
-            for member in members_of(A, root):
-                least = max(least, begun(A, member))
-        elif end == 0 or A.BODY[j].inv_mass > 0.0:
-            least = max(least, begun(A, i if end == 0 else j))
-    if A.COUNT.heap > 0:
-        latest = min(latest, max(t, A.HEAP_TIME[0]))
-    return least, latest
 
 
 @kernel
@@ -230,9 +196,16 @@ def locate_impact(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float,
     """Bring the islands of shapes a and b, predicted to meet at instant t, to the instant at which they do. Returns it,
     and whether the shapes are apart there.
 
-    An interval that ends earlier has another path, so the instant is searched: at contact (`find_contact`); if no
-    interval ends so, where they are apart (`find_apart_before`); if that is the start, after it (`find_later`). An
-    island for which no interval fits stays where it is until then.
+    An interval that ends earlier has another path, so the instant is searched, in turn by
+
+    | search | where | instants | until |
+    |---|---|---|---|
+    | `find_contact` | always | by secants on the gap, MEET_SECANTS, fewer where contacts push | shapes touch |
+    | `find_apart_before` | no interval ends so | halved, MEET_HALVINGS, to where they are apart | both fit |
+    | `find_later` | that is the start | after it, later with each impact, halved | both fit |
+    | `end_before` | not known to fit | of each island by itself: halved, MEET_SECANTS, at last to the start | it fits |
+
+    where an island fits at an instant if it is not `too_late`. One that never does stays where it is until then.
     """
     i, j = A.LINK[a].owner, A.LINK[b].owner
     if not (under_way(A, A.STATE[i].island) or (A.BODY[j].inv_mass > 0.0 and under_way(A, A.STATE[j].island))):

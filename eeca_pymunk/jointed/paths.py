@@ -1,12 +1,13 @@
-"""Which shapes an island with joints passes through on the path of its interval."""
+"""The path of an island with joints in its interval: which shapes it passes through, and when it may meet others."""
 
 from __future__ import annotations
 
 import math
 
-from ..compiled import nonallocating
+from ..compiled import kernel, nonallocating
 from ..geometry.gap import gap
 from ..geometry.sides import depth_limit, remembers, smaller
+from ..islands.membership import members_of
 from ..model.parameters.events import ENTRY_LOOKS
 from ..model.parameters.intervals import INTERVAL_DEPTH
 from ..model.parameters.joints import MEET_MANY
@@ -61,3 +62,37 @@ def passes_through(A: Scene, root: int, t: float) -> float:
                     return t
         i = A.MEMBER[i].following
     return math.inf
+
+
+@nonallocating
+def begun(A: Scene, i: int) -> float:
+    """The latest instant at which an interval of an island without joints has begun or ended, of those islands that
+    shapes of body i may touch."""
+    latest = 0.0
+    for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
+        for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
+            j = A.LINK[A.POOL[w]].owner
+            root = A.STATE[j].island
+            if root >= 0 and A.MEMBER[root].jointed == 0:
+                latest = max(latest, A.BODY[j].since)
+    return latest
+
+
+@kernel
+def instants_between(A: Scene, i: int, j: int, roots: tuple[int, int], t: float) -> tuple[float, float]:
+    """The least and the latest instant at which bodies i and j may meet, as predicted for t: not before any path
+    begins, where overlapping shapes would have met, nor after an interval's end or the next event of other bodies."""
+    least, latest = A.BODY[i].since, A.PAR.dt
+    if A.BODY[j].inv_mass > 0.0:
+        least = max(least, A.BODY[j].since)
+    for end in range(2):
+        root = roots[end]
+        if under_way(A, root):
+            least, latest = max(least, A.BODY[root].since), min(latest, A.RESTING[root].until)
+            for member in members_of(A, root):
+                least = max(least, begun(A, member))
+        elif end == 0 or A.BODY[j].inv_mass > 0.0:
+            least = max(least, begun(A, i if end == 0 else j))
+    if A.COUNT.heap > 0:
+        latest = min(latest, max(t, A.HEAP_TIME[0]))
+    return least, latest

@@ -78,7 +78,8 @@ def excess_length(
     A: Scene, J: Joints, interval: Interval, L: FloatArray, root: int, effort: float, solved: bool, last: bool
 ) -> float:
     """How many times too long the interval of an island is, whose motion under impulses L of its contacts took so much
-    effort; also sets its `strays`.
+    effort; also sets its `strays`. `press.solve_contacts` gives a long interval up before there is a motion, for what
+    only its iterations show: components that are not stepped as a whole, or few contacts that come to agree nowhere.
 
     Args:
         solved: whether contacts are.  last: whether no other attempt follows, see `try_jointed`.
