@@ -39,12 +39,6 @@ def to_centre(EXTRA: FloatArray, i: int, angle: float) -> tuple[float, float]:
 
 
 @nonallocating
-def forget_acceleration(EXTRA: FloatArray, i: int) -> None:
-    """Body i has no acceleration by a velocity function."""
-    EXTRA[i, layout.ACCELERATION_X] = EXTRA[i, layout.ACCELERATION_Y] = EXTRA[i, layout.ANGULAR_ACCELERATION] = 0.0
-
-
-@nonallocating
 def acceleration(
     now: FloatArray, i: int, body: Body, special: int, EXTRA: FloatArray, gx: float, gy: float, half_damping: float
 ) -> tuple[float, float, float, float]:

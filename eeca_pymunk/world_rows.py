@@ -25,7 +25,7 @@ from .model.values import (
     ShapeValues,
     reading_of,
 )
-from .transfer import forget_acceleration, read_states
+from .transfer import read_states
 
 
 @nonallocating
@@ -168,7 +168,8 @@ def clear_exchange(R: Reading) -> None:
         R.IDS[layout.BODY_ROW, i] = body.row
         R.IDS[layout.FLAGS, i] = layout.ECCENTRIC * eccentric + layout.STEERED * body.steered
         R.EXTRA[i, layout.COG_X], R.EXTRA[i, layout.COG_Y] = body.centre_x, body.centre_y
-        forget_acceleration(R.EXTRA, i)
+        R.EXTRA[i, layout.ACCELERATION_X] = R.EXTRA[i, layout.ACCELERATION_Y] = 0.0
+        R.EXTRA[i, layout.ANGULAR_ACCELERATION] = 0.0
         for c in range(layout.STATE_COLUMNS):
             R.HOOKED[layout.CHANGES_BEFORE, i, c], R.HOOKED[layout.CHANGES_AFTER, i, c] = 0.0, 0.0
             R.STATES[layout.WRITTEN, i, c] = R.STATES[layout.READ, i, c] if body.kind == STATIC else math.nan

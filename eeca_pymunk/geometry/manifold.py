@@ -166,18 +166,13 @@ def face_points(
 
 @nonallocating
 def face(A: Scene, s: int, r: int, POSE: FloatArray, a: int, b: int, tolerance: float, OUT: Rows[ContactPoint]) -> int:
-    """Write the contact of shapes s and r that meet to OUT, as `manifold` does: 2 rows, the ends of their common face,
+    """Write the contact of shapes s < r that meet to OUT, as `manifold` does: 2 rows, the ends of their common face,
     if both have an edge normal to n within `tolerance` (length), else 1. The gap is the same at both ends.
 
     In overlap every corner inside the other shape acts: the tolerance is increased by the depth.
     """
-    swapped = s > r
-    if swapped:
-        s, r, a, b = r, s, b, a
     g, nx, ny, px, py = ordered_gap(A, s, POSE[a, 0], POSE[a, 1], POSE[a, 2], r, POSE[b, 0], POSE[b, 1], POSE[b, 2])
     count, OUT[0].px, OUT[0].py, OUT[1].px, OUT[1].py = face_points(A, s, r, g, nx, ny, px, py, tolerance)
     for k in range(count):
         OUT[k].nx, OUT[k].ny, OUT[k].gap = nx, ny, g
-    if swapped:
-        reverse(OUT, count)
     return count

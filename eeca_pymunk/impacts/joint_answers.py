@@ -16,19 +16,12 @@ from ..jointed.gathered import find_places, gather_component
 from ..jointed.groups import Groups
 from ..joints.correct import hold_closing, keep_speeds
 from ..joints.frame import has_prescribed_motion
-from ..joints.start import compute_rows, release_limits
+from ..joints.start import compute_rows
 from ..joints.workspace import workspace
 from ..model.contacts import Columns
 from ..model.joints import Joints
 from ..model.scene import Scene
 from .simultaneous import Block
-
-
-@nonallocating
-def begin_impact(J: Joints, groups: Groups) -> None:
-    """Let no limit of the components, and no joint of bounded force, take part in the impact."""
-    for s in groups.JOINTED:
-        release_limits(workspace(J, s))
 
 
 @nonallocating

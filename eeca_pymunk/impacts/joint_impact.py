@@ -18,6 +18,8 @@ from ..jointed.columns import count_operations, fill_free, make_columns, set_eff
 from ..jointed.ends import shorten, under_way
 from ..jointed.groups import find_groups
 from ..jointed.meet import end_before, locate_impact
+from ..joints.start import release_limits
+from ..joints.workspace import workspace
 from ..model.contacts import SOLVED, JointedProblem, Row, Solved
 from ..model.joints import Joints
 from ..model.parameters.events import EVENT_LOOKS
@@ -31,7 +33,7 @@ from ..rows.energy import offset_gain, scale_to_lose
 from ..rows.gentle import excessive, sweep_gently
 from ..rows.inplace import copy
 from ..rows.sweeps import velocities
-from .joint_answers import activate_limits, add_joint_impulses, answer_impact, begin_impact
+from .joint_answers import activate_limits, add_joint_impulses, answer_impact
 from .resolution import finish_block, lacks_room, list_ended, unite_block
 from .simultaneous import Block, gather_block, make_block, take_owed_energy
 
@@ -137,7 +139,8 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     BEFORE = V.copy()
     problem = JointedProblem(ROWS, C, room_for_rows(0, 0), rows)
     status, driven, FITTED = TRUNCATED, False, BEFORE
-    begin_impact(J, groups)
+    for s in groups.JOINTED:
+        release_limits(workspace(J, s))  # no limit takes part yet, and no joint of bounded force
     for solution in range(IMPACT_LIMITS):
         # Only the part of the velocities that joints allow takes part in the impact.
         driven = answer_impact(A, J, block, groups, C, n, t)

@@ -182,8 +182,7 @@ def make_block(A: Scene, n: int, m: int, PAIRS: IntArray, hit: int, lasts: bool,
             e = 0.0
         load = remembered_force(A, sa, sb, A.PAR.stamp - 1.0)[1]
         count = face(A, sa, sb, POSE, p, q, face_tolerance(A, sa, sb), found)
-        if count > 0:
-            note_side(A, sa, sb, found[0].nx, found[0].ny, True)
+        note_side(A, sa, sb, found[0].nx, found[0].ny, True)
         for c in range(count):
             row, point = ROWS[rows], found[c]
             nx, ny = point.nx, point.ny

@@ -12,7 +12,7 @@ from ..contacts.correction import lifting
 from ..contacts.counts import count_solve, note_lock, note_unmet
 from ..contacts.interval import make_contacts, step_island
 from ..model.contacts import Problem
-from ..model.islands import Island, IslandContacts
+from ..model.islands import Island
 from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES
 from ..model.scene import Scene
@@ -138,8 +138,10 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
             count_solve(A, n, p, m, OUT[0])
             return AGAIN, h / far
         if m > 0 and OUT[0].at_rest == 0:
-            middle, lost = isle.POSE + 0.5 * h * V, OUT[0].restitution + OUT[0].friction
-            payable = find_lifts(A, isle, contacts, n, m, middle, VN, h, lost, A.RESTING[root].lost, placed, t)
+            lost, before = OUT[0].restitution + OUT[0].friction, A.RESTING[root].lost
+            budget, payable = payment(A, isle, ROWS, L, VN, n, m, lost, before, placed, False)
+            problem, middle = Problem(ROWS, isle.IM, isle.II, isle.POSE, n, m), isle.POSE + 0.5 * h * V
+            lifting(problem, middle, VN, isle.ACC, h, isle.EXTENT, budget, left_to_lift(A, t + h), JUMP)
         note_lock(A, OUT[0])
     at_rest = OUT[0].at_rest > 0
     if OUT[0].residual > OUT[0].tolerance:
@@ -160,20 +162,6 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
         if at_rest:
             put_to_rest(A, head)
     return DONE, 0.0
-
-
-@kernel
-def find_lifts(
-    A: Scene, isle: Island, contacts: IslandContacts, n: int, m: int, POSE: FloatArray, VN: FloatArray, h: float,
-    lost: float, before: float, placed: bool, t: float,
-) -> float:  # fmt: skip
-    """Find the penetration corrections JUMP at the end of an interval h from instant t, with poses POSE in its middle
-    and velocities VN at its end. Returns the cost up to which losses pay (`Rest.payable`). `lost`, `before`, `placed`:
-    see `payment`."""
-    budget, payable = payment(A, isle, contacts.ROWS, contacts.L, VN, n, m, lost, before, placed, False)
-    problem = Problem(contacts.ROWS, isle.IM, isle.II, isle.POSE, n, m)
-    lifting(problem, POSE, VN, isle.ACC, h, isle.EXTENT, budget, left_to_lift(A, t + h), contacts.JUMP)
-    return payable
 
 
 @nonallocating

@@ -7,12 +7,12 @@ import numpy as np
 from ..compiled import nonallocating
 from ..model.joint_steps import POSES, SPEEDS, STEP, JointLedger
 from ..model.joints import APART, EDITED, GIVES_WAY, LEFT_APART, TAKEN_OVER, Workspace
-from ..model.parameters.joints import JOINT_APART
+from ..model.parameters.joints import JOINT_APART, TAKEN_OVER_LEFT
 from ..newton.entries import acts
 from ..newton.motion import go_back, save
 from ..newton.rows import joint_rows, shared_part, shares_point
 from .bounds import hold_passed, limit_gap, passed_side
-from .correct import fitting_loss, project, restore_speeds, speeds_fit, steps_left
+from .correct import KEPT, fitting_loss, kinetic_of, kinetic_of_change, project, restore_speeds, speeds_fit
 from .frame import work_of_shift
 from .lock import lock_energy
 from .start import closing_share, compute_rows, springs_of
@@ -143,7 +143,8 @@ def close_joints(W: Workspace, h: float, ledger: JointLedger) -> bool:
         save(W)
     if (edited or unknown) and not speeds_fit(W):
         project(W, SPEEDS)
-        if not edited and steps_left(W):
+        # Steps of another stepper may have left as much of the kinetic energy.
+        if not edited and kinetic_of_change(W) <= TAKEN_OVER_LEFT * kinetic_of(W, KEPT):
             restore_speeds(W)
         ledger.projected += fitting_loss(W, ledger)
         save(W)

@@ -104,13 +104,6 @@ def fitting_loss(W: Workspace, ledger: JointLedger) -> float:
 
 
 @nonallocating
-def steps_left(W: Workspace) -> bool:
-    """Whether the projection of velocities from `v_kept` to `v0` has changed no more of the kinetic energy than steps
-    of another stepper may have left."""
-    return kinetic_of_change(W) <= joints.TAKEN_OVER_LEFT * kinetic_of(W, KEPT)
-
-
-@nonallocating
 def keep_speeds(W: Workspace) -> None:
     """Store the velocities before they are projected."""
     for i in range(W.bodies):

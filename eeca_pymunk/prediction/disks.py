@@ -95,13 +95,6 @@ def set_next_event(A: Scene, i: int, best: float, other: int, now: float, end: f
 
 
 @nonallocating
-def predict_disk(A: Scene, i: int, now: float, end: float, several: bool) -> None:
-    """As `next_event.predict`, for a single disk."""
-    best, other = first_impact(A, i, 0, math.inf, NOTHING, end, several)
-    set_next_event(A, i, best, other, now, end)
-
-
-@nonallocating
 def continue_path(A: Scene, i: int, now: float, end: float) -> bool:
     """Single disk i leaves its margin circle with an unchanged path: renew its list and predict its next event, for
     which only the new entries are tested. False if the pool is full."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 from ..compiled import fetch, inlined, nonallocating
-from ..model.bodies import AT_REST
+from ..model.bodies import AT_REST, NOTHING
 from ..model.scene import Scene
-from .disks import predict_disk, still_valid
+from .disks import first_impact, set_next_event, still_valid
 from .next_event import predict
 
 
@@ -15,7 +15,8 @@ from .next_event import predict
 def predict_next(A: Scene, i: int, t: float, end: float, several: bool) -> None:
     """Predict the next event of body i at instant t of the loop; `several` as in `disks.first_impact`."""
     if i < A.COUNT.disks and A.STATE[i].island < 0:
-        predict_disk(A, i, t, end, several)
+        best, other = first_impact(A, i, 0, math.inf, NOTHING, end, several)
+        set_next_event(A, i, best, other, t, end)
         return
     until = A.RESTING[i].until if A.STATE[i].island == i else math.inf
     predict(A, i, t, end, until)
