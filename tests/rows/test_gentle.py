@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+import random
 
 import numpy as np
+import pymunk
 import pytest
 
+import eeca_pymunk as ep
 from eeca_pymunk.compiled.records import rows
 from eeca_pymunk.model.contacts import Problem, Solved
 from eeca_pymunk.model.parameters.joints import EXCESSIVE_IMPULSE
@@ -16,6 +19,7 @@ from eeca_pymunk.rows.gentle import excessive, unwedge
 from eeca_pymunk.rows.laws import solve_columns
 from eeca_pymunk.rows.sweeps import push
 
+from ..crowds import SHORT
 from .block import Block
 
 
@@ -85,3 +89,32 @@ def test_an_inactive_contact_breaks_its_law_beyond_the_velocity_that_activates_i
     assert breach(columns, L, V) == pytest.approx(2.0, rel=1e-15)
     assert solve_columns(columns, L, V, 1e-13, 0, 20, math.inf) <= 1e-13
     assert min(normal_rate(problem.ROWS[i], V) for i in range(2)) >= -1e-13
+
+
+@pytest.mark.skipif(SHORT, reason="takes minutes in plain Python")
+@pytest.mark.parametrize("seed", [2, 4])
+def test_what_two_walls_crush_does_not_fly_off(seed: int) -> None:
+    """Five bodies between walls that close with 1 m/s. Without friction their impulses may be excessive too: taken as
+    they are, bodies leave with 17000 and 38000 m/s."""
+    space, rng = pymunk.Space(), random.Random(seed)
+    space.gravity = 0.0, -9.81
+    floor = pymunk.Segment(space.static_body, (-100, 0), (100, 0), 0.5)
+    floor.friction = 0.5
+    space.add(floor)
+    for side in (-1, 1):
+        wall = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+        wall.position, wall.velocity = (4.0 * side, 2.5), (-side, 0.0)
+        space.add(wall, pymunk.Poly.create_box(wall, (1, 5)))
+    bodies = [pymunk.Body() for _ in range(5)]
+    for k, body in enumerate(bodies):
+        body.position, body.angle = (rng.uniform(-3, 3), 1 + k), rng.uniform(0, 3)
+        bar = pymunk.Segment(body, (-0.6, 0), (0.6, 0), 0.1)
+        shape = rng.choice((pymunk.Circle(body, 0.5), pymunk.Poly.create_box(body, (1, 0.8)), bar))
+        shape.density, shape.friction = 1.0, 0.8
+        space.add(body, shape)
+    for shape in space.shapes:
+        shape.friction = 0.5 if shape is floor else 0.8
+    stepper = ep.EECA(space)
+    for _ in range(240):
+        stepper.step(1 / 60)
+        assert max(body.velocity.length for body in bodies) <= 2000.0
