@@ -69,6 +69,8 @@ MUTATIONS = (
              "joints/test_limits.py", "another"),
     Mutation("limits: targets of free ones", "joints/closing.py", "if acts(link, k, r) else 0.0", "if True else 0.0",
              "joints/test_limits.py", "closing"),
+    Mutation("limits: what is apart has passed its bound", "joints/bounds.py", "if side * left > 0.0:", "if False:",
+             "joints/test_limits.py", "left_apart"),
     Mutation("limits: round-off lets go", "joints/limits.py", "    if at_once:", "    if False:",
              "joints/test_limits.py", "without_a_search"),
     Mutation("limits: what is let go stays so, though it closes", "joints/correct.py",

@@ -68,11 +68,11 @@ def fit_speeds(J: Joints, s: int, length: float) -> None:
 
 @nonallocating
 def keep_apart(W: Workspace) -> None:
-    """Set the targets of all rows to their present values, so that joints which are apart stay as far apart. Rows must
-    be those of the present poses."""
+    """Set the targets of all rows that act to their present values, so that joints which are apart stay as far apart.
+    Rows must be those of the present poses."""
     for k in range(W.joints):
         for r in range(W.link[k].rows):
-            W.J.HINGE[k].target[r] = W.J.HINGE[k].value[r]
+            W.J.HINGE[k].target[r] = W.J.HINGE[k].value[r] if acts(W.link, k, r) else 0.0
 
 
 @nonallocating

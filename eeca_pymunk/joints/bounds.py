@@ -20,8 +20,9 @@ from ..newton.rows import joint_rows
 @nonallocating
 def limit_gap(W: Workspace, k: int, side: int) -> float:
     """Gap of joint k to its bound at this side at the end of the present iterate: length or rad, negative beyond the
-    bound; infinite if it has none."""
-    kind, joint = W.link[k].kind, W.J.JOINT[W.link[k].joint]
+    bound; infinite if it has none. The bound of a limit that is apart is its `target` beyond it, in this step: let go,
+    it comes back as bodies move."""
+    kind, joint, hinge = W.link[k].kind, W.J.JOINT[W.link[k].joint], W.J.HINGE[k]
     bound = joint.notch if kind == RATCHET else joint.upper if side > 0 else joint.lower
     if kind == RATCHET:
         bounded = side * joint.tooth < 0.0
@@ -29,7 +30,21 @@ def limit_gap(W: Workspace, k: int, side: int) -> float:
         bounded = bound > 0.0
     else:
         bounded = kind in (SLIDE, ROTARY_LIMIT, GROOVE) and abs(bound) < 1e300
-    return float(side * (bound - W.J.HINGE[k].measure)) if bounded else math.inf
+    if not bounded:
+        return math.inf
+    left = hinge.target[W.link[k].rows - 1] if W.link[k].bounded == 0 else 0.0
+    if side * left > 0.0:  # a slide's g is (d.d/bound - bound)/2
+        bound = math.sqrt(max(bound * (bound + 2.0 * left), 0.0)) if kind == SLIDE else bound + left
+    return float(side * (bound - hinge.measure))
+
+
+@inlined
+def stand(W: Workspace, k: int, side: int) -> None:
+    """Let joint k stand on its bound at this side. It may be apart at one side only."""
+    last = W.link[k].rows - 1
+    if side * W.J.HINGE[k].target[last] < 0.0:
+        W.J.HINGE[k].target[last] = 0.0
+    W.link[k].side = side
 
 
 @inlined
@@ -111,11 +126,11 @@ def begin_part(W: Workspace) -> None:
 def hold_passed(W: Workspace) -> bool:
     """Let all limits act, at their bounds, that the present iterate has passed; whether there are any. Only after
     `first_bound` or `start.compute_rows`, which compute their rows."""
-    hinge, link, found = W.J.HINGE, W.link, False
+    found = False
     for k in range(W.joints):
         side = passed_side(W, k, JOINT_TOUCH) if in_reach(W, k) else 0
         if side != 0:
-            link[k].side, hinge[k].target[link[k].rows - 1] = side, 0.0
+            stand(W, k, side)
             found = True
     return found
 

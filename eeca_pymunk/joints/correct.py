@@ -11,7 +11,7 @@ from ..model.joints import Workspace
 from ..model.parameters import joints
 from ..newton.entries import acts, along, size_of_terms
 from ..newton.systems import apply, back, factorise, first_iterate, first_system, linearise
-from .bounds import inactive, limit_gap, limit_gap_rate
+from .bounds import inactive, limit_gap, limit_gap_rate, stand
 from .frame import has_prescribed_motion, work_of_change
 from .lock import restore_momenta
 
@@ -170,7 +170,7 @@ def hold_closing(W: Workspace, kept: bool) -> bool:
                 least = size_of_terms(hinge[k], rows - 1, a.v_kept, b.v_kept) * joints.JOINT_SPEED_ROUND_OFF
                 closes = limit_gap_rate(hinge[k], rows, side, a.v0, b.v0) < -least
             if closes:
-                link[k].side = side
+                stand(W, k, side)
                 found = True
     return found
 

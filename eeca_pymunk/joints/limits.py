@@ -48,13 +48,13 @@ def stop_at(W: Workspace, k: int, side: int, at_once: bool, stays: bool) -> None
             joint that stands on a limit is released.
     """
     link = W.link
-    link[k].side = side
+    bounds.stand(W, k, side)
     for i in range(W.joints):
         link[i].let_go = link[i].side if stays else 0
     project(W, SPEEDS)
     bounds.begin_part(W)
     if at_once:
-        link[k].side = side  # a velocity that released it is round-off: forces press it to its bound at once
+        bounds.stand(W, k, side)  # a velocity that released it is round-off: forces press it to its bound at once
     W.J.PART_LEDGER.limited += fitting_loss(W, W.J.PART_LEDGER)
     drop_impulses(W)
 
@@ -158,14 +158,14 @@ def at_limit(W: Workspace, S: Parts) -> int:
         seek(W, S, gap_now)
         return GOES_ON
     if abs(gap_now) > touch:  # not found: land
-        W.link[S.limit].side = S.side
+        bounds.stand(W, S.limit, S.side)
         S.limit, S.when = -1, S.left
         return GOES_ON
     k, side, instant = bounds.first_bound(W, S.when)
     if k < 0 or k == S.limit:
         return MEETS
     if bounds.held_till_then(W, k, side, instant) or late(W, S):
-        W.link[k].side = side  # holds, or lands
+        bounds.stand(W, k, side)  # holds, or lands
         search_for(S, S.limit, S.side, S.when, S.left)
     else:
         S.events += 1

@@ -36,6 +36,7 @@ def release_limits(W: Workspace) -> None:
     mark_bounded(W)
     for k in range(W.joints):
         W.link[k].side = W.link[k].let_go = 0
+        W.J.HINGE[k].target[0] = W.J.HINGE[k].target[1] = 0.0
 
 
 @nonallocating

@@ -45,9 +45,9 @@ class Hooks:
 
     def none_within_steps(self) -> bool:
         """Whether steps of pymunk would call no function of a body or constraint, and could change no velocity of a
-        body outside the space."""
+        body that no step moves."""
         joints = self.joints
-        calls = joints is not None and (joints.partners.outside or joints.calling or joints.with_law)
+        calls = joints is not None and (joints.partners.items or joints.calling or joints.with_law)
         return not (self.any_body or calls)
 
     def before(self, dt: float) -> None:

@@ -131,7 +131,6 @@ class Partners:
         return tuple(self._known[i].tolist())
 
     def motions(self) -> list[Any]:
-        """The velocities of the bodies outside the space, for `private_joints.restore_motions` after a step of pymunk.
-        There constraints change them, though pymunk does not move these bodies; to nan if both bodies of a constraint
-        have infinite mass."""
-        return private_joints.motions([self.items[i] for i in self.outside])
+        """The velocities of the bodies, for `private_joints.restore_motions` after a step of pymunk. There constraints
+        change them, though pymunk does not move these bodies; to nan if no body of a constraint can be moved."""
+        return private_joints.motions(self.items)

@@ -2,18 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from typing import TypeAlias
 
 import pymunk
 
 from .joints import JointRows
+from .private import joints as private_joints
 from .private import rest as private_rest
 from .private.joints import clear_max_forces, restore_max_forces, restore_motions, silent, with_laws
 
 # Returns those of given constraints whose bodies are all awake.
 Awake: TypeAlias = Callable[[Sequence[pymunk.Constraint]], list[pymunk.Constraint]]
+
+
+@contextmanager
+def without_joints(space: pymunk.Space, forces: bool) -> Iterator[None]:
+    """Within this block steps of pymunk call no functions of constraints, and what no step moves keeps its velocities:
+    also for constraints that the program has added, or whose bodies it has changed, since the last step of EECA.
+    `forces`: whether constraints exert forces."""
+    items = private_joints.awake(list(space.constraints))  # writing the others would wake bodies
+    own = [item for item in items if private_joints.law_of(item) is not None]
+    with ExitStack() as within:
+        kept = private_joints.motions({end for item in items for end in (item.a, item.b)})
+        within.callback(restore_motions, kept)
+        within.enter_context(silent(items))
+        within.enter_context(with_laws(own, [lambda *_: 0.0] * len(own)))
+        if not forces:
+            within.callback(restore_max_forces, clear_max_forces(items))
+        yield
 
 
 def rest_step(

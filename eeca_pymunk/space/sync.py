@@ -33,7 +33,7 @@ from .private import rest as private_rest
 from .private import shapes as private_shapes
 from .private import sleep as private_sleep
 from .private import spaces as private
-from .rest_step import Awake, rest_step
+from .rest_step import Awake, rest_step, without_joints
 
 if TYPE_CHECKING:
     from .world import World
@@ -93,11 +93,12 @@ class Sync:
         them too; what else needs them, see `make_arbiters`, costs more than making them."""
         if self.state != ARBITERS_CURRENT and self.space not in BUSY and self.is_ours():
             if self.state == NO_REHEARSAL:
-                self._world.rehearsal.take_left_out_step()
+                with without_joints(self.space, True):
+                    self._world.rehearsal.take_left_out_step()
                 self.state, self.stamp = ARBITERS_CURRENT, self._timestamp()
             else:
-                with private_rest.stopped(self.space):
-                    self.rest(self._dt)
+                with private_rest.stopped(self.space), without_joints(self.space, False):
+                    self.rest(self._dt, False)
         self.arbiters_read |= read
 
     def call_back(self) -> None:
@@ -131,16 +132,17 @@ class Sync:
         """As `is_ours`; also true if the space was read anew since the last EECA step and no decision applies."""
         return self._timestamp() in (self.stamp, self._past_stamp)
 
-    def rest(self, dt: float) -> None:
+    def rest(self, dt: float, joined: bool = True) -> None:
         """Take a rest step that calls no functions of bodies. All bodies must have velocity 0; jointed ones may end
-        with velocities of round-off."""
+        with velocities of round-off. `joined`: whether joints act, as at the end of a step."""
         world, stored = self._world, self._first or self._timestamp() != self._rested
         if stored:
             private_shapes.forget_corrections(world.movers)
             for arbiter in private.raw_arbiters(self.space):
                 private_arbiters.set_impulse(arbiter, None)
         slept = self._asleep and world.bodies.in_order()
-        arguments = self.space, dt, world.joints, stored, self._awake() if self._asleep else None
+        joints = world.joints if joined else None
+        arguments = self.space, dt, joints, stored, self._awake() if self._asleep else None
         if world.hooks.any_body:
             with world.hooks.silent:
                 rest_step(*arguments)

@@ -58,11 +58,11 @@ class Watched:
 @contextmanager
 def silent_joints(rehearsal: Rehearsal, joints: JointRows) -> Iterator[None]:
     """Within this block `pre_solve` of constraints is wrapped, and their other functions are not called: springs use
-    the linear laws of the last step. Bodies outside the space keep their velocities."""
+    the linear laws of the last step. Bodies that no step moves keep their velocities."""
     # `Hooks.before` calls `pre_solve` where the first body is outside the space: pymunk does not.
     silenced = [item for item in joints.calling if item.pre_solve is None or item.a.space is None]
     with ExitStack() as stack:
-        if joints.partners.outside:
+        if joints.partners.items:
             stack.callback(private_joints.restore_motions, joints.partners.motions())
         if silenced:
             stack.enter_context(private_joints.silent(silenced))

@@ -330,3 +330,48 @@ def test_a_motor_stalls_where_gears_hold_what_it_turns(ratio: float, force: floa
         assert motor.impulse > 0.0
         if math.isfinite(force):
             assert motor.impulse == pytest.approx(force / 60, rel=1e-12)
+
+
+@pytest.mark.parametrize("kind", ["slide", "limit", "groove", "ratchet"])
+@pytest.mark.parametrize(("speed", "force"), [(1.0, 0.0), (0.0, 60.0), (-0.1, 60.0), (1.0, 60.0)])
+def test_a_limit_that_a_program_has_left_apart_lets_bodies_come_back_by_themselves(
+    kind: str, speed: float, force: float
+) -> None:
+    """It closes at its own rate; what moves or pulls back adds to this as it does without a limit. Speed and force
+    towards the bound; a speed away from it is stopped."""
+
+    def came(speed: float, force: float) -> tuple[float, float, float]:
+        """Way and speed after three steps, and the work of what is outside."""
+        space, ground, work = empty(0.0), pymunk.Body(body_type=pymunk.Body.STATIC), 0.0
+        loose, turns = body(space, 1.0, 1.0, (0.0, 0.0)), kind in ("limit", "ratchet")
+        if turns:
+            loose.angle, loose.angular_velocity = 3.0, -speed
+        else:
+            loose.position, loose.velocity = (3.0, 0.0), (-speed, 0.0)
+        joint = {
+            "slide": pymunk.SlideJoint(loose, ground, (0, 0), (0, 0), 0.0, 1.0),
+            "limit": pymunk.RotaryLimitJoint(ground, loose, -1.0, 1.0),
+            "groove": pymunk.GrooveJoint(ground, loose, (-1, 0), (1, 0), (0, 0)),
+            "ratchet": pymunk.RatchetJoint(ground, loose, 0.0, -0.5),
+        }[kind]
+        space.add(ground, joint)
+        if isinstance(joint, pymunk.RatchetJoint):
+            joint.angle = 0.5
+        stepper = ep.EECA(space)
+        for _ in range(3):
+            loose.force, loose.torque = (0.0 if turns else -force, 0.0), -force if turns else 0.0
+            report = stepper.step(1 / 60)
+            assert report.converged
+            work += report.ledger.external
+        if turns:
+            return 3.0 - loose.angle, -loose.angular_velocity, work
+        return 3.0 - loose.position.x, -loose.velocity.x, work
+
+    way, after, work = came(speed, force)
+    closed, _, _ = came(0.0, 0.0)
+    begins, time = max(speed, 0.0), 3 / 60
+    assert closed > 0.2
+    assert after == pytest.approx(begins + force * time, rel=1e-12)
+    assert work == pytest.approx(0.5 * (after**2 - begins**2), abs=1e-12)
+    # What comes back in one step is not left to be closed in the next.
+    assert closed + 0.8 * (begins + 0.5 * force * time) * time < way <= closed + (begins + 0.5 * force * time) * time

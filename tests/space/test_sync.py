@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 
 import pymunk
 import pytest
@@ -246,6 +247,39 @@ def test_reading_arbiters_calls_no_function_of_a_body() -> None:
         stepper.step(DT)
     body.each_arbiter(lambda arbiter: None)
     assert dts == 3 * [DT]
+
+
+@pytest.mark.parametrize("handler", [False, True])
+@pytest.mark.parametrize("joined", ["before", "since", "turned static since"])
+def test_reading_arbiters_leaves_what_joints_hold_as_it_is(joined: str, handler: bool) -> None:
+    """Arithmetic of pymunk gives nan for a joint of angles between two bodies that cannot turn."""
+    space, calls = crowd(3), []
+    wheel, other, far = space.bodies
+    wheel.moment = math.inf
+    if joined != "turned static since":
+        other.body_type = pymunk.Body.STATIC
+
+    def join() -> None:
+        for joint in (pymunk.GearJoint(wheel, other, 0.0, 1.0), pymunk.DampedRotarySpring(wheel, other, 0.0, 5.0, 1.0)):
+            joint.pre_solve = lambda *_: calls.append(joined)
+            space.add(joint)
+
+    if joined == "before":
+        join()
+    if handler:
+        space.on_collision(1, 1, begin=lambda *_: None)
+    stepper = ep.EECA(space)
+    for _ in range(4):
+        stepper.step(DT)
+    if joined != "before":
+        join()
+    if joined == "turned static since":
+        other.body_type = pymunk.Body.STATIC
+    called, before = len(calls), [(body.velocity, body.angular_velocity) for body in space.bodies]
+    far.each_arbiter(lambda arbiter: None)
+    assert [(body.velocity, body.angular_velocity) for body in space.bodies] == before
+    assert len(calls) == called
+    stepper.step(DT)
 
 
 class Picture(pymunk.SpaceDebugDrawOptions):
