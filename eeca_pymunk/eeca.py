@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING, Protocol
 
 from .closures.time_of_impact import TimeOfImpact
 from .impacts.taking_over import Kept
+from .reentry import BUSY
 from .runs import RunningStepper
 from .saved import Saved
 from .space.world import World
@@ -44,6 +46,9 @@ class EECA(RunningStepper):
         super().__init__(space, sync=sync, ignore=ignore)
 
     def __getstate__(self) -> dict[str, object]:
+        if self._world is not None and self.event_loop is not None and self.space not in BUSY:
+            with suppress(ValueError):  # which the next step raises
+                self.catch_up()  # what the program has changed since the last step, so that the copy has it, too
         state = super().__getstate__()
         if self._world is not None and (loop := self.event_loop) is not None:
             state["_saved"] = Saved(self._world, loop, self.decisions)

@@ -12,6 +12,7 @@ from .model.step import ENERGY, EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES
 from .packed_space import TOO_FAR, PackedSpace
 from .reentry import BUSY
 from .report import Details, Outcome, StepReport
+from .space.joints import JointRows
 from .space.sleeping import Sleep
 from .space.world import World
 from .unmet import Unmet, of_missed
@@ -28,16 +29,33 @@ class HookedStepper(PackedSpace):
         joints = world.joints
         if joints is not None:
             joints.update(world.state, world.bodies.row, dt)
-            if joints.replan or joints.ends_moved:
-                loop = self.event_loop
-                assert loop is not None  # other methods refuse joints
-                world.read_states(*world.gravity, world.half_damping(dt))
-                loop.rejoin(world.BODY, world.SHAPE, world.LINK, joints.linkage, joints.replan)
-                joints.planned(loop.held)
+            self._rejoin(world, joints)
             parted = world.find_parted()
         if parted or world.rules is not self._ruled:
             self._ruled = world.rules
             self._method.rule(world.laws())
+
+    def _rejoin(self, world: World, joints: JointRows) -> None:
+        """Plan the components of the joints anew, if these have changed."""
+        if joints.replan or joints.ends_moved:
+            loop = self.event_loop
+            assert loop is not None  # other methods refuse joints
+            world.read_states(0.0, 0.0, 1.0)
+            loop.rejoin(world.BODY, world.SHAPE, world.LINK, joints.linkage, joints.replan)
+            joints.planned(loop.held)
+
+    def catch_up(self) -> None:
+        """Take over all changes of the space since the last step, as the next one does.
+
+        Raises:
+            ValueError: as that step would.
+        """
+        world = self._present()
+        joints = world.joints
+        if joints is not None:
+            joints.catch_up()
+            world.gather()
+            self._rejoin(world, joints)
 
     def advance(self, world: World, dt: float, half_damping: float) -> int:
         """Move the bodies from `world.STATES` to `world.ENDS`; the space is not touched.

@@ -45,7 +45,7 @@ class Saved:
         joints = world.joints
         self._joints = [] if joints is None else joints.items
         self._rates = {} if joints is None else joints.rates
-        # After edits of joints that no step has used yet, the copy reads all joints again.
+        # After edits that steps refuse, or within a step, the copy reads all joints again.
         self._fresh = joints is None or not (joints.replan or joints.edited)
         self._pickled: tuple[str, Sequence[object], bytes] | None = None  # in a copy, until `resume`
 

@@ -15,12 +15,11 @@ from ..model.joints import Joint
 from ..reentry import FunctionsCalled
 from .constraint_impulses import ConstraintImpulses
 from .constraints import read
+from .edits import clock
 from .listing import Edits, Listing, calls_of
 from .partners import Partners
 from .private import spaces as private
 from .spring_functions import BodyMotion, Rate, force_function, write_law
-
-_ROUND_OFF = 1e-12  # of the distance of a pin's anchors, over that distance
 
 
 class JointRows(Listing):
@@ -44,7 +43,7 @@ class JointRows(Listing):
             ValueError, UnsupportedFeature: see `check_constraint`.  NotFiniteError: see `Partners`.
         """
         if past is not None:
-            past.refresh()
+            past.refresh(anew=True)
         super().__init__(space, past)
         before = [-1] * len(self.items) if past is None else [past.row.get(item, -1) for item in self.items]
         self._memory: bytearray = selected(Joint, bytearray() if past is None else past._memory, before)
@@ -56,6 +55,7 @@ class JointRows(Listing):
             self.values[j].put(self._memory, j, *self.joint["body"][j].tolist())
         self.partners: Partners = Partners(others, space, self.joint, n, None if past is None else past.partners)
         self._edits, self._timestamp = Edits(self.row), private.timestamp(space)
+        self._clock = clock()
         self.rates: dict[pymunk.Constraint, Rate] = {} if past is None else past.rates
         self._find_pushing()
 
@@ -70,7 +70,7 @@ class JointRows(Listing):
         others = tuple([body for body in self.bodies if body not in row])
         if self.items != list(self.space.constraints) or others != self.partners.items:
             return False
-        self.refresh()
+        self.refresh(anew=True)
         self._number(row, n, others)
         self.fresh = []
         self.partners.renumber(self.space, n)
@@ -94,8 +94,13 @@ class JointRows(Listing):
         """The arrays that the event loop takes."""
         return Linkage(self.joint, self.partners.PARTNER, self.partners.still)
 
-    def refresh(self) -> bool:
-        """Read edited constraints again; returns whether a new plan of components is needed."""
+    def refresh(self, anew: bool = False) -> bool:
+        """Read edited constraints again; returns whether a new plan of components is needed. Edits of bodies in the
+        space are looked for only if these are read `anew`."""
+        if anew or (self.partners.outside and self._clock != clock()):
+            self._clock = clock()
+            for j in self.recentred():
+                self._edits.record(self.items[j], "anchor_a")
         if not self._edits.rows:
             return self.replan
         edited = self._edits.take()
@@ -144,17 +149,6 @@ class JointRows(Listing):
         """The linear laws of the springs with functions in the last step."""
         return [force_function(self.items[j], self.joint[j]) for j in self.functions]
 
-    def measured(self) -> list[int]:
-        """Rows of the pins whose length is the distance of their anchors, up to round-off: pickles of pymunk lack the
-        lengths of pins, so that a loaded pin has this one."""
-        found = []
-        for j, item in enumerate(self.items):
-            if isinstance(item, pymunk.PinJoint):
-                distance = item.a.local_to_world(item.anchor_a).get_distance(item.b.local_to_world(item.anchor_b))
-                if abs(item.distance - distance) <= _ROUND_OFF * distance:
-                    found.append(j)
-        return found
-
     def set_length(self, j: int, length: float) -> None:
         """Set the length of the pin of row j, without recording an edit."""
         self.items[j].distance = length
@@ -187,10 +181,17 @@ class JointRows(Listing):
 
     def unchanged(self) -> bool:
         """Whether `update` has nothing to do: nothing has changed, but poses of partners, which are read here."""
+        if self.partners.outside and self._clock != clock():
+            return False
         if self._edits.rows or self.replan or self.ends_moved or self.parted is None or self.functions:
             return False
         self.ends_moved = len(self.partners.outside) > 0 and self.partners.read() > 0
         return not self.ends_moved
+
+    def catch_up(self) -> None:
+        """Read edited constraints and moved partners again."""
+        self.refresh()
+        self.ends_moved |= len(self.partners.outside) > 0 and self.partners.read() > 0
 
     def update(self, state: FloatArray, place: Mapping[pymunk.Body, int], dt: float) -> None:
         """Update what the step needs: edited constraints, poses of partners, laws of springs with functions.
@@ -202,8 +203,7 @@ class JointRows(Listing):
             ValueError, UnsupportedFeature, NotFiniteError: as the first reading does.  NotFiniteError: a function of a
                 spring has not returned a finite number.
         """
-        self.refresh()
-        self.ends_moved |= len(self.partners.outside) > 0 and self.partners.read() > 0
+        self.catch_up()
         if self.functions:
             with FunctionsCalled(self.space), private.locked(self.space):
                 for j in self.functions:

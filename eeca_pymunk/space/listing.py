@@ -15,13 +15,15 @@ import pymunk
 
 from ..model.joints import MOTOR, RATCHET, ROTARY_SPRING, SPRING
 from .constraints import ConstraintValues, read
+from .private import joints as private_joints
 from .spring_functions import own_function
 
+_ROUND_OFF = 1e-12  # of the distance of a pin's anchors, over that distance
 _PUSHING = SPRING, ROTARY_SPRING, MOTOR
 # The attributes of a `Listing` that another one of the same constraints uses again.
 _LISTED = (
     "pairs", "bodies", "ends", "row", "values", "calls", "ratchets", "forcing", "functions", "with_law", "before",
-    "after", "calling",
+    "after", "calling", "centres",
 )  # fmt: skip
 
 # All `Edits` by their numbers. To iterate over a `WeakSet` takes ten times as long, in every edit of any constraint.
@@ -58,6 +60,7 @@ class Listing:
         fresh: rows of the constraints that `past` does not have.
         functions: rows of springs that have a force or torque function of the program.  with_law: these springs.
         before, after, calling: constraints with a `pre_solve`, with a `post_solve`, with either.
+        centres: of gravity of `bodies`, to which the anchors in `values` are relative.
         ratchets: rows of the ratchets.  forcing: rows of springs, motors and joints with a bounded force, which exert
             forces in a rest step of pymunk even if they are not violated.
     """
@@ -83,7 +86,18 @@ class Listing:
         found = [known.get(item) or (read(item), calls_of(item)) for item in self.items]
         self.values: list[ConstraintValues] = [values for values, _ in found]
         self.calls: list[Calls] = [calls for _, calls in found]
+        self.centres = self._centres()
         self.find_functions()
+
+    def _centres(self) -> list[tuple[float, float]]:
+        return [private_joints.centre_and_kind(body)[:2] for body in self.bodies]
+
+    def recentred(self) -> list[int]:
+        """The rows of the constraints of bodies whose centre of gravity has changed since `centres` were read, which
+        are read again: the values of these constraints have to be, too."""
+        before, self.centres = self.centres, self._centres()
+        pairs = zip(self.bodies, before, self.centres, strict=True)
+        return self.with_body({body: centre != now for body, centre, now in pairs})
 
     def find_functions(self) -> None:
         """Find the lists of constraints that depend on kinds, bounds and functions."""
@@ -102,6 +116,16 @@ class Listing:
         marks = np.array([marked.get(body, False) for body in self.bodies])
         return np.flatnonzero(marks[self.ends].any(axis=1)).tolist()
 
+    def measured(self) -> list[int]:
+        """Rows of the pins whose length is the distance of their anchors, up to round-off: pickles of pymunk lack the
+        lengths of pins, so that a loaded pin has this one."""
+        found = []
+        for j, item in enumerate(self.items):
+            if isinstance(item, pymunk.PinJoint):
+                distance = item.a.local_to_world(item.anchor_a).get_distance(item.b.local_to_world(item.anchor_b))
+                if abs(item.distance - distance) <= _ROUND_OFF * distance:
+                    found.append(j)
+        return found
 
 class Edits:
     """The edits of the constraints of one listing.

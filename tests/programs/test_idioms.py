@@ -478,3 +478,44 @@ def test_from_the_same_start_a_refreshed_stepper_goes_the_same_way() -> None:
             stepper.step(1 / 60)
         ends.append(places(space))
     assert ends[0] == ends[2]
+
+
+@pytest.mark.parametrize("way", [copy.deepcopy, lambda stepper: pickle.loads(pickle.dumps(stepper))])
+@pytest.mark.parametrize("edit", ["a joint", "a body", "a shape", "a value", "a joint's value"])
+def test_what_was_changed_since_the_last_step_is_part_of_a_copy(way: Callable[[ep.EECA], ep.EECA], edit: str) -> None:
+    """Results of earlier steps hold for what has not changed, in the copy as in its original."""
+    space = pymunk.Space()
+    space.gravity = (0.0, -9.81)
+    floor = pymunk.Segment(space.static_body, (-9, 0), (9, 0), 0.1)
+    floor.friction = 0.5
+    space.add(floor)
+    for k in range(6):
+        body = pymunk.Body(1.0 + k, 1.0)
+        body.position, body.angle = (0.1 * k, 1.0 + 0.9 * k), 0.1 * k
+        box = pymunk.Poly.create_box(body, (1.0, 0.8))
+        box.friction = 0.5
+        space.add(body, box)
+    low, high = list(space.bodies)[::5]
+    rope = pymunk.SlideJoint(space.static_body, high, (0, 9), (0, 0), 0.0, 4.0)
+    space.add(rope)
+    stepper = ep.EECA(space)
+    for _ in range(30):
+        stepper.step(1 / 60)
+    other = pymunk.Body(1.0, 1.0)
+    other.position = (3.0, 0.6)
+    if edit == "a joint":
+        space.add(pymunk.PinJoint(low, high))
+    elif edit == "a body":
+        space.add(other, pymunk.Circle(other, 0.5))
+    elif edit == "a shape":
+        space.remove(next(iter(high.shapes)))
+    elif edit == "a value":
+        floor.friction, low.mass = 0.1, 5.0
+    else:
+        rope.max, rope.anchor_b = 3.5, (0.1, 0.0)
+    twin = way(stepper)
+    for _ in range(10):
+        stepper.step(1 / 60)
+        twin.step(1 / 60)
+    places = [[(b.position, b.angle, b.velocity) for b in one.space.bodies] for one in (stepper, twin)]
+    assert places[0] == places[1]

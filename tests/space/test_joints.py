@@ -806,3 +806,29 @@ def test_rows_have_what_constraints_say_field_by_field(kind: str) -> None:
         joint.rate = 9.0
         rows.refresh()
         assert row.rate == 9.0
+
+
+@pytest.mark.parametrize("way", ["set", "a mass", "outside"])
+def test_joints_hold_their_anchors_where_a_centre_of_gravity_is_moved(way: str) -> None:
+    """Anchors are stored relative to it."""
+    space, plate, far = pymunk.Space(), pymunk.Body(1.0, 1.0), pymunk.Body(2.0, 1.0)
+    space.gravity, plate.position, far.position = (0.0, -9.81), (0.0, -1.0), (1.0, -1.0)
+    hook = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    hook.angle = 0.5
+    shape = pymunk.Circle(plate, 0.1)
+    if way == "a mass":
+        shape.mass = 1.0
+    pivot, pin = pymunk.PivotJoint(hook, plate, (0, 0)), pymunk.PinJoint(plate, far, (0, 0.1), (0, 0.3))
+    space.add(plate, far, shape, pivot, pin)
+    stepper = ep.EECA(space)
+    for k in range(30):
+        if k == 2:
+            (hook if way == "outside" else plate).center_of_gravity = (0.2, 0.1)
+            if way == "a mass":
+                heavy = pymunk.Circle(plate, 0.1, (0.5, 0.3))
+                heavy.mass, heavy.sensor = 2.0, True
+                space.add(heavy)
+        stepper.step(1 / 60)
+    assert plate.local_to_world(pivot.anchor_b).length < 1e-12
+    apart = plate.local_to_world(pin.anchor_a).get_distance(far.local_to_world(pin.anchor_b))
+    assert apart == pytest.approx(pin.distance, abs=1e-12)
