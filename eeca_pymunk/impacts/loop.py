@@ -13,6 +13,7 @@ from ..contacts.single import alone, strike_disk
 from ..geometry.sides import remembers
 from ..islands.accounting import end_interval, lift_within_step
 from ..islands.hits import hits_of, most_hits, passed_over
+from ..islands.local import drop_ended
 from ..islands.membership import jointed, members, persists_from
 from ..jointed.ends import end_here
 from ..jointed.ledger import most_looks, work_left
@@ -143,8 +144,11 @@ def process_events(A: Scene, J: Joints, may_persist: bool) -> int:
     """Process all events of the step, with simultaneous impacts and islands. After a status other than DONE: provide
     more memory, and call again. may_persist: as in `run_events`."""
     COUNT, STATE = A.COUNT, A.STATE
-    end = A.PAR.dt
+    end, few = A.PAR.dt, -1
     while True:
+        if few < 0 or COUNT.pushes > 2 * few + _ROOM:
+            drop_ended(A)
+            few = COUNT.pushes
         status = start_waiting(A, J) if COUNT.waiting > 0 else DONE
         if status == DONE:
             status = run_events(A, may_persist, most_looks(A, J))

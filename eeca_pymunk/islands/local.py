@@ -10,6 +10,8 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..contacts.memory import shapes_of, table_has_room
 from ..contacts.works import external_work
+from ..model.bodies import AT_REST
+from ..model.contacts import ENDED
 from ..model.islands import Island, IslandContacts
 from ..model.scene import Scene
 from ..pairs.lists import mark_pair
@@ -164,6 +166,31 @@ def drop_contacts(A: Scene, low: int, high: int) -> None:
     kept = 0
     for c in range(A.COUNT.pushes):
         if not low <= A.PUSHED_BY[c].root <= high:
+            A.PUSHED_BY[kept], A.PUSHED[kept] = A.PUSHED_BY[c], A.PUSHED[c]
+            kept += 1
+    A.COUNT.pushes = kept
+
+
+@nonallocating
+def is_last_support(A: Scene, c: int, kept: int) -> bool:
+    """Whether contact c presses on an island at rest, and none of its pair is among the first `kept` that have ended:
+    `support.settle` needs one."""
+    a, b, at_rest = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, False
+    for shape in (a, b):
+        j = A.LINK[shape].owner
+        at_rest = at_rest or (A.STATE[j].island >= 0 and A.MEMBER[A.STATE[j].island].rest == AT_REST)
+    for k in range(kept if at_rest else 0):
+        if A.PUSHED_BY[k].root == ENDED and A.PUSHED_BY[k].a == a and A.PUSHED_BY[k].b == b:
+            return False
+    return at_rest
+
+
+@nonallocating
+def drop_ended(A: Scene) -> None:
+    """Remove the contacts of intervals that have ended within the step: each event looks through all contacts."""
+    kept, supports = 0, A.COUNT.may_support > 0
+    for c in range(A.COUNT.pushes):
+        if A.PUSHED_BY[c].root != ENDED or (supports and is_last_support(A, c, kept)):
             A.PUSHED_BY[kept], A.PUSHED[kept] = A.PUSHED_BY[c], A.PUSHED[c]
             kept += 1
     A.COUNT.pushes = kept

@@ -127,6 +127,7 @@ class Listing:
                     found.append(j)
         return found
 
+
 class Edits:
     """The edits of the constraints of one listing.
 

@@ -203,3 +203,21 @@ def test_rods_that_lie_deep_in_walls_that_turn_are_solved_a_bounded_number_of_ti
         report = scene.stepper.step(scene.dt)
         assert report.iterations < 4 * RESOLUTION
         assert all(u.name != "solves" for u in report.unmet)
+
+
+@pytest.mark.parametrize("other", [False, True])
+def test_contacts_of_many_intervals_of_a_step_are_not_kept(other: bool) -> None:
+    """Each event looks through the contacts of all intervals: steps of many intervals took time by their square. Disks
+    that are smaller than their way have many. `other`: a second one, whose intervals end in turn with those of the
+    first."""
+    space = world(0.1)
+    for k in range(1 + other):
+        ball = pymunk.Body(1.0, 1.0)
+        ball.position, ball.velocity = (k, 1e-3), (30.0 + k, 0.0)
+        space.add(ball, pymunk.Circle(ball, 1e-3))
+    stepper = ep.EECA(space)
+    stepper.step(0.1)
+    assert stepper.event_loop is not None
+    count = stepper.event_loop.scene.COUNT
+    assert count.solves > 1000
+    assert count.pushes < 200
