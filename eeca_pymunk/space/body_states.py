@@ -164,6 +164,14 @@ class BodyStates:
         still = self.bodies.static
         return not np.array_equal(self.STATES[layout.READ, still, :3], self.STATES[layout.WRITTEN, still, :3])
 
+    def static_moved_since(self) -> bool:
+        """As `moved_static`, by the present poses, also if other bodies have come, or pymunk's order has changed."""
+        known = zip(self.bodies.items, self.bodies.static.tolist(), self.STATES[layout.WRITTEN, :, :3], strict=True)
+        return any(
+            still and body.space is self.space and [*body.position, body.angle] != before.tolist()
+            for body, still, before in known
+        )
+
     @property
     def state(self) -> FloatArray:
         """(N, 9) position, angle, velocity, spin, force and torque of `bodies`, as `gather` has read them."""

@@ -91,7 +91,7 @@ def wake_neighbours(space: pymunk.Space) -> None:
     """Wake sleeping bodies that are jointed to an awake body of the space that is not static, or touch one according to
     pymunk; then the neighbours of these, and so on. Bodies outside the space that joints hold to it count as asleep
     under pymunk, forever."""
-    if not any(private_sleep.sleeping(space.bodies)):
+    if not private_sleep.asleep(space):
         return
     pairs = [*((c.a, c.b) for c in space.constraints), *touching(space)]
     bodies = {body for pair in pairs for body in pair}

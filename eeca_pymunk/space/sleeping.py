@@ -115,7 +115,7 @@ class Sleep:
 
     def wake(self, bodies: Iterable[pymunk.Body] | None = None) -> None:
         """Wake these bodies and their groups; all bodies if None."""
-        for body in self._sleepers if bodies is None else bodies:
+        for body in private_sleep.asleep(self.space) if bodies is None else bodies:
             body.activate()
 
     def wake_ahead(self, dt: float) -> bool:
@@ -184,15 +184,16 @@ class Sleep:
         self._wait, self._since = timers.tolist()
 
     def wake_changed(self) -> None:
-        """Wake bodies near removed shapes; wake all if static bodies were moved or shapes edited."""
-        if not self.any_asleep:
+        """Wake bodies near removed shapes; wake all if static bodies were moved or shapes edited. Also bodies that have
+        fallen asleep at the end of the last step, of which this does not know."""
+        if not private_sleep.asleep(self.space):
             return
         for shape in self.world.records.keys() - set(self.space.shapes):
             if self.world.records[shape] is not None:
                 left, bottom, right, top = shape.bb
                 room = 1e-3 * (right - left + top - bottom)
                 self._wake_within(pymunk.BB(left - room, bottom - room, right + room, top + room))
-        if (self.world.same_bodies() and self.world.moved_static()) or self.world.edited():
+        if self.world.static_moved_since() or self.world.edited():
             self.wake()
 
     def _wake_within(self, box: pymunk.BB) -> bool:

@@ -142,6 +142,7 @@ def test_bodies_that_sleep() -> None:
     space.step(0.1)  # before it no body can sleep
     bodies[1].sleep()
     assert private_sleep.sleeping(bodies) == [False, True, False]
+    assert private_sleep.asleep(space) == [bodies[1]]
 
 
 def test_arbiters() -> None:

@@ -637,3 +637,58 @@ def test_a_body_outside_that_a_joint_holds_wakes_nobody() -> None:
     box(space, -8.0, 0.6)
     stepper.step(DT)
     assert [body.is_sleeping for body in space.bodies] == [True] * 3 + [False] * 2
+
+
+@pytest.mark.parametrize("later", [0, 2])
+@pytest.mark.parametrize("change", ["shape", "body", "outline", "place", "sensor"])
+def test_what_sleeps_falls_when_its_shelf_goes_also_just_after_it_has_fallen_asleep(change: str, later: int) -> None:
+    space, shelf, box = pymunk.Space(), pymunk.Body(body_type=pymunk.Body.STATIC), pymunk.Body(1.0, 1.0)
+    space.gravity, space.sleep_time_threshold = (0.0, -10.0), 0.1
+    board = pymunk.Segment(shelf, (-5.0, 0.0), (5.0, 0.0), 0.1)
+    box.position = (0.0, 0.6)
+    space.add(shelf, board, box, pymunk.Poly.create_box(box, (1.0, 1.0)))
+    stepper, steps = ep.EECA(space), 0
+    while not box.is_sleeping and steps < 30:
+        stepper.step(1 / 60)
+        steps += 1
+    assert box.is_sleeping
+    for _ in range(later):
+        stepper.step(1 / 60)
+    if change == "shape":
+        space.remove(board)
+    elif change == "body":
+        space.remove(board, shelf)
+    elif change == "outline":
+        board.unsafe_set_endpoints((4.0, 0.0), (5.0, 0.0))
+    elif change == "place":
+        shelf.position = (0.0, -3.0)
+    else:
+        board.sensor = True
+    before = box.position.y
+    for _ in range(12):
+        stepper.step(1 / 60)
+    assert before - box.position.y == pytest.approx(0.5 * 10.0 * 0.2**2, rel=1e-9)
+
+
+@pytest.mark.parametrize("added", [False, True])
+def test_sleeping_is_switched_off_just_after_a_body_has_fallen_asleep(added: bool) -> None:
+    """Waking it changes pymunk's order of bodies: each keeps its own state, the ground too."""
+    space, still, other = pymunk.Space(), pymunk.Body(1.0, 1.0), pymunk.Body(1.0, 1.0)
+    space.sleep_time_threshold = 0.1
+    still.position, other.position, other.velocity = (3.0, 4.0), (-5.0, 0.0), (1.0, 0.0)
+    space.add(still, pymunk.Circle(still, 0.1), other, pymunk.Circle(other, 0.1))
+    stepper, steps = ep.EECA(space), 0
+    while not still.is_sleeping and steps < 30:
+        stepper.step(1 / 60)
+        steps += 1
+    assert still.is_sleeping
+    if added:
+        third = pymunk.Body(1.0, 1.0)
+        space.add(third, pymunk.Circle(third, 0.1))
+    space.sleep_time_threshold = math.inf
+    space.on_collision(None, None, begin=lambda *_: None)
+    for _ in range(3):
+        stepper.step(1 / 60)
+    assert (still.position, space.static_body.position) == ((3.0, 4.0), (0.0, 0.0))
+    assert other.position.x == pytest.approx(-5.0 + (steps + 3) / 60, rel=1e-12)
+    assert not still.is_sleeping

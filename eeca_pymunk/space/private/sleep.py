@@ -20,6 +20,12 @@ def sleeping(bodies: Iterable[pymunk.Body]) -> list[bool]:
     return [bool(sleeps(body._body)) for body in bodies]
 
 
+def asleep(space: pymunk.Space) -> list[pymunk.Body]:
+    """The bodies of a space that sleep."""
+    sleeps = lib.cpBodyIsSleeping
+    return [body for body in space.bodies if sleeps(body._body)]
+
+
 def stop_woken(bodies: Iterable[pymunk.Body]) -> Callable[[], None]:
     """A function that sets velocity and spin to 0 of those of these bodies that no longer sleep."""
     pointers, sleeps, zero = [body._body for body in bodies], lib.cpBodyIsSleeping, (0.0, 0.0)
