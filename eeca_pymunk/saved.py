@@ -14,7 +14,7 @@ from .compiled.sources import sources_hash
 from .impacts.scene import EventLoop
 from .layout import BODY_ROW, WRITTEN
 from .model.bodies import MOBILITY, OF_SHAPES
-from .model.joints import OF_STEPS, RATCHET, Joint
+from .model.joints import OF_STEPS, PIVOT, RATCHET, Joint
 from .model.shapes import Link
 from .space.decisions import Decisions
 from .space.world import World
@@ -121,6 +121,9 @@ class Saved:
                 unequal[joints.joint["kind"] == RATCHET] = False
             elif name == "length":
                 unequal[joints.measured()] = False
+            elif name == "kind":
+                for j in joints.measured():  # a pin of length 0 is a pivot
+                    unequal[j] = unequal[j] and method.joint[j].kind != PIVOT
             if name not in _TIE:
                 unequal[joints.functions] = False
             differs |= unequal

@@ -37,7 +37,7 @@ def test_a_step_that_is_cut_short_gives_no_energy(seed: int, steps: int) -> None
     Composition(seed).play(steps)
 
 
-@pytest.mark.parametrize("length", [None, 1.7])
+@pytest.mark.parametrize("length", [None, 1.7, 0.0])
 def test_saved_steppers_know_the_lengths_of_pins(length: float | None) -> None:
     """pymunk's pickles do not have them, and measure the anchors: off by a round-off, or by all that a pin is apart."""
     space = pymunk.Space()
