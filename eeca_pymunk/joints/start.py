@@ -7,33 +7,18 @@ import numpy as np
 from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.joint_steps import POSES
-from ..model.joints import BOUNDED, BOXED, GEAR, GROOVE, MOTOR, PIN, ROTARY_SPRING, SPRING, Joint, Workspace
+from ..model.joints import GEAR, GROOVE, MOTOR, PIN, ROTARY_SPRING, SPRING, Joint, Workspace
 from ..model.parameters.joints import STALLED
 from ..newton.entries import is_limit
 from ..newton.rows import joint_rows, unit_of
-from ..newton.saturation import bound_otherwise
 from ..newton.systems import first_iterate
 from .bounds import limit_gap, limit_gap_rate
 from .ledger import springs_hold
 
 
 @nonallocating
-def mark_bounded(W: Workspace) -> None:
-    """Mark the joints whose impulses are bounded. Their rows are boxed if they are few (`..newton.boxes`)."""
-    joint, link, rows = W.J.JOINT, W.link, 0
-    for k in range(W.joints):
-        kind = link[k].kind
-        finite = joint[link[k].joint].bounded != 0 and kind not in (SPRING, ROTARY_SPRING)
-        link[k].bounded = BOUNDED if kind == MOTOR or finite else 0
-        rows += link[k].rows if link[k].bounded != 0 else 0
-    if rows <= W.J.COMPONENT[W.s].boxes:
-        bound_otherwise(W, BOUNDED, BOXED)
-
-
-@nonallocating
 def release_limits(W: Workspace) -> None:
-    """At one instant: `mark_bounded`, and let no limit act, until velocities show which of them close."""
-    mark_bounded(W)
+    """At one instant: let no limit act, until velocities show which of them close."""
     for k in range(W.joints):
         W.link[k].side = W.link[k].let_go = 0
         W.J.HINGE[k].target[0] = W.J.HINGE[k].target[1] = 0.0
@@ -120,7 +105,6 @@ def read_joints(W: Workspace, h: float, length: float) -> tuple[bool, bool]:
     whose target `bounded_targets` sets."""
     joint, hinge, link = W.J.JOINT, W.J.HINGE, W.link
     touched, bounded = False, False
-    mark_bounded(W)
     for k in range(W.joints):
         j, kind = link[k].joint, link[k].kind
         link[k].side, link[k].let_go = joint[j].side, 0
