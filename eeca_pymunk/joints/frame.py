@@ -1,12 +1,13 @@
 """The frame of a component: the rigid motion of its supports, to which joints hold the other bodies.
 
-Supports are partners, and what has infinite mass or moment. If they move as one rigid body, of velocity u(r) = V + w z
-x (r - c), what joints between it and the other bodies do in its frame is no work. The work of the supports then is sum
-p . u, of the impulses p = M (v1 - v0 - h a) of all joints on each body. It needs no impulse of a joint, whose works
-cancel only up to round-off if joints contradict one another. What is gained beside it, sum p . (v_m - u), is no work of
-supports, and is taken from the motion relative to the frame: Jacobi's integral K - V . P - w L does not grow. Supports
-at rest are such a frame; without supports it is that of the momenta. Supports that move apart have none: they can do
-any work.
+Supports are partners, and what has infinite mass or moment, as far as joints act on it: on the angle alone of a body
+that only gears hold, on the place alone of one that is held at its centre. If they move as one rigid body, of velocity
+u(r) = V + w z x (r - c), what joints between it and the other bodies do in its frame is no work. The work of the
+supports then is sum p . u, of the impulses p = M (v1 - v0 - h a) of all joints on each body. It needs no impulse of a
+joint, whose works cancel only up to round-off if joints contradict one another. What is gained beside it, sum p . (v_m
+- u), is no work of supports, and is taken from the motion relative to the frame: Jacobi's integral K - V . P - w L does
+not grow. Supports at rest are such a frame; without supports it is that of the momenta. Supports that move apart have
+none: they can do any work.
 
 Over a part h bodies move by h v_m, so u is that at the mean place r_m, with 2 tan(w h/2)/h for w: then r1 - r0 = h
 u(r_m). Bodies that turn by chi itself (`BodyStep`) have w.
@@ -36,15 +37,27 @@ class Frame(NamedTuple):
 
 
 @inlined
+def acted_on(body: BodyStep, c: int) -> bool:
+    """Whether joints act on this coordinate of a body: those of angles leave its place alone."""
+    return bool((body.pushed if c < 2 else body.twisted) > 0)
+
+
+@inlined
 def supports(body: BodyStep, c: int) -> bool:
-    """Whether joints act on this unknown of a body, and do not change it."""
-    return bool(body.freedoms == 0 or (c < body.freedoms and not body.mobility[c] > 0.0))
+    """Whether joints act on this coordinate of a body, and do not change it."""
+    return acted_on(body, c) and not body.mobility[c] > 0.0
+
+
+@inlined
+def is_led(body: BodyStep, c: int) -> bool:
+    """Whether joints act on this coordinate of a body, and change it."""
+    return acted_on(body, c) and body.mobility[c] > 0.0
 
 
 @nonallocating
 def has_prescribed_motion(W: Workspace) -> bool:
-    """Whether what impulses do not change moves a part of the component: a partner, or a spin of infinite moment, which
-    joints of angles may hold others to although it is no unknown."""
+    """Whether anything moves in the component that impulses do not change: a partner, or a spin of infinite moment,
+    whether joints act on it or not."""
     for i in range(W.bodies):
         for c in range(3):
             if not W.J.LOCAL[i].mobility[c] > 0.0 and W.J.LOCAL[i].v0[c] != 0.0:
@@ -63,14 +76,14 @@ def has_ratio(W: Workspace) -> bool:
 
 @nonallocating
 def centre_of(W: Workspace) -> tuple[bool, float, float, float, float, float, float]:
-    """Whether the component hangs on a support that has a place, and the centre of mass (x, y) of its other bodies with
-    its velocity (vx, vy) and acceleration (ax, ay)."""
+    """Whether the component hangs on a support that has a place, and the centre of mass (x, y) of the bodies that its
+    joints push, with its velocity (vx, vy) and acceleration (ax, ay)."""
     mass = x = y = vx = vy = ax = ay = 0.0
     hangs = False
     for i in range(W.bodies):
         body = W.J.LOCAL[i]
         hangs = hangs or supports(body, 0)
-        if body.mobility[0] > 0.0:
+        if is_led(body, 0):
             m = 1.0 / body.mobility[0]
             mass += m
             x, y = x + m * body.pose[0], y + m * body.pose[1]
@@ -88,11 +101,11 @@ def spin_about(W: Workspace, x: float, y: float, vx: float, vy: float) -> tuple[
     turning, inertia = 0.0, 0.0
     for i in range(W.bodies):
         body = W.J.LOCAL[i]
-        if body.mobility[0] > 0.0:
+        if is_led(body, 0):
             m, dx, dy = 1.0 / body.mobility[0], body.pose[0] - x, body.pose[1] - y
             turning += m * (dx * (body.v0[1] - vy) - dy * (body.v0[0] - vx))
             inertia += m * (dx * dx + dy * dy)
-        if body.freedoms > 2 and body.mobility[2] > 0.0:
+        if is_led(body, 2):
             turning += body.v0[2] / body.mobility[2]
             inertia += 1.0 / body.mobility[2]
     return turning / inertia if inertia > 0.0 else 0.0, inertia
@@ -134,8 +147,8 @@ def account_frame(W: Workspace, h: float) -> None:
     x, y = F.x + 0.5 * h * F.vx, F.y + 0.5 * h * F.vy
     for i in range(W.bodies):
         body = W.J.LOCAL[i]
-        for c in range(body.freedoms):
-            if body.mobility[c] > 0.0:
+        for c in range(3):
+            if is_led(body, c):
                 speed = wide if body.cayley > 0 else F.spin
                 if c == 0:
                     speed = F.vx - wide * (body.pose[1] + 0.5 * body.way[1] - y)
@@ -161,8 +174,8 @@ def work_of_change(W: Workspace) -> float:
         return 0.0
     for i in range(W.bodies):
         body = W.J.LOCAL[i]
-        for c in range(body.freedoms):
-            if body.mobility[c] > 0.0:
+        for c in range(3):
+            if is_led(body, c):
                 work += (body.v0[c] - body.v_kept[c]) * velocity_in(F, body, c) / body.mobility[c]
     return work
 
@@ -176,7 +189,7 @@ def work_of_shift(W: Workspace) -> float:
         return 0.0
     for i in range(W.bodies):
         body = W.J.LOCAL[i]
-        if body.freedoms > 0 and body.mobility[0] > 0.0:
+        if is_led(body, 0):
             x, y = body.pose[0] - body.saved_pose[0], body.pose[1] - body.saved_pose[1]
             turning += (x * (body.v0[1] - F.vy) - y * (body.v0[0] - F.vx)) / body.mobility[0]
     return F.spin * turning
@@ -188,8 +201,8 @@ def relative_energy(W: Workspace, F: Frame, s: float) -> tuple[float, float]:
     if it vanishes."""
     local, total, work = W.J.LOCAL, 0.0, 0.0
     for i in range(W.bodies):
-        for c in range(local[i].freedoms):
-            if local[i].mobility[c] > 0.0:
+        for c in range(3):
+            if is_led(local[i], c):
                 rigid = velocity_in(F, local[i], c)
                 off = local[i].v0[c] - rigid
                 total += 0.5 * off * off / local[i].mobility[c]

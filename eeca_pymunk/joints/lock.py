@@ -19,16 +19,16 @@ from ..compiled import nonallocating
 from ..model.joint_steps import JointLedger
 from ..model.joints import Workspace
 from ..model.parameters.joints import JOINT_GAIN, LOCK_ITERATIONS
-from .frame import centre_of, frame_of, has_ratio, relative_energy, spin_about
+from .frame import acted_on, centre_of, frame_of, has_ratio, is_led, relative_energy, spin_about, supports
 
 
 @nonallocating
 def turns_freely(W: Workspace) -> bool:
-    """Whether no joint changes the angular momentum of the component: it has no partner, no body of infinite mass or
-    moment, and no gear whose torques, -T/ratio and T, are not opposite."""
+    """Whether no joint changes the angular momentum of the component: it has no support, and no gear whose torques,
+    -T/ratio and T, are not opposite."""
     for i in range(W.bodies):
         for c in range(3):
-            if not W.J.LOCAL[i].mobility[c] > 0.0:
+            if supports(W.J.LOCAL[i], c):
                 return False
     return not has_ratio(W)
 
@@ -50,7 +50,7 @@ def restore_momenta(W: Workspace, h: float, length: float, load: float) -> float
     mass = px = py = turning = size = arms = 0.0
     for i in range(W.bodies):
         body = local[i]
-        m = 1.0 / body.mobility[0]
+        m = 1.0 / body.mobility[0] if is_led(body, 0) else 0.0
         rx, ry, now = body.pose[0] - x, body.pose[1] - y, body.v0
         if h > 0.0:
             before, sx, sy = body.saved_velocity, body.saved_pose[0] - x, body.saved_pose[1] - y
@@ -64,7 +64,7 @@ def restore_momenta(W: Workspace, h: float, length: float, load: float) -> float
         turning += m * (rx * now[1] - ry * now[0]) - m * (sx * before[1] - sy * before[0])
         moved = m * (abs(now[0]) + abs(now[1]) + abs(before[0]) + abs(before[1]))
         size, arms = size + moved, arms + moved * (abs(rx) + abs(ry))
-        if body.freedoms > 2 and body.mobility[2] > 0.0:
+        if is_led(body, 2):
             turning += (now[2] - before[2] - spun) / body.mobility[2]
             arms += (abs(now[2]) + abs(before[2])) / body.mobility[2]
     was, inertia = spin_about(W, x, y, vx, vy)
@@ -72,11 +72,12 @@ def restore_momenta(W: Workspace, h: float, length: float, load: float) -> float
     arms, size = arms + h * load, size + (h * load / length if load > 0.0 else 0.0)
     if not (abs(px) + abs(py) > JOINT_GAIN * size or abs(spin) * inertia > JOINT_GAIN * arms):
         return 0.0
-    ux, uy = -px / mass, -py / mass
+    ux, uy = (-px / mass, -py / mass) if mass > 0.0 else (0.0, 0.0)
     for i in range(W.bodies):
-        local[i].v0[0] += ux - spin * (local[i].pose[1] - y)
-        local[i].v0[1] += uy + spin * (local[i].pose[0] - x)
-        local[i].v0[2] += spin if local[i].freedoms > 2 else 0.0
+        if is_led(local[i], 0):
+            local[i].v0[0] += ux - spin * (local[i].pose[1] - y)
+            local[i].v0[1] += uy + spin * (local[i].pose[0] - x)
+        local[i].v0[2] += spin if is_led(local[i], 2) else 0.0
     return mass * (ux * (vx + 0.5 * ux) + uy * (vy + 0.5 * uy)) + inertia * spin * (was + 0.5 * spin)
 
 
@@ -101,7 +102,7 @@ def move_rigidly(W: Workspace, h: float) -> None:
     accelerations, and of supports that move.
 
     r1 - r0 = chi z x r_m for the arms r about the common centre: with torques about r_m that work is exact. Bodies that
-    joints do not turn keep their own spin.
+    joints do not push, or turn, go their own way, or turn by their own spin.
     """
     local, bodies, F = W.J.LOCAL, W.bodies, frame_of(W)
     held, x, y, vx, vy, spin = F.hangs or F.turns, F.x, F.y, F.vx, F.vy, F.spin
@@ -113,32 +114,37 @@ def move_rigidly(W: Workspace, h: float) -> None:
     for _ in range(0 if held or has_ratio(W) else LOCK_ITERATIONS):
         torque, over = 0.0, 1.0 / (1.0 + 0.25 * chi * chi)
         for i in range(bodies):
-            if local[i].freedoms > 0 and local[i].mobility[0] > 0.0:
+            if is_led(local[i], 0):
                 m, dx, dy = 1.0 / local[i].mobility[0], local[i].pose[0] - x, local[i].pose[1] - y
                 mx, my = over * (dx - 0.5 * chi * dy), over * (dy + 0.5 * chi * dx)
                 torque += m * (mx * (local[i].acceleration[1] - ay) - my * (local[i].acceleration[0] - ax))
-            if local[i].freedoms > 2 and local[i].mobility[2] > 0.0:
+            if is_led(local[i], 2):
                 torque += local[i].acceleration[2] / local[i].mobility[2]
         after = spin + h * torque / inertia if inertia > 0.0 else 0.0
         chi = 0.5 * h * (spin + after)
     over = 1.0 / (1.0 + 0.25 * chi * chi)
     turned = 2.0 * math.atan(0.5 * chi)
     for i in range(bodies):
+        before, own = local[i].saved_velocity, local[i].acceleration
         local[i].mean[0], local[i].mean[1] = h * local[i].pose[0], h * local[i].pose[1]
         dx, dy = local[i].pose[0] - x, local[i].pose[1] - y
         mx, my = over * (dx - 0.5 * chi * dy), over * (dy + 0.5 * chi * dx)
         wx, wy = h * (vx + 0.5 * h * ax) - chi * my, h * (vy + 0.5 * h * ay) + chi * mx
+        rx, ry = 2.0 * mx - dx, 2.0 * my - dy
+        ux, uy = vx + h * ax - after * ry, vy + h * ay + after * rx
+        if not acted_on(local[i], 0):
+            ux, uy = before[0] + h * own[0], before[1] + h * own[1]
+            wx, wy = 0.5 * h * (before[0] + ux), 0.5 * h * (before[1] + uy)
         local[i].pose[0], local[i].pose[1] = local[i].pose[0] + wx, local[i].pose[1] + wy
         local[i].mean[0], local[i].mean[1] = local[i].mean[0] + 0.5 * h * wx, local[i].mean[1] + 0.5 * h * wy
         local[i].travel[0], local[i].travel[1] = local[i].travel[0] + wx, local[i].travel[1] + wy
-        rx, ry = 2.0 * mx - dx, 2.0 * my - dy
-        local[i].v0[0], local[i].v0[1] = vx + h * ax - after * ry, vy + h * ay + after * rx
-        if local[i].freedoms != 2:
+        local[i].v0[0], local[i].v0[1] = ux, uy
+        if is_led(local[i], 2):
             local[i].pose[2], local[i].v0[2] = local[i].pose[2] + turned, after
             local[i].travel[2] += chi
         else:
-            way = h * (local[i].saved_velocity[2] + 0.5 * h * local[i].acceleration[2])
+            way = h * (before[2] + 0.5 * h * own[2])
             local[i].pose[2] = local[i].saved_pose[2] + way
-            local[i].v0[2] = local[i].saved_velocity[2] + h * local[i].acceleration[2]
+            local[i].v0[2] = before[2] + h * own[2]
             local[i].travel[2] += way
         local[i].cos, local[i].sin = math.cos(local[i].pose[2]), math.sin(local[i].pose[2])

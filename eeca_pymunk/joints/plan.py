@@ -13,24 +13,10 @@ from ..arrays import IntArray
 from ..compiled import kernel
 from ..compiled.records import Rows, empty
 from ..model.bodies import BODIES, Body
-from ..model.joints import (
-    BOUNDED,
-    BOXED,
-    GEAR,
-    GROOVE,
-    INSTANTS,
-    MOTOR,
-    NOTHING,
-    ROTARY_SPRING,
-    SPRING,
-    STEPS,
-    Component,
-    ComponentBody,
-    Coupling,
-    Joint,
-)
-from ..model.parameters.joints import BOXES_DIRECT, CONDENSE_BAND
+from ..model.joints import GEAR, GROOVE, INSTANTS, NOTHING, STEPS, Component, ComponentBody, Coupling, Joint
+from ..model.parameters.joints import CONDENSE_BAND
 from ..newton.rows import row_count
+from .marks import hard, has_disc, mark_actions, mark_bounded
 from .ordering import order_rows, order_unknowns
 
 
@@ -163,46 +149,11 @@ def make_plan(
         order_rows(component, member, link, s)
         cost = component[s].unknowns * component[s].band ** 2
         pays = 0 < component[s].dual_size * component[s].dual_band ** 2 <= cost
+        mark_actions(joint, member, link, component, s)
         component[s].boxes = mark_bounded(joint, link, component, s)
         component[s].dual_for = NOTHING if not pays else STEPS if hard(joint, link, component, s) else INSTANTS
         component[s].loops = cycles(bodies, joint, link, member, component, s)
     return count
-
-
-@kernel
-def mark_bounded(joint: Rows[Joint], link: Rows[Coupling], component: Rows[Component], s: int) -> int:
-    """Mark the joints of component s whose impulses are bounded. Their rows are boxed if they are few
-    (`..newton.boxes`); how many rows are boxed."""
-    first, end, bounded = component[s].first_joint, component[s].end_joint, 0
-    for k in range(first, end):
-        acts = joint[link[k].joint].bounded != 0 and link[k].kind not in (SPRING, ROTARY_SPRING)
-        link[k].bounded = BOUNDED if link[k].kind == MOTOR or acts else 0
-        bounded += link[k].rows if link[k].bounded != 0 else 0
-    if bounded > BOXES_DIRECT:
-        return 0
-    for k in range(first, end):
-        link[k].bounded = BOXED if link[k].bounded != 0 else 0
-    return bounded
-
-
-@kernel
-def has_disc(joint: Rows[Joint], link: Rows[Coupling], component: Rows[Component], s: int) -> bool:
-    """Whether component s has a joint with two bounded impulses: their disc couples both, which condensed systems
-    cannot represent."""
-    for k in range(component[s].first_joint, component[s].end_joint):
-        if joint[link[k].joint].bounded != 0 and link[k].rows == 2:
-            return True
-    return False
-
-
-@kernel
-def hard(joint: Rows[Joint], link: Rows[Coupling], component: Rows[Component], s: int) -> bool:
-    """Whether all joints of component s hold exactly, including those with limits."""
-    for k in range(component[s].first_joint, component[s].end_joint):
-        j = link[k].joint
-        if link[k].rows == 0 or joint[j].kind == MOTOR or joint[j].bounded != 0:
-            return False
-    return True
 
 
 @kernel

@@ -44,6 +44,8 @@ class BodyStep(Record):
     travel: Annotated[FloatArray, 3]  # `shift` and the sum of `way` over all parts of the step
     mean: Annotated[FloatArray, 2]  # integral of x, y over the parts' time: a constant force acts at that over h
     cayley: int  # as in `ComponentBody`
+    pushed: int
+    twisted: int
     column: int
     freedoms: int
     first: int

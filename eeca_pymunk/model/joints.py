@@ -112,6 +112,8 @@ class ComponentBody(Record):
     column: int  # first unknown of the body
     freedoms: int  # number of its unknowns: 0 (joints cannot move it), 2 (joints do not turn it) or 3
     cayley: int  # 1 if the body turns by 2 atan(chi/2), see `BodyStep`
+    pushed: int  # 1 if joints exert forces on it, else they act on its angle alone
+    twisted: int  # 1 if they exert torques
     first: int  # first joint with impulses on it, as `Coupling.following`
 
 

@@ -25,9 +25,8 @@ def passage(room: float, u: float, g: float) -> float:
     """Least time in which a point of speed u and acceleration g covers a way `room`: u t + g t^2 / 2 = room."""
     if room <= 0.0:
         return 0.0
-    if u + g == 0.0:
-        return math.inf
-    return 2.0 * room / (u + math.sqrt(u * u + 2.0 * g * room))
+    speeds = u + math.sqrt(u * u + 2.0 * g * room)
+    return 2.0 * room / speeds if speeds > 0.0 else math.inf
 
 
 @inlined
@@ -38,10 +37,10 @@ def straight_exit(dx: float, dy: float, vx: float, vy: float, m: float) -> float
     if m <= 0.0 or c <= 0.0:
         return 0.0
     squared = vx * vx + vy * vy
-    if squared == 0.0:
-        return math.inf
     b = dx * vx + dy * vy
     root = math.sqrt(b * b + squared * c)
+    if root == 0.0:
+        return math.inf  # at rest, or so slow that squares underflow
     return float((root - b) / squared if b <= 0.0 else c / (root + b))
 
 

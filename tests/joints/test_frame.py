@@ -111,3 +111,35 @@ def test_the_work_of_a_support_is_the_same_by_impulses_and_by_the_balance_of_mom
         part = stepper.event_loop.joints.PART_LEDGER
         assert abs(part.supports) > 1e-3
         assert part.carried == pytest.approx(part.supports, rel=1e-11)
+
+
+@pytest.mark.parametrize("driver", ["infinite moment", "kinematic"])
+@pytest.mark.parametrize(("spin", "dt", "off"), [(3.0, 1 / 60, 1e-3), (10.0, 1 / 60, 0.01), (3.0, 0.1, 0.1)])
+def test_what_a_gear_alone_holds_to_a_spin_keeps_its_momentum_and_gets_no_energy_but_by_its_torque(
+    driver: str, spin: float, dt: float, off: float
+) -> None:
+    """Two bodies on a pivot, with a limit and a gear that contradict each other: no step of theirs converges. The place
+    of what turns them counts for nothing: in a frame of its spin about any point that moves with their centre, Jacobi's
+    integral does not rise, but for torques, by (w dt)²/12 of their work. Their momentum is 0."""
+    space, far = pymunk.Space(), pymunk.Body(1.0, math.inf)
+    if driver == "kinematic":
+        far.body_type = pymunk.Body.KINEMATIC
+    far.position, far.angular_velocity = (-5.0, 0.0), spin
+    a, b = pymunk.Body(1.0, 0.3), pymunk.Body(0.5, 0.1)
+    b.position = 1.0, 0.0
+    space.add(far, a, b, pymunk.GearJoint(far, a, 0.0, 1.0), pymunk.PivotJoint(a, b, (0.5, 0.0)))
+    space.add(pymunk.RotaryLimitJoint(a, b, -0.5, 0.0), pymunk.GearJoint(a, b, off, 1.0))
+    stepper, last = ep.EECA(space), 0.0
+    for _ in range(40):
+        report = stepper.step(dt)
+        momentum = a.mass * a.velocity + b.mass * b.velocity
+        scale = a.mass * a.velocity.length + b.mass * b.velocity.length
+        assert momentum.length <= 1e-11 * scale
+        kinetic, turning = ep.measure(space).kinetic, 0.0
+        for body in (a, b):
+            turning += body.mass * body.position.cross(body.velocity) + body.moment * body.angular_velocity
+        now = kinetic - spin * turning
+        assert now - last <= (1e-9 + (spin * dt) ** 2 / 12.0) * (kinetic + abs(spin * turning))
+        assert abs(report.ledger.residual) <= 1e-11 * (kinetic + abs(spin * turning))
+        assert far.velocity == (0.0, 0.0)
+        last = now

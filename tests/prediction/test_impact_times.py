@@ -9,6 +9,7 @@ import pytest
 
 from eeca_pymunk.geometry.gap import gap
 from eeca_pymunk.prediction.impact_times import time_of_impact
+from eeca_pymunk.prediction.next_event import exit_time, passage, straight_exit
 from eeca_pymunk.prediction.roots import disks_meet, falling_root
 from tests.packed import Thing, World, disk, hull
 from tests.prediction.forecasts import UNITS, check_by_sampling, first_falling_root, gap_now, next_impact, static
@@ -174,3 +175,12 @@ def test_thrown_disk_that_passes_beside_the_side_it_first_enters() -> None:
     post = static([(-0.1, -5.0), (0.1, -5.0), (0.1, 0.0), (-0.1, 0.0)], 0.0)
     ball = Thing(disk(0.05), (2.0, 0.06, 0.0), (-1.0, -0.3, 0.0), (0.0, 0.31, 0.0))
     assert check_by_sampling(World([ball], post), 0, 1, 4.0) == "meets"
+
+
+@pytest.mark.parametrize("tiny", [0.0, 5e-324, 1e-161, 1e-155, 1e-100])
+def test_what_is_too_slow_for_its_square_leaves_no_circle(tiny: float) -> None:
+    """An exit at once, again and again, would spend the work of the step, and time would stand still."""
+    assert straight_exit(0.5, 0.0, 0.0, tiny, 1.0) > 1e90
+    assert straight_exit(-0.5, 0.1, tiny, -tiny, 1.0) > 1e90
+    assert exit_time(0.5, 0.0, 0.0, tiny, tiny, 1.0) > 1e40
+    assert passage(1e-3, 0.0, tiny) > 1e40
