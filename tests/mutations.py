@@ -82,7 +82,7 @@ MUTATIONS = (
              "joints/test_bounds.py", "a_few_times"),
     Mutation("limits: none takes part in an impact", "impacts/joint_impact.py",
              "or not activate_limits(A, J, block, groups, t)", "or True", "impacts/test_joint_impact.py", "a_wall"),
-    Mutation("impacts: joints of bounded force hold", "joints/plan.py",
+    Mutation("impacts: joints of bounded force hold", "joints/marks.py",
              "BOUNDED if link[k].kind == MOTOR or acts else 0", "0", "jointed/test_still.py", "flies_into"),
     Mutation("motors: sweeps alone", "newton/boxes.py", "if turn + 1 < parameters.BOX_ROUNDS:", "if turn < 0:",
              "jointed/test_bounded.py", "long_arm"),
