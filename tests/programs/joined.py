@@ -107,8 +107,8 @@ def reach(joint: pymunk.Constraint) -> float:
 def may_contradict(joint: pymunk.Constraint) -> bool:
     """Whether this component has two joints that hold exactly on what joints do not move, or do not turn, of which the
     program turns or moves something: others may not follow, as a limit between what two gears turn, or between what a
-    ratchet turns and a body of infinite moment. A gear with another ratio than 1, and another such joint, fix the
-    angles of both bodies that they connect."""
+    ratchet turns and a body of infinite moment; so do two joints of points between this and another one. A gear with
+    another ratio than 1, and another such joint, fix the angles of both bodies that they connect."""
     seen = component(joint)
     springs = pymunk.DampedSpring, pymunk.DampedRotarySpring
     angles = pymunk.GearJoint, pymunk.RotaryLimitJoint, pymunk.RatchetJoint
@@ -123,6 +123,8 @@ def may_contradict(joint: pymunk.Constraint) -> bool:
             led, fixed = led + (held if moves else 0), fixed + held
         elif math.isinf(body.moment):
             fixed += sum(body in (c.a, c.b) and isinstance(c, angles) for c in exact)
+            ends = [frozenset((c.a, c.b)) for c in exact if body in (c.a, c.b) and not isinstance(c, angles)]
+            fixed += len(ends) - len(set(ends))
     return led > 0 and fixed > 1
 
 
