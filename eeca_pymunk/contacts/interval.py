@@ -135,30 +135,31 @@ def begin_contacts(A: Scene, isle: Island, contacts: IslandContacts, n: int, h: 
 
 @kernel
 def find_rest(
-    A: Scene, isle: Island, contacts: IslandContacts, n: int, h: float, begun: Begun, rest_speed: float
+    A: Scene, isle: Island, contacts: IslandContacts, n: int, h: float, begun: Begun, rest_speed: float, hold: bool
 ) -> bool:  # fmt: skip
     """Test an island with contacts for static forces (`.statics`). If they exist, V is set to 0, and the caller has to
-    account its energy; they are the impulses of the island, and are remembered."""
+    account its energy; if they also `hold` the bodies, they are the impulses of the island, and are remembered."""
     m, V, OUT = begun.m, isle.V, contacts.OUT
     problem = Problem(contacts.ROWS, isle.IM, isle.II, isle.POSE, n, m)
     rates(contacts.ROWS, V, m)
     target(contacts.ROWS, m, isle.ACC, begun.EXPECTED, begun.pull, h)
     found, OUT[0].direct = find_static_forces(
-        problem, contacts.L[:m], V, V + h * isle.ACC, isle.FELT, contacts.VN, begun.pull * h, rest_speed
+        problem, contacts.L[:m], V, V + h * isle.ACC, isle.FELT, contacts.VN, begun.pull * h, rest_speed, hold
     )
     if found:
         OUT[0].at_rest = 1
-        remember_loads(A, contacts.ROWS, contacts.L, m, h)
+        if hold:
+            remember_loads(A, contacts.ROWS, contacts.L, m, h)
     return found
 
 
 @kernel
 def test_statics(
-    A: Scene, isle: Island, contacts: IslandContacts, n: int, h: float, rest_speed: float
+    A: Scene, isle: Island, contacts: IslandContacts, n: int, h: float, rest_speed: float, hold: bool
 ) -> int:  # fmt: skip
     """`find_rest` at the start of an interval h. Returns the number of contacts; 0 without static forces."""
     begun = begin_contacts(A, isle, contacts, n, h, 0.0)
-    return begun.m if begun.m > 0 and find_rest(A, isle, contacts, n, h, begun, rest_speed) else 0
+    return begun.m if begun.m > 0 and find_rest(A, isle, contacts, n, h, begun, rest_speed, hold) else 0
 
 
 @kernel
@@ -186,7 +187,7 @@ def step_island(
     begun = begin_contacts(A, isle, contacts, n, h, least)
     m, slow, fast, pull = begun.m, begun.slow, begun.fast, begun.pull
     if m > 0:
-        if rest_speed > 0.0 and find_rest(A, isle, contacts, n, h, begun, rest_speed):
+        if rest_speed > 0.0 and find_rest(A, isle, contacts, n, h, begun, rest_speed, True):
             return m
         rates(ROWS, isle.V, m)
         target(ROWS, m, isle.ACC, begun.EXPECTED, pull, h)

@@ -8,7 +8,9 @@ others hold it from then on,
     v / N + h a + M^-1 (G^T lam + T^T beta) = 0   and   h a + M^-1 (G^T lam + T^T beta) = 0.
 
 Bodies below REST_CANDIDATE |a| h are tested, and N of a body is at most REST_CANDIDATE |a| h / |v|, so that it stops no
-farther than REST_CANDIDATE |a| h^2 / 2 from where it would be.
+farther than REST_CANDIDATE |a| h^2 / 2 from where it would be. Faster bodies, up to IMPACT_SPEED |a| h below which
+contacts persist, may only be frozen (without `hold`): the first equilibrium ends their motion, and the next solve shows
+whether they stay.
 """
 
 from __future__ import annotations
@@ -52,13 +54,14 @@ def set_motionless(ROWS: Rows[Row], V: FloatArray, n: int, m: int, close: float)
 @kernel
 def find_static_forces(
     problem: Problem, L: FloatArray, V: FloatArray, FREE: FloatArray, FELT: FloatArray, VN: FloatArray, change: float,
-    rest_speed: float,
+    rest_speed: float, hold: bool,
 ) -> tuple[bool, int]:  # fmt: skip
-    """Search static forces that end the motion V (k, 3) of the n bodies of a problem, and others that hold them then.
+    """Search static forces that end the motion V (k, 3) of the n bodies of a problem, and, if `hold`, hold them then.
 
     Args:
         problem, L: the m contacts and initial impulses (m, 2); if forces are found, targets and velocities of its rows
-            become 0, and L the impulses over h that hold the bodies from then on, without those that stop them.
+            become 0, and L the impulses over h that hold the bodies from then on, without those that stop them; without
+            `hold` both.
         V: becomes 0, except for free spins, if forces are found.  FREE: (k, 3) velocities at the end without impulses.
         FELT: (k,) the lengths by which spins count, see `..model.islands`.
         VN: (k, 3) out, velocities at the end; if nothing is found, a motion against which no contact acts, of any size.
@@ -86,6 +89,8 @@ def find_static_forces(
         if not found:
             copy(VN, LEFT)
             return False, factors
+        if not hold:
+            break
     for i in range(n):
         for c in range(3 if FELT[i] > 0.0 else 2):
             V[i, c] = 0.0

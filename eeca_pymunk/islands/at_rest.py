@@ -207,20 +207,26 @@ def report_at_rest(A: Scene, c: int) -> None:
 
 
 @nonallocating
+def stop(A: Scene, i: int) -> None:
+    """Set the velocity of body i to 0, apart from a free spin; its kinetic energy is lost to restitution."""
+    BODY = A.BODY
+    A.PAR.restitution += kinetic(BODY, i)
+    BODY[i].vx, BODY[i].vy = 0.0, 0.0
+    if spins_freely(A, i):
+        A.PAR.restitution -= kinetic(BODY, i)
+    else:
+        BODY[i].spin = 0.0
+    A.STATE[i].version += 1
+
+
+@nonallocating
 def put_to_rest(A: Scene, root: int) -> None:
-    """At the start of a step: put an island to rest. Its bodies stop, apart from free spins; their kinetic energy is
-    lost to restitution."""
+    """At the start of a step: put an island to rest. Its bodies stop, apart from free spins."""
     BODY, MEMBER = A.BODY, A.MEMBER
     MEMBER[root].new_forces = 1
     i = root
     while i >= 0:
-        A.PAR.restitution += kinetic(BODY, i)
-        BODY[i].vx, BODY[i].vy = 0.0, 0.0
-        if spins_freely(A, i):
-            A.PAR.restitution -= kinetic(BODY, i)
-        else:
-            BODY[i].spin = 0.0
-        A.STATE[i].version += 1
+        stop(A, i)
         BODY[i].ax, BODY[i].ay, BODY[i].angular = 0.0, 0.0, 0.0
         MEMBER[i].rest, BODY[i].due, A.RESTING[i].rest_timer = AT_REST, 0.0, -float(REST_RETRY)
         i = MEMBER[i].following

@@ -3,6 +3,10 @@
 Slow bodies are tested for static forces (`..contacts.statics`) under the contact forces of the others, which are solved
 first with the slow ones as fixed. If there are none, the island is solved as a whole, and the next test of these bodies
 is postponed.
+
+In large islands a few bodies always vibrate, and residuals of truncated solves move the others; both wake what is at
+rest beside them. Therefore a large island whose bodies are all slow is frozen first: if static forces hold it, they
+stop, and these forces are the start of the next solve. Losses within a step would end such small motions as well.
 """
 
 from __future__ import annotations
@@ -15,10 +19,11 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..contacts.interval import make_contacts, test_statics
 from ..model.bodies import AT_REST, AWAKE
-from ..model.parameters.rest import MOVING_SHARE
+from ..model.parameters.intervals import IMPACT_SPEED, LARGE_ISLAND
+from ..model.parameters.rest import MOVING_SHARE, PARTIAL_REST_FACTORS_STEP, REST_RETRY
 from ..model.scene import Scene
 from .accounting import close_interval
-from .at_rest import put_to_rest
+from .at_rest import put_to_rest, stop
 from .candidates import pairs_within
 from .intervals import begin_interval, set_lifts
 from .local import bodies_of, clear_places, local_island, open_interval, set_places
@@ -40,19 +45,22 @@ def make_island(A: Scene, MINE: IntArray) -> None:
 
 
 @kernel
-def test_rest(A: Scene, MINE: IntArray, V0: FloatArray, with_supports: int) -> bool:
+def test_rest(A: Scene, MINE: IntArray, V0: FloatArray, with_supports: int, freezing: bool) -> bool:
     """Test whether static forces hold an island; if so put it to rest, else postpone its next test. Returns whether
     they do.
 
     Args:
         MINE: its bodies (n,).  V0: (n, 3) their velocities, which the forces have to end too.
         with_supports: number of bodies, with those of islands that support it.
+        freezing: True to test without the contacts of other islands; bodies then stop, but remain awake, and may be
+            tested for rest at once.
     """
     BODY, COUNT, dt, root, n = A.BODY, A.COUNT, A.PAR.dt, A.STATE[MINE[0]].island, len(MINE)
     set_places(A, MINE)
     found = pairs_within(A, root, 0.0, A.PAR.dt, True, MINE)
     LOAD = np.zeros((n, 3))
-    add_loads(A, root, False, LOAD)
+    if not freezing:
+        add_loads(A, root, False, LOAD)
     p = len(found)
     isle = local_island(A, MINE, found, 0.0)
     clear_places(A, MINE)
@@ -65,13 +73,18 @@ def test_rest(A: Scene, MINE: IntArray, V0: FloatArray, with_supports: int) -> b
     if p == 0 or COUNT.pushes + 2 * p > A.PUSHED.shape[0] or not most > 0.0:
         postpone_test(A, MINE)
         return False
-    rest_speed = candidate_speed(with_supports) * A.PAR.pulled / most
+    rest_speed = (IMPACT_SPEED if freezing else candidate_speed(with_supports)) * A.PAR.pulled / most
     contacts = make_contacts(p, len(isle.WHO))
-    m = test_statics(A, isle, contacts, n, dt, rest_speed)
+    m = test_statics(A, isle, contacts, n, dt, rest_speed, not freezing)
     COUNT.direct += contacts.OUT[0].direct
     if contacts.OUT[0].at_rest == 0:
         postpone_test(A, MINE)
         return False
+    if freezing:
+        for q in range(n):
+            stop(A, MINE[q])
+            A.RESTING[MINE[q]].rest_timer = 1.0
+        return True
     open_interval(A, root, isle, contacts, contacts.VN, m, 0.0, dt)
     A.MEMBER[root].with_supports = with_supports
     for q in range(n):
@@ -81,6 +94,18 @@ def test_rest(A: Scene, MINE: IntArray, V0: FloatArray, with_supports: int) -> b
     set_lifts(A, MINE, np.zeros((n, 6)))
     put_to_rest(A, root)
     return True
+
+
+@kernel
+def freeze(A: Scene, MINE: IntArray) -> None:
+    """Stop the bodies MINE of a large island if all are slow and static forces hold them. They remain awake."""
+    n, V0 = len(MINE), np.empty((len(MINE), 3))
+    for q in range(n):
+        if speed(A, MINE[q]) > IMPACT_SPEED * A.PAR.pulled * A.PAR.dt:
+            return
+        body = A.BODY[MINE[q]]
+        V0[q, 0], V0[q, 1], V0[q, 2] = body.vx, body.vy, body.spin
+    test_rest(A, MINE, V0, n, True)
 
 
 @nonallocating
@@ -108,6 +133,11 @@ def rests_in_part(A: Scene, root: int) -> bool:
     if not lossy(A, root):
         return False
     MINE, STAND, MOVE = bodies_of(A, root), np.empty(n, np.int64), np.empty(n, np.int64)
+    factors = A.COUNT.direct
+    if n >= LARGE_ISLAND and A.PAR.stamp % REST_RETRY == 0.0:
+        freeze(A, MINE)
+        if A.COUNT.direct > factors + PARTIAL_REST_FACTORS_STEP:
+            return False
     V0 = np.empty((n, 3))
     stand = split_slow(A, MINE, STAND, MOVE)
     if stand == 0 or n - stand > max(MOVING_SHARE * n, 1.0):
@@ -123,7 +153,7 @@ def rests_in_part(A: Scene, root: int) -> bool:
         begin_interval(A, MOVE[0], 0.0)
     for q in range(stand):
         MEMBER[STAND[q]].rest = AWAKE
-    if test_rest(A, STAND[:stand], V0, n):
+    if test_rest(A, STAND[:stand], V0, n, False):
         return True
     for q in range(stand):
         body = BODY[STAND[q]]

@@ -12,7 +12,7 @@ ELASTIC_REST_ON = accuracy(0.001, "of |a| dt", "Speed below which an elastic con
 SOLVES_BEFORE_HASTE = heuristic(3, "solves of every body in a step",
     "Work after which large islands are neither hit nor joined in the step.")
 IMPACT_SPEED = accuracy(2.0, "of |a| h",
-    "Approach speed from which a contact that closes in an interval is an impact.")
+    "Approach speed from which a contact that closes in an interval is an impact; what is slower may freeze.")
 SAGITTA = accuracy(0.01, "of the smaller body",
     "How far points of a turning wall leave their chord in one interval with joints. Larger: jointed bodies creep on "
     "such walls.")

@@ -22,6 +22,8 @@ SUPPORT_FACTORS = work(4, "factorisations",
 SUPPORT_ROUNDS = work(8, "rounds", "Rounds in which support forces propagate to the islands below.")
 MOVING_SHARE = heuristic(0.1, "of the bodies",
     "Part of an island, or one body, that may move while the rest of it is at rest, as a disk on a plank.")
+PARTIAL_REST_FACTORS_STEP = work(8, "factorisations",
+    "Factorisations of a freeze after which its island is not tested for partial rest in the step.")
 SLEEP_SPEED = accuracy(1e-06, "of |g| dt", "Speed of a body that counts as at rest and may fall asleep.")
 WAKE_ALL = work(4, "attempts",
     "Attempts at a step, of which each has touched bodies that slept and were woken, after which all bodies wake.")
