@@ -17,6 +17,7 @@ from ..arrays import FloatArray
 from ..compiled import kernel
 from ..contacts.targets import target
 from ..model.contacts import Bounded, JointedProblem
+from ..model.joint_steps import LONG
 from ..model.joints import Joints
 from ..model.parameters import joints
 from ..model.parameters.events import RESOLUTION
@@ -61,7 +62,7 @@ def solve_contacts(
 
     Each iteration steps the components under L, and ends if their velocities agree with FORESEEN, those that the
     contacts' laws gave before; else it solves these laws with the columns, for L and FORESEEN. Columns are computed
-    again in every CHORD-th iteration, else updated (`secant`). A long interval (PROGRESS.long) is given up where a
+    again in every CHORD-th iteration, else updated (`secant`). A long interval (PROGRESS.length) is given up where a
     component gives way or is not stepped as a whole, or CHORD iterations have not come near; of many contacts only if
     the step has work for many shorter intervals. Else iterations end in five ways:
 
@@ -105,7 +106,7 @@ def solve_contacts(
         build = outer % joints.CHORD == 0
         advance(A, J, interval, L, B, build, FORESEEN if outer > 0 else UNKNOWN)
         payable = RESOLUTION * (J.PROGRESS.effort - begun) <= J.PROGRESS.budget  # many shorter intervals
-        if J.PROGRESS.long > 0 and (exactly or payable) and some_refused(J, groups):
+        if J.PROGRESS.length == LONG and (exactly or payable) and some_refused(J, groups):
             J.PROGRESS.near = 0.0
             return GIVEN_UP
         bent = align(interval) if free else 0.0
@@ -129,7 +130,7 @@ def solve_contacts(
             if off < best:
                 best, better = off, outer
                 copy(LEAST, L)
-            if J.PROGRESS.long > 0 and exactly and outer >= joints.CHORD and off > joints.OUTER_FAR * scale:
+            if J.PROGRESS.length == LONG and exactly and outer >= joints.CHORD and off > joints.OUTER_FAR * scale:
                 if payable:
                     return GIVEN_UP
             if exactly and outer >= joints.CHORD and (off > scale or outer - better > joints.CHORD):

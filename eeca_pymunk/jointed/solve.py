@@ -13,6 +13,7 @@ from ..contacts.memory import remember_loads
 from ..islands import local
 from ..islands.candidates import pairs_within
 from ..islands.membership import lossy
+from ..model.joint_steps import FINAL, LONG, SHORT
 from ..model.joints import Joints
 from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, REACH_ROUND_OFF, UNSOLVED_PART
@@ -84,7 +85,7 @@ def excess_length(
     Args:
         solved: whether contacts are.  last: whether no other attempt follows, see `try_jointed`.
     """
-    far = 2.0 if not solved and J.PROGRESS.long > 0 and J.PROGRESS.effort > J.PROGRESS.share else 0.0
+    far = 2.0 if not solved and J.PROGRESS.length == LONG and J.PROGRESS.effort > J.PROGRESS.share else 0.0
     for s in interval.groups.JOINTED:
         if gave_way(J, s):
             far = 2.0
@@ -98,7 +99,7 @@ def excess_length(
     # A motion that is no solution does not tell how long the interval may be. Contacts that are not solved in a long
     # interval may be in a short one, if the step has work for many of these.
     hard = interval.m <= COLUMN_CONTACTS and RESOLUTION * effort <= J.PROGRESS.budget
-    return UNSOLVED_PART if hard and J.PROGRESS.long > 0 else min(far, UNSOLVED_PART)
+    return UNSOLVED_PART if hard and J.PROGRESS.length == LONG else min(far, UNSOLVED_PART)
 
 
 @kernel
@@ -142,13 +143,13 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     if p > 0:
         m = gather_contacts(A, isle, contacts, isle.POSE + 0.5 * h * isle.V, REACH, h, k == n)
     interval = Interval(isle, groups, ROWS, motion, make_columns(groups, ROWS, m), m, n, t, h)
-    outcome, before, J.PROGRESS.shorter = SOLVED, J.PROGRESS.effort, int(not last)
+    outcome, before = SOLVED, J.PROGRESS.effort
+    if not last:  # contacts of a short interval are solved more easily than those of components stepped in parts
+        J.PROGRESS.length = LONG if m > 0 and h * UNSOLVED_PART**2 > A.PAR.dt / RESOLUTION else SHORT
     J.PROGRESS.share = before + INTERVAL_SHARE * max(work_left(A, J), 0.0)
     if m > 0:
         recall(A, ROWS, m, h, m > COLUMN_CONTACTS, L, EXPECTED)
         owed = max(-A.RESTING[root].lost, 0.0)
-        # Contacts of a short interval are solved more easily than those of components that are stepped in parts.
-        J.PROGRESS.long = int(not last and h * UNSOLVED_PART**2 > A.PAR.dt / RESOLUTION)
         outcome = solve_contacts(A, J, interval, L, EXPECTED, slow, fast, pull, owed)
         if outcome == SOLVED or m > COLUMN_CONTACTS:  # impulses of few contacts that are no solution are a bad guess
             remember_loads(A, ROWS, L, m, h)
@@ -159,7 +160,7 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     solved, far = outcome == SOLVED, UNSOLVED_PART
     if outcome != GIVEN_UP:
         far = excess_length(A, J, interval, L, root, J.PROGRESS.effort - before, solved, last)
-    J.PROGRESS.long = J.PROGRESS.shorter = 0
+    J.PROGRESS.length = FINAL
     if far > INTERVAL_RETRY and not last:
         if work_left(A, J) < 0.0:
             far = max(far, RESOLUTION)  # few more attempts follow

@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 from ..compiled import inlined, nonallocating
 from ..model.joint_steps import BodyStep
-from ..model.joints import GEAR, Workspace
+from ..model.joints import FORCES_ON, GEAR, TORQUES_ON, Workspace
 
 
 class Frame(NamedTuple):
@@ -39,7 +39,7 @@ class Frame(NamedTuple):
 @inlined
 def acted_on(body: BodyStep, c: int) -> bool:
     """Whether joints act on this coordinate of a body: those of angles leave its place alone."""
-    return bool((body.pushed if c < 2 else body.twisted) > 0)
+    return bool(body.acted & (FORCES_ON if c < 2 else TORQUES_ON))
 
 
 @inlined

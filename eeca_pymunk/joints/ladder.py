@@ -7,7 +7,7 @@ parts, and the compliances of the joints over (h/7)^2.
 
 Joints that contradict one another (`contradiction`) become elastic at once: all rungs before would fail alike. Where a
 shorter interval is tried instead, exact joints take the step as a whole or not at all if the interval is long
-(PROGRESS.long), or if the budget does not pay RESOLUTION times for what the rungs before have taken. The work of all
+(PROGRESS.length), or if the budget does not pay RESOLUTION times for what the rungs before have taken. The work of all
 rungs together is bounded; without work for more than LEAST_SOLUTIONS the order is 2. Elastic joints keep at least the
 same compliance in later steps until they are closed.
 """
@@ -18,7 +18,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import nonallocating
-from ..model.joint_steps import ELASTIC, EXACT, HALVED, LINEAR
+from ..model.joint_steps import ELASTIC, EXACT, FINAL, HALVED, LINEAR, LONG
 from ..model.joints import GIVES_WAY, ROTARY_SPRING, SPRING, Workspace
 from ..model.parameters import joints
 from ..model.parameters.events import RESOLUTION
@@ -120,8 +120,8 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
         forget_parts(W)
     progress.most_epsilon, begun = joints.REDUNDANT_MOST, progress.effort
     while rung < RUNGS and not progress.effort > progress.limit:
-        dear = progress.shorter > 0 and RESOLUTION * (progress.effort - begun) > progress.budget
-        if (progress.long > 0 or dear) and WHOLE_STEP < rung < ELASTIC_RUNG:
+        dear = progress.length > FINAL and RESOLUTION * (progress.effort - begun) > progress.budget
+        if (progress.length == LONG or dear) and WHOLE_STEP < rung < ELASTIC_RUNG:
             break
         parts, compliance = int(PARTS_ON[rung]), compliance_on(rung, h, yields, first.compliance)
         clear_ledger(W.J.PART_LEDGER)

@@ -7,11 +7,13 @@ from ..compiled.records import Rows
 from ..model.joints import (
     BOUNDED,
     BOXED,
+    FORCES_ON,
     GEAR,
     GROOVE,
     MOTOR,
     ROTARY_SPRING,
     SPRING,
+    TORQUES_ON,
     Component,
     ComponentBody,
     Coupling,
@@ -26,15 +28,15 @@ def mark_actions(
 ) -> None:
     """Mark the bodies of component s that its joints push, and those on which they exert torques."""
     for i in range(component[s].first_body, component[s].end_body):
-        member[i].pushed = member[i].twisted = 0
+        member[i].acted = 0
     for k in range(component[s].first_joint, component[s].end_joint):
         j, kind = link[k].joint, link[k].kind
         for end in range(2):
             one = member[component[s].first_body + link[k].body[end]]
             anchor = joint[j].anchor_a if end == 0 else joint[j].anchor_b
             off = anchor[0] != 0.0 or anchor[1] != 0.0 or (kind == GROOVE and end == 0)
-            one.pushed = max(one.pushed, 1 if kind < GEAR else 0)
-            one.twisted = max(one.twisted, 1 if kind >= GEAR or off else 0)
+            one.acted |= FORCES_ON if kind < GEAR else 0
+            one.acted |= TORQUES_ON if kind >= GEAR or off else 0
 
 
 @kernel

@@ -44,8 +44,7 @@ class BodyStep(Record):
     travel: Annotated[FloatArray, 3]  # `shift` and the sum of `way` over all parts of the step
     mean: Annotated[FloatArray, 2]  # integral of x, y over the parts' time: a constant force acts at that over h
     cayley: int  # as in `ComponentBody`
-    pushed: int
-    twisted: int
+    acted: int
     column: int
     freedoms: int
     first: int
@@ -96,8 +95,7 @@ class Progress(Record):
     share: float  # of `effort`, at which an interval gives up
     limit: float  # of `effort`, at which the step of a component gives up what its ladder has before linear rows
     most_epsilon: float  # largest term on the diagonal of redundant rows (`..newton.solve`)
-    shorter: int  # 1 if an interval with contacts may be shorter
-    long: int  # 1 if so, and it is long: no component is stepped in parts in it
+    length: int  # of an interval with contacts: FINAL, SHORT or LONG
 
 
 class Parts(Record):
@@ -147,3 +145,6 @@ class JointLedger(Record):
 # some part; rows of the start held at mid-velocity in some part (energy conserved, joints to O(h^2)), or all bodies
 # moved as one (`..joints.lock.move_rigidly`).
 EXACT, HALVED, ELASTIC, LINEAR = 0, 1, 2, 3
+# Length of an interval with contacts: no other attempt follows; a shorter one may, also for a LONG one, in which no
+# component is stepped in parts.
+FINAL, SHORT, LONG = 0, 1, 2

@@ -103,6 +103,7 @@ class Component(Record):
 # Linear systems: of bodies and rows; of bodies alone (`..newton.condensed`); of rows alone (`..newton.dual`).
 WHOLE, CONDENSED, DUAL = 0, 1, 2
 NOTHING, INSTANTS, STEPS = 0, 1, 2  # uses of a dual one: `Component.dual_for`
+FORCES_ON, TORQUES_ON = 1, 2  # bits: what joints exert on a body
 
 
 class ComponentBody(Record):
@@ -112,8 +113,7 @@ class ComponentBody(Record):
     column: int  # first unknown of the body
     freedoms: int  # number of its unknowns: 0 (joints cannot move it), 2 (joints do not turn it) or 3
     cayley: int  # 1 if the body turns by 2 atan(chi/2), see `BodyStep`
-    pushed: int  # 1 if joints exert forces on it, else they act on its angle alone
-    twisted: int  # 1 if they exert torques
+    acted: int  # what joints exert on it: FORCES_ON, TORQUES_ON, or both
     first: int  # first joint with impulses on it, as `Coupling.following`
 
 

@@ -16,7 +16,7 @@ def seat(local: BodyStep, joined: ComponentBody) -> None:
     """Copy the plan's values of a body to its scratch: its unknowns, how it turns, what acts on it, its joints."""
     local.column, local.freedoms = joined.column, joined.freedoms
     local.first, local.cayley = joined.first, joined.cayley
-    local.pushed, local.twisted = joined.pushed, joined.twisted
+    local.acted = joined.acted
 
 
 @inlined
