@@ -165,12 +165,11 @@ class BodyStates:
         return not np.array_equal(self.STATES[layout.READ, still, :3], self.STATES[layout.WRITTEN, still, :3])
 
     def static_moved_since(self) -> bool:
-        """As `moved_static`, by the present poses, also if other bodies have come, or pymunk's order has changed."""
-        known = zip(self.bodies.items, self.bodies.static.tolist(), self.STATES[layout.WRITTEN, :, :3], strict=True)
-        return any(
-            still and body.space is self.space and [*body.position, body.angle] != before.tolist()
-            for body, still, before in known
-        )
+        """As `moved_static`, by the present poses, also if other bodies have come, or pymunk's order has changed. Not
+        of bodies that slept: pymunk wakes those that a program moves."""
+        still: list[int] = (self.bodies.static & ~self.bodies.asleep).nonzero()[0].tolist()
+        known = [(self.bodies.items[i], self.STATES[layout.WRITTEN, i, :3].tolist()) for i in still]
+        return any(body.space is self.space and [*body.position, body.angle] != pose for body, pose in known)
 
     @property
     def state(self) -> FloatArray:

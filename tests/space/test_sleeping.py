@@ -273,6 +273,18 @@ def test_what_wakes_a_body_wakes_its_group_in_the_same_step(change, falls: bool)
         assert abs(body.velocity.y) == pytest.approx(10.0 * DT if falls else 0.0, abs=1e-9)
 
 
+def test_a_sleeping_body_that_is_moved_wakes_alone() -> None:
+    space, bodies = stack(1)
+    bodies.append(box(space, 3.0, 0.6))  # a group of its own
+    stepper = ep.EECA(space)
+    for _ in range(30):
+        stepper.step(DT)
+    assert all(body.is_sleeping for body in bodies)
+    bodies[0].position += 0.0, 2.0
+    stepper.step(DT)
+    assert [body.is_sleeping for body in bodies] == [False, True]
+
+
 class Attempts(ep.EECA):
     """EECA that notes the work of each attempt at a step, over the budget of a whole one."""
 
