@@ -65,7 +65,7 @@ class EECA(RunningStepper):
         before = None if past is None else self.event_loop
         if past is world:  # its rows or joints have changed
             if before is not None:
-                before.release(world.BODY)
+                before.release()
             world.load()
         if before is not None:
             world.memory = world.memory.other()

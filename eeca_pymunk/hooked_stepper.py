@@ -41,7 +41,7 @@ class HookedStepper(PackedSpace):
             loop = self.event_loop
             assert loop is not None  # other methods refuse joints
             world.read_states(0.0, 0.0, 1.0)
-            loop.rejoin(world.BODY, world.SHAPE, world.LINK, joints.linkage, joints.replan)
+            loop.rejoin(joints.linkage, joints.replan)
             joints.planned(loop.held)
 
     def catch_up(self) -> None:

@@ -187,7 +187,7 @@ class PackedSpace(Stepper):
             if (loop := self.event_loop) is None:
                 self.choose_method(world, world)
             elif world.joints is None:
-                loop.rejoin(world.BODY, world.SHAPE, world.LINK)
+                loop.rejoin()
                 world.find_parted()
                 loop.rule(world.laws())
         return self._adopt(world)

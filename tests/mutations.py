@@ -201,6 +201,8 @@ MUTATIONS = (
              "oracles/test_impacts.py", "comes_to_rest_is_booked"),
     Mutation("equilibrium: one edge of the cone", "rows/cones.py", "slope = mu if side == 0 else -mu",
              "slope = mu", "rows/test_equilibrium.py", "linear_programming"),
+    Mutation("equilibrium: sought where nothing can hold", "rows/equilibrium.py", "return work > most * fastest",
+             "return False", "rows/test_equilibrium.py", "before_its_budget"),
     Mutation("equilibrium: sign of the residual", "rows/equilibrium.py", "PROXIMAL_STATICS * (V[i, c] - LEFT[i, c])",
              "PROXIMAL_STATICS * (V[i, c] + LEFT[i, c])", "rows/test_equilibrium.py", "guess"),
     Mutation("statics: what moves is held like what rests", "contacts/statics.py",

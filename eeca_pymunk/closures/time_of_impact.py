@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..impacts.scene import EventLoop
-from ..impacts.scene_memory import NO_LINKAGE, Laid
+from ..impacts.scene_memory import Laid
+from ..joints.workspace import NO_LINKAGE
 
 if TYPE_CHECKING:
     from ..space.world import World

@@ -31,7 +31,7 @@ TABLES = {
         POOL:i4[1] FLAG:u1[1] HEAD:i8[1] GRID:Grid BOX:f8[2] CSR:i8[1] RULE:f8[2] HEAP_TIME:f8[1]
         HEAP_BODY:i8[1] LOG:Impulse[1] BEGAN:f8[2] PLACE:i8[1] BLOCK:i8[1] PULL:f8[2] MEMBER:Member[1] RESTING:Rest[1]
         PUSHED_BY:Pair[1] PUSHED:Pushed[1] KEYS:i8[1] FORCES:Force[1] CORE:f8[3]
-        SIDE:Side[1] CORNER:Corner[1] PINNED:Pinned[1] MISSED:Missed[1] PAR:Step COUNT:Count
+        SIDE:Side[1] CORNER:Corner[1] MISSED:Missed[1] PAR:Step COUNT:Count
     """,
     "Reading": """
         TOTALS:i8[1] BODIES:BodyValues[1] SHAPES:ShapeValues[1] OWNER:i8[1] POINT:f8[2] PLACED:f8[2] STATES:f8[3]
@@ -39,10 +39,10 @@ TABLES = {
         MEASURED:Measures
     """,
     "Joints": """
-        JOINT:Joint[1] PARTNER:Body[1] COMPONENT:Component[1] JOINED:ComponentBody[1]
-        COUPLING:Coupling[1] HINGE:JointStep[1] LOCAL:BodyStep[1] MATRIX:f8[1] RIGHT:f8[1] MORE:f8[1] STIFF:f8[2]
-        PROGRESS:Progress PARTS:Parts PART_LEDGER:JointLedger PIVOTS:i8[1] OF:i8[1] KEPT:Joint[1] STEPPED:JointLedger[1]
-        TALLY:Tally
+        JOINT:Joint[1] PARTNER:Body[1] STILL:i8[1] PINNED:Pinned[1] ROOM:i8[1] COMPONENT:Component[1]
+        JOINED:ComponentBody[1] COUPLING:Coupling[1] HINGE:JointStep[1] LOCAL:BodyStep[1] MATRIX:f8[1] RIGHT:f8[1]
+        MORE:f8[1] STIFF:f8[2] PROGRESS:Progress PARTS:Parts PART_LEDGER:JointLedger PIVOTS:i8[1] OF:i8[1]
+        KEPT:Joint[1] STEPPED:JointLedger[1] TALLY:Tally
     """,
     "Island": """
         WHO:i8[1] POSE:f8[2] V:f8[2] ACC:f8[2] IM:f8[1] II:f8[1] EXTENT:f8[1] FELT:f8[1] PAIRS:i8[2]
@@ -81,19 +81,19 @@ ENTRIES = {
     "rehearsing:record_changes": "{Reading} i8",
     "impacts.new_scene:measure_scene": "{Reading}",
     "impacts.new_scene:begin_scene": "{Scene} i8 i8 i8 i8 i8",
-    "impacts.taking_over:take_over": "{Scene} {Scene} i8[1] i8[1] i8[1] i8[2]",
-    "impacts.edits:renew": "{Scene} i8[2]",
+    "impacts.taking_over:take_over": "{Scene} {Scene} i8[1]",
+    "impacts.edits:renew": "{Scene} i8[1]",
     "impacts.edits:edit_surface": "{Scene} i8 f8 f8 f8 f8",
     "impacts.edits:edit_filter": "{Scene} i8 i8 i8 i8",
     "impacts.edits:edit_mass": "{Scene} i8 f8 f8",
-    "impacts.new_scene:tie_components": "{Scene} {Joints}",
     "islands.accounting:flag_pairs": "{Scene}",
     "impacts.step:step": "{Scene} {Joints} {Reading} f8 f8 f8 f8",
     "impacts.step:resume_step": "{Scene} {Joints} {Reading}",
     "impacts.run:run": "{Scene} {Joints} {RunArrays} {Reading}",
-    "joints.workspace:plan_components": "{Joints} Body[1] i8[1]",
-    "joints.pinned:find_pinned": "Body[1] Body[1] Joint[1] i8[1] Shape[1] Link[1] Pinned[1]",
-    "joints.pinned:hold": "Pinned[1] Body[1] bool",
+    "joints.workspace:plan_components": "{Scene} {Joints}",
+    "joints.workspace:tie_components": "{Scene} {Joints}",
+    "joints.pinned:hold_again": "{Scene} {Joints}",
+    "joints.pinned:release_held": "{Scene} {Joints}",
     "joints.partners:read_partners": "f8[1] i8[1] f8[2] f8[2] Body[1] Joint[1] i8",
     # Only tests call this, which solves single islands: some hundred times slower as plain Python.
     "contacts.interval:step_island": "{Scene} {Island} {IslandContacts} i8 f8 i8 f8 f8 f8",

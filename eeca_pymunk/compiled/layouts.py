@@ -105,6 +105,9 @@ class Layout(Generic[T]):
     def lay(self, counts: Mapping[str, int], *elsewhere: AnyArray) -> Table:
         """The table of arrays with so many rows each, 1 of records, also of those elsewhere; the last table is lost."""
         self._put(self._into, 0, *map(counts.__getitem__, self._plan.names), *map(address_of, elsewhere))
+        for name in () if self._pointers is None else self._pointers.others:  # these are of the last table only
+            first = self._plan.first_word[name]
+            self._table[first : first + WORDS] = self._plan.words.data[first : first + WORDS]
         memory = self._memory
         address = memory.address
         total = self._write(address)

@@ -13,7 +13,6 @@ from __future__ import annotations
 import ctypes
 import enum
 import functools
-import operator
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -26,6 +25,7 @@ from .sources import sources_hash
 
 NO_MEMORY, NO_SHAPE = -(1 << 63), -(1 << 63) + 1  # returned if an array cannot be created; if shapes do not fit
 _ffi = _cffi_backend.FFI()
+_CALLS = 4  # number of results of `Entry.bind` that are kept
 _WORDS = _ffi.typeof("int64_t[]")
 
 
@@ -66,8 +66,9 @@ class Entry:
         self.kinds = (kinds or ENTRIES[name]).split()
         numbers = ["double" if kind == "f8" else "int64_t" for kind in self.kinds if not is_array(kind)]
         self.function: Callable[..., int] = _ffi.cast(f"int64_t(*)({', '.join(['int64_t *', *numbers])})", address)
-        # Arrays and result of the last two calls of `bind`: scenes take turns (`impacts/scene_memory.py`).
-        self._last: tuple[tuple[tuple[Any, ...], Callable[..., int]], ...] = (((), int),) * 2
+        # Results of the last calls of `bind`, which keep their arrays alive, by the identities of these: scenes take
+        # turns (`impacts/scene_memory.py`).
+        self._calls: dict[tuple[int, ...], Callable[..., int]] = {}
         self._arrays = [i for i, kind in enumerate(self.kinds) if is_array(kind)]
         # None for tables.
         self._wanted = [None if (kind := self.kinds[i]).endswith("}") else dtype_of(kind) for i in self._arrays]
@@ -81,15 +82,15 @@ class Entry:
 
     def bind(self, *arrays: Any) -> Callable[..., int]:
         """The entry with these arrays: a function of its numbers, whose result `result_of` takes; that of one of the
-        last two calls, if it was for the same arrays.
+        last calls, if it was for the same arrays.
 
         Raises:
             TypeError: an array is not of the declared dtype and dimensions, or not C-contiguous.
         """
-        for known, call in self._last:
-            # One by one: comparing tuples would compare the elements of arrays.
-            if 0 < len(arrays) == len(known) and not any(map(operator.is_not, arrays, known)):
-                return call
+        key = tuple(map(id, arrays))
+        known = self._calls.get(key)
+        if known is not None:
+            return known
         words: list[int] = []
         for place, (wanted, array) in enumerate(zip(self._wanted, arrays, strict=True)):
             if wanted is None:
@@ -106,7 +107,8 @@ class Entry:
         # A pointer is passed in half the time of a number.
         call = functools.partial(self.function, _ffi.new(_WORDS, words))
         call.kept = arrays  # type: ignore[attr-defined] # as long as their addresses are used
-        self._last = (arrays, call), self._last[0]
+        calls = [*self._calls.items()][1 - _CALLS :]
+        self._calls = {**dict(calls), key: call}
         return call
 
 

@@ -7,7 +7,7 @@ arrays as attributes: in compiled code this is a cast and costs nothing. In plai
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, Generic, TypeAlias, TypeVar
 
 import numpy as np
@@ -24,11 +24,16 @@ WORDS = 4  # numbers of an array: address, size, and its shape, one or two lengt
 
 class Pointers:
     """The table for machine code: `address` of its words, and the arrays, which it keeps alive; `make` makes them when
-    they are asked for."""
+    they are asked for.
 
-    __slots__ = ("_arrays", "_make", "address", "words")
+    Attributes:
+        others: arrays that have replaced those of `make`, by name.
+    """
+
+    __slots__ = ("_arrays", "_make", "address", "others", "words")
 
     _arrays: Any
+    others: dict[str, AnyArray]
 
     def __init__(self, make: Callable[[], Any], words: Any) -> None:
         self.words, self.address = words, address_of(words)
@@ -36,13 +41,19 @@ class Pointers:
 
     def make_by(self, make: Callable[[], Any]) -> None:
         """Let `make` make the arrays."""
-        self._make, self._arrays = make, None
+        self._make, self._arrays, self.others = make, None, {}
+
+    def replace(self, name: str, array: AnyArray, words: Sequence[int], first: int) -> None:
+        """Use another array of this name; its words are the table's from `first` on."""
+        self.words[first : first + WORDS] = words
+        self.others[name], self._arrays = array, None
 
     @property
     def arrays(self) -> Any:
         """The named tuple."""
         if self._arrays is None:
-            self._arrays = self._make()
+            made = self._make()
+            self._arrays = made._replace(**self.others) if self.others else made
         return self._arrays
 
 
@@ -68,13 +79,14 @@ def table_of(arrays: Any) -> Table:
 
 
 def replaced(table: Table, kind: type[Any], name: str, array: AnyArray) -> Table:
-    """The table of a named tuple of this kind, with another array of this name. numpy's arrays are not made for it."""
+    """The table of a named tuple of this kind with another array of this name: of machine code the same table, so that
+    kernels stay bound to it."""
     if not isinstance(table, Pointers):
         return table._replace(**{name: array})
-    words, fields = table.words.copy(), table_fields(kind.__name__)
+    fields = table_fields(kind.__name__)
     place = [field for field, *_ in fields].index(name)
-    words[WORDS * place : WORDS * (place + 1)] = _words(kind.__name__, *fields[place], array)
-    return Pointers(lambda: table.arrays._replace(**{name: array}), words)
+    table.replace(name, array, _words(kind.__name__, *fields[place], array), WORDS * place)
+    return table
 
 
 def _words(name: str, field: str, dtype: np.dtype[Any] | None, dimensions: int, a: Any) -> tuple[int, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Mapping
+from itertools import chain
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -29,6 +30,11 @@ from ..pairs.lists import allowed, far_apart, may_collide
 SAME, MASS, SURFACE, FILTER, OUTLINE = -1, 0, 1, 2, 3
 
 Changes: TypeAlias = list[tuple[int, int]]  # kind, and row of BODY or SHAPE
+
+
+def words_of(changes: Changes) -> list[int]:
+    """Changes as kernels take them: how many, then kind and row of each."""
+    return [len(changes), *chain.from_iterable(changes)]
 
 
 class Edits(NamedTuple):
@@ -107,12 +113,13 @@ def place_beside(A: Scene, STATUS: IntArray) -> None:
 @nonallocating
 def disturb_changed(A: Scene, CHANGES: IntArray) -> None:
     """Let the islands at rest be solved again that bodies with another mass belong to, and shapes with another surface
-    touch."""
-    for c in range(CHANGES.shape[0]):
-        if CHANGES[c, 0] == MASS:
-            disturb(A, CHANGES[c, 1])
-        elif CHANGES[c, 0] == SURFACE:
-            disturb_shape(A, CHANGES[c, 1])
+    touch. CHANGES: see `words_of`."""
+    for c in range(CHANGES[0]):
+        kind, row = CHANGES[1 + 2 * c], CHANGES[2 + 2 * c]
+        if kind == MASS:
+            disturb(A, row)
+        elif kind == SURFACE:
+            disturb_shape(A, row)
 
 
 @nonallocating
@@ -156,15 +163,16 @@ def renew(TABLE: Table, CHANGES: IntArray) -> bool:
     False if another one is needed: this one has margin circles, a grid of static shapes, or too small a pool.
 
     Args:
-        CHANGES: (c, 2) kind and row.
+        CHANGES: see `words_of`; other numbers may follow.
     """
     A = scene_of(TABLE)
     STATUS = np.full(A.SHAPE.shape[0], SAME)
     shaped = False
-    for c in range(CHANGES.shape[0]):
-        if CHANGES[c, 0] >= FILTER:
-            shaped = shaped or CHANGES[c, 0] == OUTLINE
-            STATUS[CHANGES[c, 1]] = max(STATUS[CHANGES[c, 1]], CHANGES[c, 0])
+    for c in range(CHANGES[0]):
+        kind, row = CHANGES[1 + 2 * c], CHANGES[2 + 2 * c]
+        if kind >= FILTER:
+            shaped = shaped or kind == OUTLINE
+            STATUS[row] = max(STATUS[row], kind)
     if not relist(A, A.BODY[0].since, shaped):
         return False
     if shaped and A.CORNER.shape[0] > 0:

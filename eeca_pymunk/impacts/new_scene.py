@@ -4,12 +4,8 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from ..compiled import Table, kernel, nonallocating
 from ..geometry.corners import find_corners, thin
-from ..model.bodies import AT_REST, CHANGED
-from ..model.joints import joints_of
 from ..model.parameters.impulses import AUGMENTATION
 from ..model.scene import scene_of
 from ..model.values import reading_of
@@ -59,26 +55,3 @@ def begin_scene(table: Table, limit: int, disks: int, together: int, budget: int
     if A.CORNER.shape[0] > 0:
         find_corners(A.LINK, A.VERTEX, A.CORNER)
     return begin_lists(table)
-
-
-@kernel
-def tie_components(table: Table, joints: Table) -> None:
-    """Make a ring of the bodies of each component. Predictions by earlier components are void; where bodies have lost
-    theirs, islands are built in the next step, even if no component remains."""
-    A, OF = scene_of(table), joints_of(joints).OF
-    MEMBER, BODY, COUNT = A.MEMBER, A.BODY, A.COUNT
-    first, last = np.full(OF.shape[0], -1, np.int64), np.full(OF.shape[0], -1, np.int64)
-    for i in range(MEMBER.shape[0]):
-        BODY[i].due = min(BODY[i].due, -1.0)
-        s = OF[i]
-        if MEMBER[i].rest == AT_REST:
-            MEMBER[A.STATE[i].island].rest = CHANGED  # joints may hold it otherwise now
-        if MEMBER[i].tied >= 0 and s < 0:
-            COUNT.any_placed = max(COUNT.any_placed, 1)
-        MEMBER[i].tied, MEMBER[i].next_tied = -1, -1
-        if s >= 0:
-            first[s] = i if first[s] < 0 else first[s]
-            MEMBER[i].tied, MEMBER[i].next_tied = first[s], first[s]
-            if last[s] >= 0:
-                MEMBER[last[s]].next_tied = i
-            last[s] = i

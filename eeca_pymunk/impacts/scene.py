@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from array import array
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,22 +14,21 @@ from ..compiled.library import result_of
 from ..compiled.records import R, Rows, columns, from_bytes, rows
 from ..contacts.memory import copy_recent
 from ..islands.accounting import flag_pairs
-from ..joints.pinned import NO_PINNED, hold, pinned_bodies
+from ..joints.pinned import hold_again, release_held
+from ..joints.workspace import NO_LINKAGE, Linkage, tie_components
 from ..model.bodies import CHECK, MOBILITY, Body
 from ..model.contacts import Force, Impulse
 from ..model.joints import Joint, Pinned
 from ..model.parameters.events import MANY_BODIES, STEP_LOOKS, STEP_LOOKS_BODY
-from ..model.shapes import Link, Shape
 from ..model.step import IMPACTS_FULL, LOG_FULL, PUSHES_FULL, Missed, needs_memory
 from ..pairs.setup import with_more_room
 from ..report import Details, of_events
 from . import step as stages
-from .edits import SAME, Changes, renew
-from .new_scene import tie_components
+from .edits import Changes, renew, words_of
 from .remembering import UNBOUND, Remembering
 from .run import run
 from .run_buffers import RunBuffers
-from .scene_memory import NO_LINKAGE, RULE_COLUMNS, Laid, Linkage, SceneMemory
+from .scene_memory import RULE_COLUMNS, Laid, SceneMemory
 from .taking_over import Kept, take_over
 
 if TYPE_CHECKING:
@@ -61,80 +58,69 @@ class EventLoop(Remembering):
         memory: of the scene before, which is lost; None: new.
 
     Attributes:
-        thin: whether thin shapes may meet, whose sides are remembered.
-        pinned: the bodies that joints hold where they are.
+        n: number of rows of BODY.  thin: whether thin shapes may meet, whose sides are remembered.
     """
 
     def __init__(
         self, laid: Laid, limit: int, linkage: Linkage = NO_LINKAGE, together: bool = False,
         memory: SceneMemory | None = None,
     ) -> None:  # fmt: skip
-        BODY, memory = laid.BODY, memory or SceneMemory()
-        n = len(BODY)
+        memory = memory or SceneMemory()
+        n = self.n = len(laid.BODY)
         self.together, self.measured = together, list(laid.measured)
-        self._changes: IntArray = np.zeros((4, 2), np.int64)
-        self.joint, self.partner, self._still = linkage
-        self.pinned = self._hold(BODY, laid.SHAPE, laid.LINK)
         budget = STEP_LOOKS + STEP_LOOKS_BODY * n * max(n, MANY_BODIES) // MANY_BODIES
-        self.table = memory.scene(laid, self.pinned, limit, together, budget)
+        self.table = memory.scene(laid, limit, together, budget)
         self._view(*memory.records())
         self._bound = UNBOUND
         self._memory, self.thin = memory, memory.thin > 0
         self._rules: dict[tuple[int, int], tuple[float, float, float, float]] = {}  # those of the table
-        self._plan(BODY)
+        self._plan(linkage)
+
+    def release(self) -> None:
+        """Give the bodies that joints hold their mobilities back."""
         if self.jointed:
-            tie_components(self.table, self.ties)
+            release_held(self.table, self.ties)
 
-    def _hold(self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link]) -> Rows[Pinned]:
-        """The bodies that joints hold where they are, which lose their mobilities."""
-        if not self._still.any():
-            return NO_PINNED
-        PINNED = pinned_bodies(BODY, self.partner, self.joint, self._still, SHAPE, LINK)
-        if len(PINNED):
-            hold(PINNED, BODY, True)
-        return PINNED
-
-    def release(self, BODY: Rows[Body]) -> None:
-        """Give the bodies that joints hold, of the rows of the scene, their mobilities back."""
-        if len(self.pinned):
-            hold(self.pinned, BODY, False)
+    @property
+    def pinned(self) -> Rows[Pinned]:
+        """The bodies that joints hold where they are."""
+        return self.joints.PINNED[: self._pinned]
 
     @property
     def held(self) -> list[int]:
-        """The rows of the bodies that joints hold where they are."""
-        return self.pinned["body"].tolist()
+        """Their rows."""
+        return self.pinned["body"].tolist() if self._pinned else []
 
     @property
     def mobility(self) -> FloatArray:
         """(n, 2) 1/mass and 1/moment of bodies, also of those that joints hold."""
-        found = columns(self.scene.BODY, *MOBILITY)
-        found[self.pinned["body"]] = columns(self.pinned, *MOBILITY)
+        found, pinned = columns(self.scene.BODY, *MOBILITY), self.pinned
+        found[pinned["body"]] = columns(pinned, *MOBILITY)
         return found
 
-    def _plan(self, BODY: Rows[Body]) -> None:
-        """Find the components of the joints."""
+    def _plan(self, linkage: Linkage) -> None:
+        """Find which bodies the joints hold and tie together."""
+        self.joint, self.partner, _ = linkage
+        self._bound, self._pinned = UNBOUND, 0
         if self.jointed:
-            self.ties, self._bound = self._memory.joints.plan(BODY, self.joint, self.partner), UNBOUND
+            plans = self._memory.joints
+            self.ties = plans.plan(self.table, self.n, linkage)
+            self._pinned = plans.pinned
         else:
-            self.ties, self._bound = self._memory.unjointed(len(BODY)), UNBOUND
+            self.ties = self._memory.unjointed(self.table, self.n)
 
-    def rejoin(
-        self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], linkage: Linkage = NO_LINKAGE, replan: bool = True
-    ) -> None:  # fmt: skip
+    def rejoin(self, linkage: Linkage = NO_LINKAGE, replan: bool = True) -> None:
         """Go on with other joints, or with edited ones, on the rows of the scene, which have the present poses.
 
         Args:
             replan: whether components may differ; else only whether joints hold other bodies where they are.
         """
-        self.release(BODY)
-        self.joint, self.partner, self._still = linkage
-        pinned = self._hold(BODY, SHAPE, LINK)
-        if pinned.tobytes() != self.pinned.tobytes():
-            self.pinned, replan = pinned, True
-            self.exchange("PINNED", pinned)
-        if replan:
-            self._plan(BODY)
-            tie_components(self.table, self.ties)
+        self.release()
+        if replan or hold_again(self.table, self.ties):
+            self.release()
+            self._plan(linkage)
+            if not self.jointed:
+                tie_components(self.table, self.ties)
 
     def rebind(self, joint: Rows[Joint], PARTNER: Rows[Body]) -> None:
         """Use other arrays of joints with the same values."""
@@ -205,18 +191,11 @@ class EventLoop(Remembering):
         rows now."""
         if list(measured) != self.measured:
             return False
-        # The same array again, as long as it suffices: calls with other ones take longer.
-        if len(changes) > len(self._changes):
-            self._changes = np.zeros((2 * len(changes), 2), np.int64)
-        words = array("q", chain.from_iterable(changes))
-        words.extend((SAME,) * (self._changes.size - len(words)))
-        self._changes.data.cast("B")[:] = words.tobytes()
-        return bool(result_of("renew", renew.bind(self.table, self._changes)()))
+        return bool(renew(self.table, self._memory.words(words_of(changes))))
 
     def go_on_from(self, before: EventLoop, kept: Kept) -> None:
         """Before the first step: go on with the results of the loop before, for the rows that are the same."""
-        changes: IntArray = np.array(kept.changes, np.int64).reshape(-1, 2)
-        take_over(before.table, self.table, kept.bodies, kept.shapes, kept.outlines, changes)
+        take_over(before.table, self.table, self._memory.words(kept.words()))
 
     def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
         """Set the law of pairs of shapes a < b: elasticity (below 0: they pass through each other), friction and

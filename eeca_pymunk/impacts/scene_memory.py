@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Sequence
 from functools import cache
 from typing import NamedTuple
@@ -12,11 +13,10 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import Table
 from ..compiled.layouts import COUNT, Layout, Plan
 from ..compiled.library import result_of
-from ..compiled.records import Rows, rows
+from ..compiled.records import Rows
 from ..geometry.corners import side_rows
-from ..joints.workspace import JointMemory
+from ..joints.workspace import NO_LINKAGE, JointMemory
 from ..model.bodies import Body
-from ..model.joints import Joint, Pinned
 from ..model.scene import Scene
 from ..model.shapes import Link, Shape
 from ..pairs.setup import NO_GRID, filled, pool_sizes
@@ -35,7 +35,7 @@ _FILLED = "LOG", "KEYS", "FORCES", "PUSHED_BY", "PUSHED"  # before they are read
 @cache
 def _arrays() -> Plan[Scene]:
     return Plan(
-        Scene, _ZEROS + _FILLED, len(_ZEROS), ("BODY", "SHAPE", "LINK", "VERTEX", "PINNED"),
+        Scene, _ZEROS + _FILLED, len(_ZEROS), ("BODY", "SHAPE", "LINK", "VERTEX"),
         {"RULE": _NO_RULE, "CSR": NO_GRID},
         {"CORE": (2, COUNT, 4), "PULL": (COUNT, 3), "BEGAN": (COUNT, 3), "BOX": (COUNT, 4), "VERTEX": (COUNT, 4)},
     )  # fmt: skip
@@ -53,17 +53,6 @@ class Laid(NamedTuple):
     measured: Sequence[int]
 
 
-class Linkage(NamedTuple):
-    """The joints of a world."""
-
-    joint: Rows[Joint]  # (j,) between rows of BODY, or len(BODY) + row of PARTNER
-    PARTNER: Rows[Body]  # (x,) bodies that joints cannot move
-    still: IntArray  # (x,) 1 for those that never move
-
-
-NO_LINKAGE = Linkage(rows(Joint, 0), rows(Body, 0), np.zeros(0, np.int64))
-
-
 class SceneMemory:
     """Memory for the scenes of one stepper: each replaces the one before, whose arrays it overwrites.
 
@@ -79,6 +68,7 @@ class SceneMemory:
         self._layout = Layout(_arrays())
         self.joints, self.log, self.contacts = JointMemory(), 0, 0
         self._unjointed: tuple[Table, int] = None, 0
+        self._words: IntArray = np.zeros(64, np.int64)
         self._other: SceneMemory | None = None
 
     def other(self) -> SceneMemory:
@@ -89,7 +79,7 @@ class SceneMemory:
         self._other.log, self._other.contacts = self.log, self.contacts
         return self._other
 
-    def scene(self, laid: Laid, PINNED: Rows[Pinned], limit: int, together: bool, budget: int) -> Table:
+    def scene(self, laid: Laid, limit: int, together: bool, budget: int) -> Table:
         """The table of a scene that has taken no step; the arrays given are kept, not copied. The numbers are fields of
         COUNT."""
         BODY, SHAPE, LINK, VERTEX, disks, (moving, vertices, self.thin, lossy) = laid
@@ -101,25 +91,32 @@ class SceneMemory:
         counts = {
             "PAR": 1, "COUNT": 1, "GRID": 1,
             "BODY": n, "STATE": n, "MEMBER": n, "RESTING": n, "PLACE": n, "PULL": n, "BEGAN": n, "BLOCK": n,
-            "HEAP_TIME": 8 * n + 64, "HEAP_BODY": 8 * n + 64, "LOG": max(4 * n + 64, self.log), "PINNED": len(PINNED),
+            "HEAP_TIME": 8 * n + 64, "HEAP_BODY": 8 * n + 64, "LOG": max(4 * n + 64, self.log),
             "SHAPE": k, "LINK": k, "MARK": moving, "CELL": moving, "LIST": moving, "BOX": k - moving,
             "POOL": pool, "FLAG": pool, "HEAD": heads, "VERTEX": len(VERTEX), "CORE": vertices,
             "SIDE": side_rows(self.thin, k), "CORNER": 4 * k if self.thin else 0,
             "KEYS": 4 * room, "FORCES": 4 * room, "PUSHED_BY": room, "PUSHED": room, "MISSED": _MISSED,
         }  # fmt: skip
-        table = self._layout.lay(counts, BODY, SHAPE, LINK, VERTEX, PINNED)
+        table = self._layout.lay(counts, BODY, SHAPE, LINK, VERTEX)
         (begin,) = self._layout.bound(begin_scene)
         found = result_of("begin_scene", begin(limit, disks, together, budget, lossy))
         return filled(table, SHAPE, moving, found)
+
+    def words(self, numbers: Sequence[int]) -> IntArray:
+        """An array that begins with these numbers: the same one as long as it suffices, as calls of kernels with other
+        ones take longer."""
+        if len(numbers) > len(self._words):
+            self._words = np.zeros(2 * len(numbers), np.int64)
+        self._words.data.cast("B")[: 8 * len(numbers)] = array("q", numbers).tobytes()
+        return self._words
 
     def records(self) -> tuple[memoryview, memoryview, memoryview]:
         """PAR as numbers, COUNT and LOG as integers, of the last scene."""
         layout = self._layout
         return layout.floats("PAR"), layout.integers("COUNT"), layout.integers("LOG")
 
-    def unjointed(self, n: int) -> Table:
+    def unjointed(self, scene: Table, n: int) -> Table:
         """The table `Joints` of a scene without joints, of n bodies."""
         if self._unjointed[1] < n:
-            table = JointMemory().plan(rows(Body, 2 * n), rows(Joint, 0), rows(Body, 0))
-            self._unjointed = table, 2 * n
+            self._unjointed = JointMemory().plan(scene, 2 * n, NO_LINKAGE), 2 * n
         return self._unjointed[0]

@@ -28,7 +28,7 @@ def start(A: Scene, J: Joints, R: Reading, dt: float, gx: float, gy: float, half
         start_joints(A, J, R.STATES, R.IDS, dt)
     status = read_states(R.STATES, R.IDS, R.EXTRA, A.BODY, gx, gy, half_damping)
     if status >= 0:
-        lost = put_pinned(A.PINNED, A.BODY)
+        lost = put_pinned(J, A.BODY)
         A.PAR.planned = dt
         A.PAR.dt, A.PAR.gravity_x, A.PAR.gravity_y, A.PAR.half_damping = dt, gx, gy, half_damping
         A.PAR.instant = MEET_INSTANT * dt
@@ -48,7 +48,7 @@ def finish(A: Scene, J: Joints, R: Reading) -> int:
     account_joints(A, J)
     settle(A)
     close(A, R.IDS)
-    if len(A.PINNED) > 0:
+    if J.TALLY.pinned > 0:
         load_welds(A, J, R)
     if A.COUNT.logged > 0 or A.COUNT.unmet > 0:
         A.COUNT.bits |= EVENTS

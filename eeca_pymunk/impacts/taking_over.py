@@ -10,6 +10,7 @@ has come, gone or changed wakes what it touches:
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -23,31 +24,38 @@ from ..islands.at_rest import disturb
 from ..model.contacts import LASTED
 from ..model.scene import Scene, scene_of
 from ..pairs.lists import may_collide
-from .edits import FILTER, OUTLINE, SAME, Changes, disturb_changed, drop_sides, place_beside
+from .edits import FILTER, OUTLINE, SAME, Changes, disturb_changed, drop_sides, place_beside, words_of
 
 
 class Kept(NamedTuple):
     """The bodies and shapes of a scene that the next one has too.
 
     Attributes:
-        bodies: (n,) of each row of BODY the row in the next scene, -1 for a body that has gone.
-        shapes: (k,) of each row of SHAPE the row in the next scene, -1 for one that has gone, has another outline or
-            place on its body, or is of a static body that was moved.
+        bodies: of each row of BODY the row in the next scene, -1 for a body that has gone.
+        shapes: of each row of SHAPE the row in the next scene, -1 for one that has gone, has another outline or place
+            on its body, or is of a static body that was moved.
         outlines: as shapes; also those of bodies that have fallen asleep or woken, and so are on the ground or were.
         changes: others, with rows of the next scene.
     """
 
-    bodies: IntArray
-    shapes: IntArray
-    outlines: IntArray
+    bodies: Sequence[int]
+    shapes: Sequence[int]
+    outlines: Sequence[int]
     changes: Changes
+
+    def words(self) -> list[int]:
+        """The numbers for `take_over`."""
+        bodies, shapes, outlines, changes = self
+        return [len(bodies), len(shapes), *bodies, *shapes, *outlines, *words_of(changes)]
 
 
 def kept_in_place(n: int, k: int, changes: Changes) -> Kept:
     """Of n bodies and k shapes that have the same rows in the next scene, with these changes."""
-    shapes: IntArray = np.arange(k)
-    shapes[[row for kind, row in changes if kind == OUTLINE]] = -1
-    return Kept(np.arange(n), shapes, shapes, changes)
+    shapes = [*range(k)]
+    for kind, row in changes:
+        if kind == OUTLINE:
+            shapes[row] = -1
+    return Kept(range(n), shapes, shapes, changes)
 
 
 @nonallocating
@@ -141,16 +149,17 @@ def take_forces(P: Scene, A: Scene, SHAPES: IntArray) -> None:
 
 
 @kernel
-def take_over(
-    BEFORE: Table, PRESENT: Table, BODIES: IntArray, SHAPES: IntArray, OUTLINES: IntArray, CHANGES: IntArray
-) -> None:  # fmt: skip
+def take_over(BEFORE: Table, PRESENT: Table, WORDS: IntArray) -> None:
     """Let a scene that has taken no step go on from the one before.
 
     Args:
         BEFORE, PRESENT: `table_of` the scenes; of bodies and shapes BEFORE has only the numbers.
-        BODIES, SHAPES, OUTLINES: see `Kept`.  CHANGES: (c, 2) kind and row of its changes.
+        WORDS: the numbers of `Kept.words`, and others after them.
     """
     P, A = scene_of(BEFORE), scene_of(PRESENT)
+    n, k = WORDS[0], WORDS[1]
+    BODIES, SHAPES, OUTLINES = WORDS[2 : 2 + n], WORDS[2 + n : 2 + n + k], WORDS[2 + n + k : 2 + n + 2 * k]
+    CHANGES = WORDS[2 + n + 2 * k :]
     A.PAR.stamp, A.PAR.last, A.PAR.rules, A.COUNT.quiet = P.PAR.stamp, P.PAR.last, P.PAR.rules, P.COUNT.quiet
     A.COUNT.any_placed = 2  # so that islands are built in the next step, even where no contact remains
     take_bodies(P, A, BODIES)
@@ -158,12 +167,12 @@ def take_over(
     take_contacts(P, A, BODIES, SHAPES)
     take_forces(P, A, SHAPES)
     STATUS = np.full(A.SHAPE.shape[0], OUTLINE)
-    for s in range(SHAPES.shape[0]):
+    for s in range(k):
         if OUTLINES[s] >= 0:
             STATUS[OUTLINES[s]] = SAME if SHAPES[s] >= 0 else FILTER
-    for c in range(CHANGES.shape[0]):
-        if CHANGES[c, 0] == FILTER:
-            STATUS[CHANGES[c, 1]] = FILTER
+    for c in range(CHANGES[0]):
+        if CHANGES[1 + 2 * c] == FILTER:
+            STATUS[CHANGES[2 + 2 * c]] = FILTER
     place_beside(A, STATUS)
     disturb_changed(A, CHANGES)
     flag_pairs(A)

@@ -139,8 +139,8 @@ def load_welds(A: Scene, J: Joints, R: Reading) -> None:
     """At the end of a step, write the impulses of welded bodies' joints, by the balance of momentum
     (`..joints.welds`). If the step was cut short, forces are kept, as by `account_joints`."""
     IDS, now = R.IDS, R.STATES[READ]
-    PINNED, BODY, dt, links = A.PINNED, A.BODY, A.PAR.planned, 0
-    for k in range(len(PINNED)):
+    PINNED, BODY, dt, links = J.PINNED, A.BODY, A.PAR.planned, 0
+    for k in range(J.TALLY.pinned):
         pinned = PINNED[k]
         for c in range(2 if pinned.kind == WELDED else 0):
             joint = J.JOINT[pinned.weld[c] // 2]
@@ -148,7 +148,7 @@ def load_welds(A: Scene, J: Joints, R: Reading) -> None:
         links = max(links, pinned.link)
     for i in range(IDS.shape[1] if links > 0 else 0):
         row = IDS[BODY_ROW, i]
-        k = pinned_row(PINNED, row) if row >= 0 and BODY[row].inv_mass == 0.0 else -1
+        k = pinned_row(J, row) if row >= 0 and BODY[row].inv_mass == 0.0 else -1
         if k >= 0:
             pinned = PINNED[k]
             mass, moment = dt * mass_of(pinned.inv_mass), dt * mass_of(pinned.inv_inertia)
@@ -164,10 +164,10 @@ def load_welds(A: Scene, J: Joints, R: Reading) -> None:
         longer = dt / A.PAR.dt if one.duration > 0.0 else 1.0
         for end in range(2):
             row, side = A.LINK[int(one.first if end == 0 else one.second)].owner, (2.0 * end - 1.0) * longer
-            k = pinned_row(PINNED, row) if BODY[row].inv_mass == 0.0 else -1
+            k = pinned_row(J, row) if BODY[row].inv_mass == 0.0 else -1
             if k >= 0:
                 push_weld(J, PINNED[k], one.px, one.py, side * px, side * py, 0.0)
     for link in range(links, 1, -1):
-        for k in range(len(PINNED)):
+        for k in range(J.TALLY.pinned):
             if PINNED[k].link == link:
-                pass_on(J, PINNED, PINNED[k])
+                pass_on(J, PINNED[k])

@@ -6,22 +6,20 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import IntArray
-from ..compiled import kernel, nonallocating
-from ..compiled.records import Rows, rows
+from ..compiled import Table, kernel, nonallocating
+from ..compiled.records import Rows
 from ..model.bodies import Body
-from ..model.joints import CENTRE, FREE, GEAR, PIN, PIVOT, SLIDE, Joint, Pinned
-from ..model.shapes import Link, Shape
+from ..model.joints import CENTRE, FREE, GEAR, PIN, PIVOT, SLIDE, Joints, joints_of
+from ..model.scene import Scene, scene_of
 from .plan import find_turning, together
 from .straight import hold_chains
 from .welds import weld
 
-NO_PINNED = rows(Pinned, 0)
 
-
-@kernel
-def may_hold(joint: Rows[Joint], still: IntArray, n: int) -> bool:
-    """Whether two joints that may hold a body end at bodies n + i with still[i] > 0."""
-    ends = 0
+@nonallocating
+def may_hold(J: Joints, n: int) -> bool:
+    """Whether two joints that may hold a body end at bodies n + i that never move."""
+    joint, still, ends = J.JOINT, J.STILL, 0
     for j in range(len(joint)):
         a, b = joint[j].body[0], joint[j].body[1]
         fixed = (a >= n and still[a - n] > 0) or (b >= n and still[b - n] > 0)
@@ -30,65 +28,70 @@ def may_hold(joint: Rows[Joint], still: IntArray, n: int) -> bool:
     return ends >= 2
 
 
-@kernel
-def find_pinned(
-    BODY: Rows[Body], PARTNER: Rows[Body], joint: Rows[Joint], STILL: IntArray, SHAPE: Rows[Shape], LINK: Rows[Link],
-    PINNED: Rows[Pinned],
-) -> int:  # fmt: skip
-    """Find the bodies that joints hold where they are.
-
-    Args:
-        BODY (n,), PARTNER (x,): at their present poses; the latter cannot be moved by joints.  joint (j,).
-        STILL (x,): 1 for rows of PARTNER that never move.
-        SHAPE, LINK: of the bodies; contacts do not turn those without friction.
-        PINNED (n,): out, in its first rows: the bodies that are held, in the order of BODY.
-
-    Returns:
-        the number of bodies that are held.
-    """
-    if not may_hold(joint, STILL, len(BODY)):
-        return 0
-    bodies = together(BODY, PARTNER)
-    still, spins = np.zeros(len(bodies), np.int64), np.zeros(len(bodies), np.int64)
-    spins[: len(BODY)] = 1
-    for i in range(len(BODY)):
-        still[i] = 0 if BODY[i].inv_mass > 0.0 else -1  # joints hold no body whose motion they cannot change
-    for i in range(len(PARTNER)):
-        still[len(BODY) + i] = 1 if STILL[i] > 0 else -1
-    for s in range(len(LINK)):
-        if SHAPE[s].friction > 0.0:
-            spins[LINK[s].owner] = 0
-    turns, cayley = np.zeros(len(bodies), np.int64), np.zeros(len(bodies), np.int64)
-    find_turning(bodies, joint, len(joint), turns, cayley)
-    kinds, welds = np.zeros(len(bodies), np.int64), np.full((len(bodies), 3), -1, np.int64)
-    for i in range(len(bodies)):
-        spins[i] = spins[i] if turns[i] == 0 else 0
-    held = hold_chains(bodies, joint, still, spins, kinds) + weld(bodies, joint, still, kinds, welds)
-    found = 0
-    for i in range(len(BODY) if held > 0 else 0):
-        if kinds[i] != FREE:
-            one, body = PINNED[found], BODY[i]
-            one.body, one.kind, one.weld[0], one.weld[1], one.link = i, kinds[i], welds[i, 0], welds[i, 1], welds[i, 2]
-            one.x, one.y, one.angle = body.x, body.y, body.angle
-            one.inv_mass, one.inv_inertia = body.inv_mass, body.inv_inertia
-            found += 1
-    return found
-
-
-def pinned_bodies(
-    BODY: Rows[Body], PARTNER: Rows[Body], joint: Rows[Joint], still: IntArray, SHAPE: Rows[Shape], LINK: Rows[Link]
-) -> Rows[Pinned]:  # fmt: skip
-    """The bodies that joints hold, see `find_pinned`; BODY has their mobilities."""
-    found = rows(Pinned, len(BODY))
-    return found[: find_pinned(BODY, PARTNER, joint, still, SHAPE, LINK, found)]
+@nonallocating
+def note_pinned(J: Joints, k: int, body: Body, row: int, kind: int, weld: IntArray) -> bool:
+    """Write row k of PINNED: a body at its pose, and how it is held; returns whether it differs from the last one."""
+    one = J.PINNED[k]
+    same = one.body == row and one.kind == kind and one.link == weld[2]
+    same = same and one.weld[0] == weld[0] and one.weld[1] == weld[1]
+    same = same and one.x == body.x and one.y == body.y and one.angle == body.angle
+    same = same and one.inv_mass == body.inv_mass and one.inv_inertia == body.inv_inertia
+    one.body, one.kind, one.weld[0], one.weld[1], one.link = row, kind, weld[0], weld[1], weld[2]
+    one.x, one.y, one.angle = body.x, body.y, body.angle
+    one.inv_mass, one.inv_inertia = body.inv_mass, body.inv_inertia
+    return not same
 
 
 @kernel
-def hold(PINNED: Rows[Pinned], BODY: Rows[Body], held: bool) -> None:
-    """Let the bodies that joints hold have no mobilities, or, if not `held`, give these back."""
-    for k in range(len(PINNED)):
-        one, body = PINNED[k], BODY[PINNED[k].body]
-        body.inv_mass, body.inv_inertia = (0.0, 0.0) if held else (one.inv_mass, one.inv_inertia)
+def hold(A: Scene, J: Joints) -> bool:
+    """Find the bodies that joints hold where they are, at their present poses, which lose their mobilities; returns
+    whether PINNED differs from the last one. Contacts turn bodies, unless these have no friction."""
+    BODY, SHAPE, LINK = A.BODY, A.SHAPE, A.LINK
+    before, found, changed = J.TALLY.pinned, 0, False
+    if may_hold(J, len(BODY)):
+        bodies = together(BODY, J.PARTNER)
+        still, spins = np.zeros(len(bodies), np.int64), np.zeros(len(bodies), np.int64)
+        spins[: len(BODY)] = 1
+        for i in range(len(BODY)):
+            still[i] = 0 if BODY[i].inv_mass > 0.0 else -1  # joints hold no body whose motion they cannot change
+        for i in range(len(J.PARTNER)):
+            still[len(BODY) + i] = 1 if J.STILL[i] > 0 else -1
+        for s in range(len(LINK)):
+            if SHAPE[s].friction > 0.0:
+                spins[LINK[s].owner] = 0
+        turns, cayley = np.zeros(len(bodies), np.int64), np.zeros(len(bodies), np.int64)
+        find_turning(bodies, J.JOINT, len(J.JOINT), turns, cayley)
+        kinds, welds = np.zeros(len(bodies), np.int64), np.full((len(bodies), 3), -1, np.int64)
+        for i in range(len(bodies)):
+            spins[i] = spins[i] if turns[i] == 0 else 0
+        held = hold_chains(bodies, J.JOINT, still, spins, kinds) + weld(bodies, J.JOINT, still, kinds, welds)
+        for i in range(len(BODY) if held > 0 else 0):
+            if kinds[i] != FREE:
+                changed = note_pinned(J, found, BODY[i], i, kinds[i], welds[i]) or found >= before or changed
+                BODY[i].inv_mass, BODY[i].inv_inertia = 0.0, 0.0
+                found += 1
+    J.TALLY.pinned = found
+    return bool(changed or found != before)
+
+
+@nonallocating
+def let_go(A: Scene, J: Joints) -> None:
+    """Give the bodies that joints hold their mobilities back; PINNED is kept, to be compared with the next one."""
+    for k in range(J.TALLY.pinned):
+        body = A.BODY[J.PINNED[k].body]
+        body.inv_mass, body.inv_inertia = J.PINNED[k].inv_mass, J.PINNED[k].inv_inertia
+
+
+@nonallocating
+def release_held(table: Table, joints: Table) -> None:
+    """See `let_go`."""
+    let_go(scene_of(table), joints_of(joints))
+
+
+@kernel
+def hold_again(table: Table, joints: Table) -> bool:
+    """See `hold`, after `release_held`."""
+    return hold(scene_of(table), joints_of(joints))
 
 
 @nonallocating
@@ -98,12 +101,12 @@ def mass_of(inverse: float) -> float:
 
 
 @nonallocating
-def put_pinned(PINNED: Rows[Pinned], BODY: Rows[Body]) -> float:
+def put_pinned(J: Joints, BODY: Rows[Body]) -> float:
     """Put pinned bodies where they are, at rest but for the spin of those that are pinned at their centre; the kinetic
     energy that they lose, which joints take as they take that of any velocity that does not fit them."""
     lost = 0.0
-    for k in range(len(PINNED)):
-        pinned, body = PINNED[k], BODY[PINNED[k].body]
+    for k in range(J.TALLY.pinned):
+        pinned, body = J.PINNED[k], BODY[J.PINNED[k].body]
         lost += 0.5 * mass_of(pinned.inv_mass) * (body.vx * body.vx + body.vy * body.vy)
         body.x, body.y, body.vx, body.vy, body.ax, body.ay, body.angular = pinned.x, pinned.y, 0.0, 0.0, 0.0, 0.0, 0.0
         if pinned.kind != CENTRE:

@@ -82,16 +82,17 @@ def weld(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, pinned: IntArr
 
 
 @nonallocating
-def pinned_row(PINNED: Rows[Pinned], body: int) -> int:
+def pinned_row(J: Joints, body: int) -> int:
     """The row of a body in PINNED, which is sorted; -1 if it has none."""
-    low, high = 0, len(PINNED)
+    PINNED, pinned = J.PINNED, J.TALLY.pinned
+    low, high = 0, pinned
     while low < high:
         middle = (low + high) // 2
         if PINNED[middle].body < body:
             low = middle + 1
         else:
             high = middle
-    return low if low < len(PINNED) and PINNED[low].body == body else -1
+    return low if low < pinned and PINNED[low].body == body else -1
 
 
 @nonallocating
@@ -115,15 +116,15 @@ def push_weld(J: Joints, pinned: Pinned, x: float, y: float, px: float, py: floa
 
 
 @nonallocating
-def pass_on(J: Joints, PINNED: Rows[Pinned], pinned: Pinned) -> None:
+def pass_on(J: Joints, pinned: Pinned) -> None:
     """Apply the impulses of a welded body's joints to the bodies that it is welded to."""
     pivot, gear = J.JOINT[pinned.weld[0] // 2], J.JOINT[pinned.weld[1] // 2]
-    under = pinned_row(PINNED, pivot.body[1 - pinned.weld[0] % 2])
-    beside = pinned_row(PINNED, gear.body[1 - pinned.weld[1] % 2])
+    under = pinned_row(J, pivot.body[1 - pinned.weld[0] % 2])
+    beside = pinned_row(J, gear.body[1 - pinned.weld[1] % 2])
     if under >= 0:
         x, y = pivot_place(J, pinned)
         side = -1.0 if pinned.weld[0] % 2 == 1 else 1.0
-        push_weld(J, PINNED[under], x, y, side * pivot.impulse[0], side * pivot.impulse[1], 0.0)
+        push_weld(J, J.PINNED[under], x, y, side * pivot.impulse[0], side * pivot.impulse[1], 0.0)
     if beside >= 0:
         turn = gear.impulse[0] * (-1.0 / gear.ratio if pinned.weld[1] % 2 == 1 else 1.0)
-        push_weld(J, PINNED[beside], 0.0, 0.0, 0.0, 0.0, turn)
+        push_weld(J, J.PINNED[beside], 0.0, 0.0, 0.0, 0.0, turn)

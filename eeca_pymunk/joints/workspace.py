@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 
 from ..arrays import IntArray
 from ..compiled import Table, inlined, kernel, nonallocating
 from ..compiled.layouts import COUNT, Layout, Plan
-from ..compiled.records import Rows
-from ..model.bodies import Body
+from ..compiled.records import Rows, rows
+from ..model.bodies import AT_REST, CHANGED, Body
 from ..model.joints import NOTHING, Joint, Joints, Workspace, joints_of
+from ..model.scene import scene_of
 from ..newton.boxes import room_for_boxes
+from .pinned import hold, let_go
 from .plan import make_plan, together
 
 
@@ -26,12 +29,10 @@ def workspace(J: Joints, s: int) -> Workspace:
 
 
 @nonallocating
-def measure_plan(J: Joints, ROOM: IntArray) -> bool:
-    """Write to ROOM the largest needs of one component; returns whether the arrays of J suffice.
-
-    Args:
-        ROOM (6,): out, bodies, joints, numbers of pivots, entries of a matrix, entries of a right side, and of scratch.
-    """
+def measure_plan(J: Joints) -> bool:
+    """Write to ROOM the largest needs of one component: bodies, joints, numbers of pivots, entries of a matrix, entries
+    of a right side, and of scratch; returns whether the arrays of J suffice."""
+    ROOM = J.ROOM
     for k in range(6):
         ROOM[k] = 1
     for s in range(J.TALLY.components):
@@ -51,50 +52,93 @@ def measure_plan(J: Joints, ROOM: IntArray) -> bool:
 
 
 @kernel
-def plan_components(table: Table, BODY: Rows[Body], ROOM: IntArray) -> bool:
-    """Plan the components of the joints of `table`, whose other arrays contain zeros, for the bodies BODY (n,) of the
-    scene. See `measure_plan`."""
-    J = joints_of(table)
+def tie_components(table: Table, joints: Table) -> None:
+    """Make a ring of the bodies of each component. Predictions by earlier components are void; where bodies have lost
+    theirs, islands are built in the next step, even if no component remains."""
+    A, OF = scene_of(table), joints_of(joints).OF
+    MEMBER, BODY, COUNT = A.MEMBER, A.BODY, A.COUNT
+    first, last = np.full(OF.shape[0], -1, np.int64), np.full(OF.shape[0], -1, np.int64)
+    for i in range(MEMBER.shape[0]):
+        BODY[i].due = min(BODY[i].due, -1.0)
+        s = OF[i]
+        if MEMBER[i].rest == AT_REST:
+            MEMBER[A.STATE[i].island].rest = CHANGED  # joints may hold it otherwise now
+        if MEMBER[i].tied >= 0 and s < 0:
+            COUNT.any_placed = max(COUNT.any_placed, 1)
+        MEMBER[i].tied, MEMBER[i].next_tied = -1, -1
+        if s >= 0:
+            first[s] = i if first[s] < 0 else first[s]
+            MEMBER[i].tied, MEMBER[i].next_tied = first[s], first[s]
+            if last[s] >= 0:
+                MEMBER[last[s]].next_tied = i
+            last[s] = i
+
+
+@kernel
+def plan_components(table: Table, joints: Table) -> int:
+    """Plan the components of joints, whose other arrays contain zeros: which bodies they hold, and which the others tie
+    together. Returns the number of held bodies; -1, with none held, if arrays are too short (`measure_plan`)."""
+    A, J = scene_of(table), joints_of(joints)
     J.OF[:] = -1
     J.TALLY.order = 4
     if J.JOINT.shape[0] > 0:
-        bodies = together(BODY, J.PARTNER)
-        J.TALLY.components = make_plan(bodies, J.JOINT, J.COMPONENT, J.JOINED, J.COUPLING, J.OF)
-    return measure_plan(J, ROOM)
+        hold(A, J)
+        J.TALLY.components = make_plan(together(A.BODY, J.PARTNER), J.JOINT, J.COMPONENT, J.JOINED, J.COUPLING, J.OF)
+    if not measure_plan(J):
+        let_go(A, J)
+        return -1
+    tie_components(table, joints)
+    return J.TALLY.pinned
 
 
 _PLAN = "TALLY", "PROGRESS", "PARTS", "PART_LEDGER", "STIFF", "COMPONENT", "JOINED", "COUPLING", "KEPT", "STEPPED", "OF"
-_OF_ONE = "LOCAL", "HINGE", "PIVOTS", "MATRIX", "RIGHT", "MORE"  # scratch of one component
+_OF_ONE = "LOCAL", "HINGE", "PIVOTS", "MATRIX", "RIGHT", "MORE"  # scratch of one component, in the order of ROOM
 
 
 @cache
 def _arrays() -> Plan[Joints]:
-    own = _PLAN + _OF_ONE
-    return Plan(Joints, own, len(own), ("JOINT", "PARTNER"), {}, {"STIFF": (COUNT, 6)})
+    zeros = "ROOM", *_PLAN, *_OF_ONE
+    return Plan(Joints, (*zeros, "PINNED"), len(zeros), ("JOINT", "PARTNER", "STILL"), {}, {"STIFF": (COUNT, 6)})
+
+
+class Linkage(NamedTuple):
+    """The joints of a world."""
+
+    joint: Rows[Joint]  # (j,) between rows of BODY, or len(BODY) + row of PARTNER
+    PARTNER: Rows[Body]  # (x,) bodies that joints cannot move
+    still: IntArray  # (x,) 1 for those that never move
+
+
+NO_LINKAGE = Linkage(rows(Joint, 0), rows(Body, 0), np.zeros(0, np.int64))
 
 
 class JointMemory:
-    """Memory for successive plans of joints."""
+    """Memory for successive plans of joints.
+
+    Attributes:
+        pinned: number of bodies that joints hold by the last plan.
+    """
+
+    pinned: int
 
     def __init__(self) -> None:
         self._layout = Layout(_arrays())
-        self._room: IntArray = np.ones(len(_OF_ONE), np.int64)
         self._most: tuple[int, ...] = (1, 1, 1, 1, 2, 1)  # of one component so far
 
-    def plan(self, BODY: Rows[Body], JOINT: Rows[Joint], PARTNER: Rows[Body]) -> Table:
-        """The table of joints, `Joints`, with their plan; replaces the last one.
-
-        Args:
-            BODY: (n,) those of the scene.  JOINT: (j,), kept, not copied.  PARTNER: (x,), which joints cannot move.
-        """
-        j = len(JOINT)
+    def plan(self, scene: Table, n: int, linkage: Linkage) -> Table:
+        """The table of joints, `Joints`, with their plan, in a scene of n bodies, in which they now hold and tie some;
+        replaces the last one."""
+        JOINT, PARTNER, STILL = linkage
+        j, x = len(JOINT), len(PARTNER)
         while True:
             counts = {
-                "TALLY": 1, "PROGRESS": 1, "PARTS": 1, "PART_LEDGER": 1, "STIFF": 6, "OF": len(BODY), "JOINT": j,
-                "PARTNER": len(PARTNER),
+                "TALLY": 1, "PROGRESS": 1, "PARTS": 1, "PART_LEDGER": 1, "STIFF": 6, "OF": n, "JOINT": j, "PARTNER": x,
+                "STILL": x, "PINNED": n if x else 0, "ROOM": len(_OF_ONE),
                 "COMPONENT": j, "JOINED": 2 * j, "COUPLING": j, "KEPT": j, "STEPPED": j,
+                **dict(zip(_OF_ONE, self._most, strict=True)),
             }  # fmt: skip
-            table = self._layout.lay(counts | dict(zip(_OF_ONE, self._most, strict=True)), JOINT, PARTNER)
-            if plan_components(table, BODY, self._room):
+            table = self._layout.lay(counts, JOINT, PARTNER, STILL)
+            self.pinned = plan_components(scene, table)
+            if self.pinned >= 0:
                 return table
-            self._most = tuple(map(max, self._room.tolist(), self._most))
+            self._most = tuple(map(max, self._layout.integers("ROOM").tolist(), self._most))

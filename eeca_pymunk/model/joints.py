@@ -158,6 +158,7 @@ class Tally(Record):
 
     components: int
     order: int  # of steps without dissipation, drives and contacts: 4, or 2
+    pinned: int  # rows of PINNED in use
     worst: int  # status of the step
     answers: int  # linear system with which the component that is ready answers impulses, -1 for none
     gives: int  # 1 if its joints give way in that
@@ -166,8 +167,9 @@ class Tally(Record):
 class Joints(NamedTuple):
     """The arrays of the joints of a scene.
 
-    JOINT (j,): bodies are rows of BODY (n rows) or n + row of PARTNER (x,), which joints cannot move. The plan:
-    COMPONENT (components,), with the bodies of each in JOINED and its joints in COUPLING. Scratch for the largest
+    JOINT (j,): bodies are rows of BODY (n rows) or n + row of PARTNER (x,), which joints cannot move; STILL (x,): 1 for
+    those that never move. PINNED: bodies that joints hold where they are, sorted. The plan: COMPONENT (components,),
+    with the bodies of each in JOINED and its joints in COUPLING; ROOM (6,): see `measure_plan`. Scratch for the largest
     component: HINGE, LOCAL, of its joints and bodies; MATRIX, banded; RIGHT, right sides; PIVOTS; MORE, of linear
     systems and bounded rows; STIFF (6, 6), derivative of a joint's impulse by the ways of its bodies; PROGRESS;
     PARTS; PART_LEDGER, of a part of the step. OF (n,): the component of a body, -1 for none. KEPT (j,): the joints at
@@ -176,6 +178,9 @@ class Joints(NamedTuple):
 
     JOINT: Rows[Joint]
     PARTNER: Rows[Body]
+    STILL: IntArray
+    PINNED: Rows[Pinned]
+    ROOM: IntArray
     COMPONENT: Rows[Component]
     JOINED: Rows[ComponentBody]
     COUPLING: Rows[Coupling]

@@ -12,7 +12,6 @@ from ..compiled.entries import table_fields
 from ..compiled.records import Record, Rows
 from .bodies import Body, Member, Next, Rest
 from .contacts import Force, Impulse, Pair, Pushed
-from .joints import Pinned
 from .shapes import Cell, Corner, Grid, Link, List, Mark, Shape, Side
 from .step import Count, Missed, Step
 
@@ -36,7 +35,6 @@ class Scene(NamedTuple):
     KEYS, FORCES: hash table of the forces of the last step (`..contacts.memory`).
     CORE (2, K, 4): scratch, the placed cores of two shapes.
     SIDE, CORNER: of thin shapes (`..geometry.sides`), empty if there are none.
-    PINNED: bodies that joints hold where they are, empty if there are none.
     MISSED: budgets and tolerances that were not met.  PAR, COUNT: settings and energies, counters and flags.
     """
 
@@ -71,7 +69,6 @@ class Scene(NamedTuple):
     CORE: FloatArray
     SIDE: Rows[Side]
     CORNER: Rows[Corner]
-    PINNED: Rows[Pinned]
     MISSED: Rows[Missed]
     PAR: Step
     COUNT: Count

@@ -12,7 +12,12 @@ multipliers y of B x = f, which are velocities,
 
 with the factor of `cholesky.py` and R = PROXIMAL_STATICS. Where many contacts share the loads, one or two steps
 suffice; active-set methods, whose set has to be right to the last contact, may need a hundred. The iteration ends with
-the first x that balances.
+the first x that balances, or where none can: any x >= 0 with B x = f has y.f = sum (B^T y)_g x_g for the multipliers y,
+so that
+
+    sum x >= y.f / max (B^T y)_g   if y.f > 0,
+
+which grows without bound if there is no x (Farkas' lemma), within a few steps.
 """
 
 from __future__ import annotations
@@ -25,7 +30,7 @@ from ..compiled.records import Rows, zeros
 from ..model.contacts import EDGE as EDGE_KIND
 from ..model.contacts import ROW, Edge, Problem, Row
 from ..model.parameters.impulses import PROXIMAL_STATICS
-from ..model.parameters.rest import STATICS_START, STATICS_STEP
+from ..model.parameters.rest import STATICS_START, STATICS_STEP, STATICS_SUM
 from .build import normal_rate
 from .cholesky import Factor, assemble_blocks, factor_blocks, make_factor, roots_of, solve_blocks
 from .cones import add_impulses, cone_edges, impulses_of
@@ -156,6 +161,29 @@ def leave(
     return fastest_point(LEFT, EXTENT, n)
 
 
+@nonallocating
+def sum_of_momenta(V: FloatArray, IM: FloatArray, II: FloatArray, EXTENT: FloatArray, n: int) -> float:
+    """The impulses that would stop n bodies one by one, those of spins at their EXTENT."""
+    total = 0.0
+    for i in range(n):
+        total += (abs(V[i, 0]) + abs(V[i, 1])) / IM[i] if IM[i] > 0.0 else 0.0
+        total += abs(V[i, 2]) / (II[i] * EXTENT[i]) if II[i] > 0.0 and EXTENT[i] > 0.0 else 0.0
+    return total
+
+
+@nonallocating
+def needs_more(edges: Problem, START: FloatArray, Y: FloatArray, most: float) -> bool:
+    """Whether impulses that balance START have a sum above `most`, by the multipliers Y (see the module)."""
+    work, fastest = 0.0, 0.0
+    for i in range(edges.n):
+        for c in range(3):
+            inverse = edges.IM[i] if c < 2 else edges.II[i]
+            work -= START[i, c] * Y[i, c] / inverse if inverse > 0.0 else 0.0
+    for e in range(edges.m):
+        fastest = max(fastest, normal_rate(edges.ROWS[e], Y))
+    return work > most * fastest
+
+
 @kernel
 def equilibrium(
     problem: Problem, L: FloatArray, START: FloatArray, EXTENT: FloatArray, tolerance: float, most: int
@@ -187,6 +215,7 @@ def equilibrium(
     held, stuck = np.ones(K, np.int64), np.zeros(K, np.int64)
     SCALE, factor = roots_of(IM, II), make_factor(G, K, n, held, problem.POSE)
     problem_of_edges = Problem(G, IM, II, problem.POSE, n, K)
+    most_impulse = STATICS_SUM * n * sum_of_momenta(START, IM, II, EXTENT, n)
     free = True
     for done in range(most + 1):
         if speed <= tolerance:
@@ -194,6 +223,8 @@ def equilibrium(
             return True, done
         centre = mean_product(EDGE, K, 0.0, 0.0)
         if done == most or not (speed < np.inf and (centre > 0.0 or free)):
+            break
+        if done > 1 and needs_more(problem_of_edges, START, Y, most_impulse):
             break
         if done == 0 or not free:
             for e in range(K):
@@ -204,6 +235,9 @@ def equilibrium(
         if free:
             # Without regard to the cones, the nearest balancing impulses need one linear solve: often they are inside.
             free = moves_into_cones(EDGE, K)
+            for i in range(n if free else 0):  # all but round-off is left in motions that no contact can end
+                for c in range(3):
+                    Y[i, c] += DY[i, c]
         else:
             reduced = mean_product(EDGE, K, step_length(EDGE, K, False), step_length(EDGE, K, True)) / centre
             newton_step(problem_of_edges, EDGE, SCALE, factor, LEFT, Y, f, V, DY, centre * reduced**3, True)

@@ -47,9 +47,17 @@ class ConstraintImpulses:
                     pymunk.Constraint.impulse = _OWN  # type: ignore[method-assign]
             self._checked = ConstraintImpulses.shows
 
-    def shown_at(self, stamp: int) -> bool:
-        """Whether they are those after this number of pymunk's own steps."""
-        return self._stamp == stamp
+    def go_on(self, items: Sequence[pymunk.Constraint], stamp: int, dt: float) -> None:
+        """After a step dt in which all bodies sleep, let `impulse` return the impulses of the last forces, not those of
+        pymunk's solver. If pymunk has taken none, nothing has changed (`Sleep.step`)."""
+        if self._stamp == stamp:
+            return
+        last, impulse = self._joint["last_step"], self._joint["impulse"]
+        held = last > 0.0
+        impulse[held] *= (dt / last[held])[:, None]
+        last[held] = dt
+        self._joint["struck"] = 0.0
+        self.show(items, stamp)
 
     def read(self, j: int) -> float | None:
         """The impulse of row j, mass length/time; of rotary joints mass length²/time. That of springs has a sign

@@ -30,8 +30,9 @@ if TYPE_CHECKING:
 
 _MOST = 1024  # pairs; with more of them a test of all in each step saves no time
 _HANDLED = packer(HandledShape)
-# Values of a shape; centre of gravity of its body, and the pose of a static one; the fields of its `HandledShape`.
-_Known: TypeAlias = "tuple[ShapeRecord | None, list[float], tuple[float, ...]]"
+# Values of a shape; centre of gravity of its body, and the pose of a static one; the bytes of its `HandledShape`, with
+# body 0.
+_Known: TypeAlias = "tuple[ShapeRecord | None, list[float], bytes]"
 _WIDER = 0.01  # part of its size by which a box is wider than the shape, so that round-off hides no pair
 
 
@@ -56,7 +57,7 @@ class HandledPairs:
             del self._boxes[gone]
         known, bodies, rows = self._boxes, world.bodies, world.IDS[BODY_ROW].tolist()
         centres, states, ids = bodies.center_of_gravity.tolist(), world.state.tolist(), bodies.ids.tolist()
-        body_id, owner, packed = list[int](), list[int](), list[bytes]()
+        of: list[int] = []  # rows of the bodies
         for shape in place:
             record = world.records[shape]
             if record is not None and record.outside:
@@ -70,24 +71,27 @@ class HandledPairs:
                 box = _box(shape, record, at)
                 if box is None:
                     return
-                before = known[shape] = record, at, box
-            body_id.append(ids[row])
-            owner.append(row if rows[row] >= 0 else -1)
-            packed.append(_HANDLED.pack(owner[-1], *before[2]))
+                known[shape] = record, at, _HANDLED.pack(0, *box)
+            of.append(row)
         if pairs is not None:
+            owner = [row if rows[row] >= 0 else -1 for row in of]
+            HANDLED = from_bytes(HandledShape, [known[shape][2] for shape in place])
+            HANDLED["body"] = owner
             # Static shapes do not meet each other, nor do those of one body.
             found = [(i, j) for a, b in pairs if owner[i := place[a]] != owner[j := place[b]]]
-            self.arrays = from_bytes(HandledShape, packed), np.array(found, np.int64).reshape(-1, 2)
-            self._bodies = {body_id[i] ^ body_id[j] for i, j in found}  # see `private_batch.arbiter_bodies`
+            self.arrays = HANDLED, np.array(found, np.int64).reshape(-1, 2)
+            self._bodies = {ids[of[i]] ^ ids[of[j]] for i, j in found}  # see `private_batch.arbiter_bodies`
 
     def _pairs(self, shapes: list[pymunk.Shape]) -> list[tuple[pymunk.Shape, pymunk.Shape]] | None:
         """All pairs of shapes whose types have handlers; None if there are more than `_MOST`."""
-        of: dict[int, list[pymunk.Shape]] = {}
+        of: dict[int | None, list[pymunk.Shape]] = {kind: [] for kinds in self.handled for kind in kinds}
         for shape, kind in zip(shapes, private_shapes.collision_types(shapes), strict=True):
-            of.setdefault(kind, []).append(shape)
+            if kind in of:
+                of[kind].append(shape)
+        of[None] = shapes
         found: list[tuple[pymunk.Shape, pymunk.Shape]] = []
-        for kinds in self.handled:
-            one, two = (shapes if kind is None else of.get(kind, []) for kind in kinds)
+        for first, second in self.handled:
+            one, two = of[first], of[second]
             if len(found) + len(one) * len(two) > _MOST:
                 return None
             found += product(one, two)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,7 @@ import pymunk
 
 from ..arrays import FloatArray, IntArray
 from ..compiled.records import over, selected
-from ..impacts.scene_memory import Linkage
+from ..joints.workspace import Linkage
 from ..model.joints import Joint
 from ..reentry import FunctionsCalled
 from .constraint_impulses import ConstraintImpulses
@@ -35,6 +35,8 @@ class JointRows(Listing):
         ends_moved: whether lengths or anchors have changed since then, or poses of static bodies outside the space, so
             that other bodies may be held by joints (`..joints.pinned`).
     """
+
+    parted: frozenset[tuple[pymunk.Body, pymunk.Body]] | None
 
     def __init__(self, space: pymunk.Space, row: Mapping[pymunk.Body, int], n: int, past: JointRows | None) -> None:
         """Read the constraints of `space`. `row`: row in BODY (of n rows) of its bodies. Rows of `past` are used again.
@@ -65,29 +67,35 @@ class JointRows(Listing):
         self.joint["body"] = np.array([self._row_of[body] for body in self.bodies], np.int64)[self.ends]
         self.replan, self.ends_moved, self._held = True, False, frozenset[int]()
 
-    def renumber(self, row: Mapping[pymunk.Body, int], n: int) -> bool:
-        """Use other rows of bodies, see `__init__`. False, with nothing done, if constraints or partners are others."""
+    def renumber(self, row: Mapping[pymunk.Body, int], n: int, edited: Collection[Any] | None) -> bool:
+        """Use other rows of bodies, see `__init__`. False, with nothing done, if constraints or partners are others.
+        `edited`: since the last reading, bodies among others; None if unknown."""
         others = tuple([body for body in self.bodies if body not in row])
         if self.items != list(self.space.constraints) or others != self.partners.items:
             return False
-        self.refresh(anew=True)
+        anew = edited is None or not set(edited).isdisjoint(self.bodies)
+        self.refresh(anew)
         self._number(row, n, others)
         self.fresh = []
-        self.partners.renumber(self.space, n)
-        self._find_pushing()
+        self.partners.renumber(self.space, n, anew)
+        if self._reached == self.partners.reached():
+            self.parted = None
+        else:
+            self._find_pushing()
         return True
 
     def _find_pushing(self) -> None:
         """Find the constraints that always exert forces in a rest step, and those with a sleeping body; forget
         `parted`. Dynamic partners sleep or are outside the space: batch calls do not set their velocities to 0, so that
         their constraints always exert forces, too."""
-        unreached = dict(zip(self.partners.items, self.partners.dynamic(), strict=True))
-        asleep = {**unreached, **{self.partners.items[i]: False for i in self.partners.outside}}
+        self._reached = dynamic, outside = self.partners.reached()
+        unreached = dict(zip(self.partners.items, dynamic, strict=True))
+        asleep = {**unreached, **{self.partners.items[i]: False for i in outside}}
         always = sorted({*self.forcing, *self.with_body(unreached)})
         self._always, self._asleep = [self.items[j] for j in always], {self.items[j] for j in self.with_body(asleep)}
         self._touched, self._pushing = b"", list[pymunk.Constraint]()
         self._last_awake: tuple[Sequence[pymunk.Constraint], list[pymunk.Constraint]] = (), []
-        self.parted: frozenset[tuple[pymunk.Body, pymunk.Body]] | None = None
+        self.parted = None
 
     @property
     def linkage(self) -> Linkage:
@@ -237,13 +245,5 @@ class JointRows(Listing):
         self._impulses.show(self.items, self._timestamp())
 
     def go_on(self, dt: float) -> None:
-        """After a step in which all bodies sleep, let `constraint.impulse` return the impulses of the last forces, not
-        those of pymunk's solver. If pymunk has taken none, nothing has changed (`Sleep.step`)."""
-        if self._impulses.shown_at(self._timestamp()):
-            return
-        last, impulse = self.joint["last_step"], self.joint["impulse"]
-        held = last > 0.0
-        impulse[held] *= (dt / last[held])[:, None]
-        last[held] = dt
-        self.joint["struck"] = 0.0
-        self._impulses.show(self.items, self._timestamp())
+        """After a step in which all bodies sleep: see `ConstraintImpulses.go_on`."""
+        self._impulses.go_on(self.items, self._timestamp(), dt)

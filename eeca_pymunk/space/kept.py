@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from ..impacts.edits import FILTER, MASS, OUTLINE, SURFACE, Changes
 from ..impacts.taking_over import Kept
 from ..layout import BODY_ROW, READ, WRITTEN
@@ -65,4 +63,4 @@ def kept_rows(world: World, past: World) -> Kept:
             shapes[s] = place
             if new is not old and new is not None and old is not None:
                 changes += changes_of(place, new, old)
-    return Kept(np.array(bodies, np.int64), np.array(shapes, np.int64), np.array(outlines, np.int64), changes)
+    return Kept(bodies, shapes, outlines, changes)

@@ -7,6 +7,7 @@ has set, as under pymunk, though its pose does not change.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -61,21 +62,23 @@ class Partners:
         self.PARTNER = over(Body, self._memory)
         # See `read_partners`.
         self._fixed, self._known = np.full((len(items), 3), np.nan), np.full((len(items), 6), np.nan)
+        self._kinds = [math.nan] * len(items)  # the last column of _FIXED
         for i, row in enumerate(past_rows):
             if past is not None and row >= 0:
                 self._fixed[i], self._known[i] = past._fixed[row], past._known[row]
-        self.renumber(space, n)
+        self.renumber(space, n, True)
 
-    def renumber(self, space: pymunk.Space, n: int) -> None:
-        """Read all bodies, whose numbers begin with n from now on."""
+    def renumber(self, space: pymunk.Space, n: int, anew: bool) -> None:
+        """Read all bodies, whose numbers begin with n from now on. `anew`: centres of gravity and kinds, too."""
         # Moved static bodies of the space are found where the states of all its bodies are read.
         self._n, self.outside = n, [i for i, body in enumerate(self.items) if body.space is not space]
         self.__dict__.pop("_outside", None)
         self._clock = clock()
-        if self.items:
+        if anew:
             self._find_fixed(range(len(self.items)))
+            self.still: IntArray = (self._fixed[:, 2] < 0.0).astype(np.int64)
+        if self.items:
             self._read(self._all)
-        self.still: IntArray = (self._fixed[:, 2] < 0.0).astype(np.int64)
 
     def read(self) -> int:
         """Read the bodies outside the space, and mark the joints of those that have moved as EDITED; returns how
@@ -99,6 +102,7 @@ class Partners:
         now = np.array([private_joints.centre_and_kind(self.items[i]) for i in rows]).reshape(-1, 3)
         self._known[at[(now != self._fixed[at]).any(axis=1)]] = np.nan
         self._fixed[at] = now
+        self._kinds = self._fixed[:, 2].tolist()
 
     def _reader(self, rows: Sequence[int]) -> _Reader:
         """What `_read` takes, for the bodies of these rows."""
@@ -122,9 +126,9 @@ class Partners:
             )
         return status
 
-    def dynamic(self) -> list[bool]:
-        """Which of the bodies are dynamic."""
-        return [kind == 0.0 for kind in self._fixed[:, 2].tolist()]
+    def reached(self) -> tuple[list[bool], list[int]]:
+        """Which of the bodies are dynamic; and `outside`."""
+        return [kind == 0.0 for kind in self._kinds], self.outside
 
     def motion(self, i: int) -> tuple[float, float, float, float, float, float]:
         """Position of the origin (2), angle, velocity (2) and spin of the body in row i, as last read."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from functools import cached_property, partial
 from typing import Any
 
@@ -103,17 +103,17 @@ class World(BodyStates):
         if past is not None:
             self.joints = past.joints
             self.recall(past)
-        self.read_settings(anew=True)
+        self.read_settings(True, stale)
         self.undecided = False
         if past is not None and (rehearsal := past.__dict__.pop("rehearsal", None)) is not None:
             self.undecided, self.rehearsal = rehearsal.go_on(self), rehearsal
 
-    def read_settings(self, anew: bool = False) -> None:
+    def read_settings(self, anew: bool = False, stale: Collection[Any] | None = None) -> None:
         """Read and check the settings of the space, and its joints if they have changed or if `anew`; record later
-        changes."""
+        changes. `stale`: see there, in a new world."""
         self.gravity, self.damping = settings(self.space)
         self.damped = self.damping or 1.0
-        self._read_joints(anew)
+        self._read_joints(anew, stale)
         self._seen = [self._edits[0]]  # a list, because `current` reads its later values
         self._known = self._edits.in_place
         self.collisions = bool(private.handlers(self.space))
@@ -130,13 +130,13 @@ class World(BodyStates):
         """The factor of half a step's damping on velocities."""
         return float(self.damped ** (0.5 * dt))
 
-    def _read_joints(self, anew: bool) -> None:
+    def _read_joints(self, anew: bool, stale: Collection[Any] | None) -> None:
         past = self.joints
         if not self.space.constraints:
             self.joints = None
         elif anew or past is None or past.items != list(self.space.constraints):
             rows = {b: r for b, r in zip(self.bodies.items, self.IDS[BODY_ROW].tolist(), strict=True) if r >= 0}
-            if past is None or not past.renumber(rows, len(self.BODY)):
+            if past is None or not past.renumber(rows, len(self.BODY), stale):
                 self.joints = past = JointRows(self.space, rows, len(self.BODY), past)
             self.objects_read += len(past.fresh)
 

@@ -15,12 +15,13 @@ import pytest
 import eeca_pymunk
 from eeca_pymunk.compiled.entries import ENTRIES, SOURCES, TABLES, is_array, table_fields
 from eeca_pymunk.compiled.kernels import Kernel, kernels
+from eeca_pymunk.compiled.layouts import Layout, Plan
 from eeca_pymunk.compiled.tables import replaced, table_of
 from eeca_pymunk.model.islands import Island, IslandContacts
 from eeca_pymunk.model.joints import Joints
 from eeca_pymunk.model.run import RunArrays
 from eeca_pymunk.model.scene import Scene, scene_with
-from eeca_pymunk.model.values import Reading
+from eeca_pymunk.model.values import Reading, reading_of
 
 PACKAGE = Path(eeca_pymunk.__file__).parent
 MODULES = [
@@ -119,11 +120,25 @@ def test_tables_of_other_arrays_are_refused(wrong: dict[str, np.ndarray], told: 
 
 def test_a_replaced_array_is_in_the_words_and_in_the_arrays() -> None:
     arrays, other = scene_with(), np.zeros((2, 3))
-    table = table_of(arrays)
-    new, wanted = replaced(table, Scene, "BEGAN", other), arrays._replace(BEGAN=other)
+    table, wanted = table_of(arrays), arrays._replace(BEGAN=other)
+    new = replaced(table, Scene, "BEGAN", other)
     if table is not arrays:
-        assert new.words.tolist() == table_of(wanted).words.tolist() != table.words.tolist()
+        assert new is table  # kernels stay bound to it
+        assert new.words.tolist() == table_of(wanted).words.tolist() != table_of(arrays).words.tolist()
         with pytest.raises(TypeError, match=r"Scene\.BEGAN"):
             replaced(table, Scene, "BEGAN", np.zeros(3))
         new = new.arrays
     assert all(one is two for one, two in zip(new, wanted, strict=True))
+
+
+def test_a_layout_lays_what_was_replaced_anew() -> None:
+    """The next table of a layout has the arrays of its plan, not those that have replaced some in the last one."""
+    plan = Plan(Reading, ("TOTALS",), 1, (), {n: np.zeros((1,) * d, t) for n, t, d in table_fields("Reading")[1:]}, {})
+    layout = Layout(plan)
+    first = layout.lay({"TOTALS": 3})
+    words = None if isinstance(first, Reading) else first.words.tolist()
+    other = np.zeros((5, 2))
+    assert reading_of(replaced(first, Reading, "PLACED", other)).PLACED is other
+    again = layout.lay({"TOTALS": 3})
+    assert reading_of(again).PLACED is plan.constant["PLACED"]
+    assert words is None or again.words.tolist() == words

@@ -23,7 +23,7 @@ def held(stepper: ep.EECA) -> int:
     """How many bodies are held."""
     method = stepper._method
     assert isinstance(method, EventLoop)
-    return len(method.scene.PINNED)
+    return int(method.joints.TALLY.pinned)
 
 
 def laden(load: float, planks: int, height: float = 0.06) -> tuple[pymunk.Space, list[pymunk.Body], pymunk.Body]:

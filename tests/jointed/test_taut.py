@@ -16,7 +16,7 @@ from eeca_pymunk.jointed import advance
 from eeca_pymunk.jointed.component import answer, ready_in_step
 from eeca_pymunk.jointed.motors import let_slip
 from eeca_pymunk.joints.taut import is_taut
-from eeca_pymunk.joints.workspace import JointMemory
+from eeca_pymunk.joints.workspace import JointMemory, Linkage
 from eeca_pymunk.model.bodies import Body
 from eeca_pymunk.model.contacts import Row
 from eeca_pymunk.model.joint_steps import BodyStep
@@ -242,7 +242,10 @@ def test_what_a_joint_answers_that_pushes_a_body_is_positive(
 @pytest.mark.parametrize("turned", [0.0, 2.0])
 def test_taut_is_what_pulls_hard(kind: int, turned: float) -> None:
     """Two rods end to end: a pull on their joint is stiff beside their moments if (h/4) h f r > I/2."""
-    J = joints_of(JointMemory().plan(rows(Body, 3), rows(Joint, 1), rows(Body, 0)))._replace(LOCAL=rows(BodyStep, 2))
+    loop = ep.EECA(pymunk.Space())._method
+    assert isinstance(loop, EventLoop)
+    linkage = Linkage(rows(Joint, 1), rows(Body, 0), np.zeros(0, np.int64))
+    J = joints_of(JointMemory().plan(loop.table, loop.n, linkage))._replace(LOCAL=rows(BodyStep, 2))
     joint, link, local = J.JOINT[0], J.COUPLING[:1], J.LOCAL
     link[0].kind, link[0].body[:] = kind, (0, 1)
     apart = 0.0 if kind == PIVOT else 0.25

@@ -19,7 +19,7 @@ DT = 1 / 60
 def welded(stepper: ep.EECA) -> int:
     """How many bodies are held where they are."""
     assert isinstance(stepper._method, EventLoop)
-    return len(stepper._method.scene.PINNED)
+    return int(stepper._method.joints.TALLY.pinned)
 
 
 def arm(links: int, ratio: float = 2.0, loose: bool = False) -> tuple[pymunk.Space, list[pymunk.Body]]:

@@ -197,3 +197,22 @@ def test_self_stress_between_walls_stays_what_it_was() -> None:
     pile.L[:, 0] = 3.0, 3.0, 0.9
     assert pile.solve()
     assert pile.L[:, 0] == pytest.approx([3.0, 3.0, 1.0], rel=1e-6)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3, 1.0])
+def test_where_nothing_holds_the_search_ends_before_its_budget(friction: float) -> None:
+    """With a proof: motions against which no contact acts, though forces do, so that impulses x >= 0 along the edges of
+    the cones that balance the forces would have a sum beyond any of a pile."""
+    ended = 0
+    for pile in [random_pile(seed, friction) for seed in range(60)] + [wall(seed, 4, 8) for seed in range(4)]:
+        n = len(pile.im) - 1
+        mass = 1.0 / np.column_stack((pile.im, pile.im, pile.ii))[:n]
+        pull = pile.start[:-1] * mass
+        if pile.solve():
+            continue
+        motion = pile.start[:-1]
+        work, acting = -(pull * motion).sum(), (pile.edges() * (mass * motion).reshape(-1, 1)).sum(axis=0)
+        assert pile.factors <= 12
+        assert work > 10.0 * n * np.abs(pull).sum() * acting.max(initial=0.0)
+        ended += 1
+    assert ended > 3

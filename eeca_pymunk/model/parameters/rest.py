@@ -14,6 +14,8 @@ STOPPING_STEPS = heuristic(10.0, "steps", "Steps in which a body that is put to 
 STATICS_FACTORS = work(12, "factorisations", "Factorisations to find static forces, at most.")
 STATICS_FACTORS_NEAREST = work(6, "factorisations", "Further factorisations to approach the guess.")
 STATICS_START = accuracy(0.1, "of the mean guess", "Least impulse at the start of the interior-point iteration.")
+STATICS_SUM = accuracy(10.0, "n times the momenta of n bodies",
+    "Sum of the impulses of static forces beyond which none are sought.")
 STATICS_STEP = accuracy(0.99, "of the distance to the boundary", "Step of the interior-point iteration.")
 REST_RETRY = work(32, "steps",
     "Steps from one test for rest to the next. Larger: fewer factorisations, later rest.")
