@@ -58,7 +58,8 @@ class EventLoop(Remembering):
         memory: of the scene before, which is lost; None: new.
 
     Attributes:
-        n: number of rows of BODY.  thin: whether thin shapes may meet, whose sides are remembered.
+        n: number of rows of BODY.  held: those of the bodies that joints hold where they are.
+        thin: whether thin shapes may meet, whose sides are remembered.
     """
 
     def __init__(
@@ -66,6 +67,7 @@ class EventLoop(Remembering):
         memory: SceneMemory | None = None,
     ) -> None:  # fmt: skip
         memory = memory or SceneMemory()
+        self.held: Sequence[int]
         n = self.n = len(laid.BODY)
         self.together, self.measured = together, list(laid.measured)
         budget = STEP_LOOKS + STEP_LOOKS_BODY * n * max(n, MANY_BODIES) // MANY_BODIES
@@ -84,12 +86,7 @@ class EventLoop(Remembering):
     @property
     def pinned(self) -> Rows[Pinned]:
         """The bodies that joints hold where they are."""
-        return self.joints.PINNED[: self._pinned]
-
-    @property
-    def held(self) -> list[int]:
-        """Their rows."""
-        return self.pinned["body"].tolist() if self._pinned else []
+        return self.joints.PINNED[: len(self.held)]
 
     @property
     def mobility(self) -> FloatArray:
@@ -101,11 +98,11 @@ class EventLoop(Remembering):
     def _plan(self, linkage: Linkage) -> None:
         """Find which bodies the joints hold and tie together."""
         self.joint, self.partner, _ = linkage
-        self._bound, self._pinned = UNBOUND, 0
+        self._bound, self.held = UNBOUND, ()
         if self.jointed:
             plans = self._memory.joints
             self.ties = plans.plan(self.table, self.n, linkage)
-            self._pinned = plans.pinned
+            self.held = plans.held
         else:
             self.ties = self._memory.unjointed(self.table, self.n)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache
 from typing import NamedTuple
 
@@ -116,10 +117,10 @@ class JointMemory:
     """Memory for successive plans of joints.
 
     Attributes:
-        pinned: number of bodies that joints hold by the last plan.
+        held: rows of the bodies that joints hold by the last plan.
     """
 
-    pinned: int
+    held: Sequence[int]
 
     def __init__(self) -> None:
         self._layout = Layout(_arrays())
@@ -138,7 +139,8 @@ class JointMemory:
                 **dict(zip(_OF_ONE, self._most, strict=True)),
             }  # fmt: skip
             table = self._layout.lay(counts, JOINT, PARTNER, STILL)
-            self.pinned = plan_components(scene, table)
-            if self.pinned >= 0:
+            pinned = plan_components(scene, table)
+            if pinned >= 0:
+                self.held = self._layout.array("PINNED")["body"][:pinned].tolist() if pinned else ()
                 return table
             self._most = tuple(map(max, self._layout.integers("ROOM").tolist(), self._most))
