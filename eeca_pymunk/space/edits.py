@@ -88,7 +88,7 @@ def type_changes() -> int:
 
 
 class Edited(NamedTuple):
-    """What was edited: shapes and bodies; objects that no longer exist are None.
+    """What was edited: shapes and bodies, without those put to sleep; objects that no longer exist are None.
 
     Attributes:
         things: all.  reshaped: those of which more than `_SURFACE` may have changed, and the bodies of such shapes,
@@ -108,8 +108,9 @@ def edited_since(time: int) -> Edited | None:
         return None
     reshaped, others, values = set[Any](), set[Any](), True
     for thing, name in islice(reversed(_edited), _clock - time):
-        (others if name in _SURFACE else reshaped).add(thing())
         values = values and name in _VALUES
+        if name not in SLEEP:
+            (others if name in _SURFACE else reshaped).add(thing())
     if reshaped:
         reshaped.update([thing.body for thing in reshaped if isinstance(thing, pymunk.Shape)])
         others |= reshaped

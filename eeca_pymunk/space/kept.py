@@ -41,7 +41,7 @@ def kept_rows(world: World, past: World) -> Kept:
                 changes.append((MASS, row[i]))
     bodies[-1] = len(world.BODY) - 1  # the ground
     places, records, before = world.places, world.records, past.records
-    now, then = world.STATES[READ], past.STATES[WRITTEN]
+    now, then = world.STATES[READ, :, :3].tolist(), past.STATES[WRITTEN, :, :3].tolist()
     owner, old_owner = world.owner.tolist(), past.owner.tolist()
     shapes, outlines = [-1] * len(past.shapes), [-1] * len(past.shapes)
     unmoved: dict[int, bool] = {}  # of static bodies
@@ -55,7 +55,7 @@ def kept_rows(world: World, past: World) -> Kept:
         i, j = owner[place], old_owner[s]
         here, there = row[i], old_row[j]
         if here < 0 and i not in unmoved:
-            unmoved[i] = bool((now[i, :3] == then[j, :3]).all())
+            unmoved[i] = now[i] == then[j]
         if here < 0 and not unmoved[i]:
             continue
         outlines[s] = place

@@ -76,15 +76,25 @@ def sleeping_groups(bodies: Sequence[pymunk.Body]) -> IntArray:
 def put_to_sleep(bodies: Sequence[pymunk.Body], groups: IntArray) -> None:
     """Put awake bodies to sleep in groups; `groups` (N,): equal numbers for the bodies of a group, -1 for bodies that
     stay awake."""
-    leaders: dict[int, pymunk.Body] = {}
+    members: dict[int, list[pymunk.Body]] = {}
     for body, group in zip(bodies, groups.tolist(), strict=True):
-        if group < 0:
-            continue
-        if group in leaders:
-            body.sleep_with_group(leaders[group])
-        else:
-            body.sleep()
-            leaders[group] = body
+        members.setdefault(group, []).append(body)
+    members.pop(-1, None)
+    for group in members.values():
+        sleep_together(group)
+
+
+def sleep_together(group: Sequence[pymunk.Body]) -> None:
+    """Put the awake bodies of a group to sleep; what the wrapped methods do for each is done once."""
+    first = group[0]
+    assert first.space is not None
+    make_arbiters(first.space)
+    sleep, join = (_native[name] for name in SLEEP)
+    lead = weakref.ref(first)
+    for body in group:
+        sleep(body) if body is first else join(body, first)
+        _leaders[body] = lead
+        record(body, SLEEP[body is not first])
 
 
 def wake_neighbours(space: pymunk.Space) -> None:
@@ -121,5 +131,6 @@ def _sleep(native: Callable[..., None]) -> Callable[..., None]:
     return sleep_and_record
 
 
+_native: dict[str, Callable[..., None]] = {name: vars(pymunk.Body)[name] for name in SLEEP}
 for _name in SLEEP:
-    setattr(pymunk.Body, _name, _sleep(vars(pymunk.Body)[_name]))
+    setattr(pymunk.Body, _name, _sleep(_native[_name]))

@@ -35,7 +35,7 @@ from ..sleepers import approaches, rests, touches_sleeper
 from .private import shapes as private_shapes
 from .private import sleep as private_sleep
 from .private import spaces as private
-from .sleep_groups import resting_groups
+from .sleep_groups import resting_groups, sleep_together
 
 if TYPE_CHECKING:
     from .sync import Sync
@@ -56,21 +56,23 @@ class Sleep:
 
     def __init__(self, world: World, past: Sleep | None, sync: Sync) -> None:
         self.world, self.space, bodies = world, world.space, world.bodies
-        self._sleepers = [body for body, asleep in zip(bodies.items, bodies.asleep, strict=True) if asleep]
+        slept = bodies.asleep.tolist()
+        self._sleepers = [body for body, asleep in zip(bodies.items, slept, strict=True) if asleep]
         self.any_asleep = bool(self._sleepers)
         self.all_asleep = self.any_asleep and not bodies.dynamic.any()
         self._unmoved = private_sleep.unmoved(
-            [self.space.static_body, *(b for b in bodies.items if not b.is_sleeping)] if self.all_asleep else []
+            [self.space.static_body, *(b for b, asleep in zip(bodies.items, slept, strict=True) if not asleep)]
+            if self.all_asleep
+            else []
         )
         self._timestamp = private.timestamp(self.space)
         self._stamp, self._sync = self._timestamp(), sync
         self._wait, self._since = (AT_FIRST if past is None else past.timers).tolist()
         self._rested: FloatArray = np.zeros(len(bodies))  # time at rest
         if past is not None:
-            before = past.world.bodies.row
-            for i, body in enumerate(bodies.items):
-                if body in before and not past.world.bodies.asleep[before[body]]:
-                    self._rested[i] = past._rested[before[body]]
+            times = np.where(past.world.bodies.asleep, 0.0, past._rested).tolist()
+            known = dict(zip(past.world.bodies.items, times, strict=True))
+            self._rested[:] = [known.get(body, 0.0) for body in bodies.items]
         self._steps, self._dt = self.space.collision_persistence + 2, 0.0  # see `step`
         self._ready: IntArray = np.zeros(len(bodies), np.int64)
         row = world.IDS[BODY_ROW]
@@ -243,8 +245,6 @@ class Sleep:
         if sum(map(len, islands)) < enough:
             return
         self._since = 0
-        for first, *others in islands:
-            self._rested[[bodies.row[body] for body in (first, *others)]] = 0.0
-            first.sleep()
-            for body in others:
-                body.sleep_with_group(first)
+        for island in islands:
+            self._rested[[bodies.row[body] for body in island]] = 0.0
+            sleep_together(island)

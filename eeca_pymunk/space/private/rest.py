@@ -33,19 +33,23 @@ def rest(space: pymunk.Space, dt: float, keep_gravity: bool) -> None:
 @contextmanager
 def stopped(space: pymunk.Space) -> Iterator[None]:
     """Within this block bodies have velocity and force 0; sleeping bodies are not woken."""
-    held = []
+    held, static = [], lib.CP_BODY_TYPE_STATIC
     for body in space.bodies:
         c = body._body
-        if body.body_type != pymunk.Body.STATIC and not lib.cpBodyIsSleeping(c):
-            velocity, spin = lib.cpBodyGetVelocity(c), lib.cpBodyGetAngularVelocity(c)
-            held.append((c, velocity, spin, lib.cpBodyGetForce(c), lib.cpBodyGetTorque(c)))
+        if lib.cpBodyGetType(c) != static and not lib.cpBodyIsSleeping(c):
+            held.append((c, *_motion(c)))
     try:
-        for c, *_ in held:
-            _set_motion(c, (0.0, 0.0), 0.0, (0.0, 0.0), 0.0)
+        for c, v, spin, f, torque in held:
+            if v.x != 0.0 or v.y != 0.0 or spin != 0.0 or f.x != 0.0 or f.y != 0.0 or torque != 0.0:
+                _set_motion(c, (0.0, 0.0), 0.0, (0.0, 0.0), 0.0)
         yield
     finally:
         for motion in held:
             _set_motion(*motion)
+
+
+def _motion(c: Any) -> tuple[Any, float, Any, float]:
+    return lib.cpBodyGetVelocity(c), lib.cpBodyGetAngularVelocity(c), lib.cpBodyGetForce(c), lib.cpBodyGetTorque(c)
 
 
 def _set_motion(c: Any, velocity: Any, spin: float, force: Any, torque: float) -> None:
