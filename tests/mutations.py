@@ -201,6 +201,8 @@ MUTATIONS = (
              "oracles/test_impacts.py", "comes_to_rest_is_booked"),
     Mutation("equilibrium: one edge of the cone", "rows/cones.py", "slope = mu if side == 0 else -mu",
              "slope = mu", "rows/test_equilibrium.py", "linear_programming"),
+    Mutation("joints: bodies are held where they were before an edit", "joints/pinned.py",
+             "return bool(changed or found != before)", "return False", "jointed/test_welds.py", "may_move"),
     Mutation("equilibrium: sought where nothing can hold", "rows/equilibrium.py", "return work > most * fastest",
              "return False", "rows/test_equilibrium.py", "before_its_budget"),
     Mutation("equilibrium: sign of the residual", "rows/equilibrium.py", "PROXIMAL_STATICS * (V[i, c] - LEFT[i, c])",
