@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import repeat
+from operator import is_
 from typing import TYPE_CHECKING
 
 from ..impacts.edits import FILTER, MASS, OUTLINE, SURFACE, Changes
@@ -34,33 +36,29 @@ def kept_rows(world: World, past: World) -> Kept:
     """What a world that was just read has kept of the one before, `past`."""
     row, old_row = world.IDS[BODY_ROW].tolist(), past.IDS[BODY_ROW].tolist()
     bodies, changes = [-1] * len(past.BODY), list[tuple[int, int]]()
+    # Of each body before: whether its shapes are where they were on it, and whether in the same role, moving or ground.
+    there, alike = [False] * len(old_row), [False] * len(old_row)
     for i, j, unedited in world.same_as_before:
+        there[j] = True
         if old_row[j] >= 0:
-            bodies[old_row[j]] = row[i]
+            bodies[old_row[j]], alike[j] = row[i], True
             if not unedited:
                 changes.append((MASS, row[i]))
     bodies[-1] = len(world.BODY) - 1  # the ground
-    places, records, before = world.places, world.records, past.records
-    now, then = world.STATES[READ, :, :3].tolist(), past.STATES[WRITTEN, :, :3].tolist()
-    owner, old_owner = world.owner.tolist(), past.owner.tolist()
-    shapes, outlines = [-1] * len(past.shapes), [-1] * len(past.shapes)
-    unmoved: dict[int, bool] = {}  # of static bodies
-    for s, shape in enumerate(past.shapes):
-        if (place := places.get(shape, -1)) < 0:
-            continue
-        new, old = records[shape], before[shape]
-        if new is not old and not same_outline(new, old):
-            continue
-        # Both are on the same body, row i here and j before.
-        i, j = owner[place], old_owner[s]
-        here, there = row[i], old_row[j]
-        if here < 0 and i not in unmoved:
-            unmoved[i] = now[i] == then[j]
-        if here < 0 and not unmoved[i]:
-            continue
-        outlines[s] = place
-        if bodies[there] == here if here >= 0 and there >= 0 else here == there:
-            shapes[s] = place
-            if new is not old and new is not None and old is not None:
-                changes += changes_of(place, new, old)
+    now, then, place_of = world.STATES[READ], past.STATES[WRITTEN], world.bodies.row
+    for j, body in enumerate(past.bodies.items):
+        if not there[j] and (i := place_of.get(body, -1)) >= 0:
+            there[j] = row[i] >= 0 or now[i, :3].tolist() == then[j, :3].tolist()
+            alike[j] = there[j] and row[i] < 0 and old_row[j] < 0
+    new, old = list(map(world.records.get, past.shapes)), list(map(past.records.get, past.shapes))
+    places, owner = map(world.places.get, past.shapes, repeat(-1)), past.owner.tolist()
+    outlines = [place if there[j] else -1 for place, j in zip(places, owner, strict=True)]
+    edited = [s for s, same in enumerate(map(is_, new, old)) if not same and outlines[s] >= 0]
+    for s in edited:
+        if not same_outline(new[s], old[s]):
+            outlines[s] = -1
+    shapes = [place if alike[j] else -1 for place, j in zip(outlines, owner, strict=True)]
+    for s in edited:
+        if shapes[s] >= 0 and (one := new[s]) is not None and (other := old[s]) is not None:
+            changes += changes_of(shapes[s], one, other)
     return Kept(bodies, shapes, outlines, changes)

@@ -148,7 +148,7 @@ class World(BodyStates):
     @cached_property
     def places(self) -> dict[pymunk.Shape, int]:
         """The row of SHAPE of each solid shape."""
-        return {shape: k for k, shape in enumerate(self.shapes)}
+        return dict(zip(self.shapes, range(len(self.shapes)), strict=True))
 
     @property
     def centred(self) -> BoolArray:
