@@ -118,6 +118,14 @@ def _come_and_go(s: Scene) -> None:
     s.each = each
 
 
+def _come_and_go_among(s: Scene, others: int) -> None:
+    for i in range(others):
+        body = pymunk.Body(1.0, 0.5)
+        body.position = (-49.0 + 0.1 * i, 0.145)
+        s.space.add(body, pymunk.Circle(body, 0.045))
+    _come_and_go(s)
+
+
 def _moved(s: Scene, kind: int) -> None:
     body = s.ball(kind)
     s.each = lambda k: setattr(body, "position", (-20.0, 5.0 + 0.01 * (k % 2)))
@@ -183,6 +191,7 @@ FEATURES: dict[str, Callable[[Scene], object]] = {
     "filter set": _each(lambda s: s.shapes[3], "filter", lambda k: pymunk.ShapeFilter(group=1 + k % 2)),
     "mass set": _each(lambda s: s.flying, "mass", lambda k: 1.0 + 0.1 * (k % 2)),
     "body added and removed every 10 steps": _come_and_go,
+    "the same among 300 bodies at rest": lambda s: _come_and_go_among(s, 300),
     "static body put": lambda s: _moved(s, pymunk.Body.STATIC),
 }
 CHOICES = FEATURES
