@@ -20,7 +20,7 @@ NO_GRID: IntArray = np.zeros(1, np.int64)  # CSR of few static shapes
 
 def pool_sizes(moving: int) -> tuple[int, int]:
     """Lengths of POOL and of HEAD in a scene with so many moving shapes."""
-    return 32 * moving + 1024, 1 << max(1, (2 * moving + 1).bit_length())
+    return 64 * moving + 1024, 1 << max(1, (2 * moving + 1).bit_length())
 
 
 def near_lists(scene: Scene, moving: int) -> Scene:
