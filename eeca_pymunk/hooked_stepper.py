@@ -192,22 +192,21 @@ class HookedStepper(PackedSpace):
             world.scatter(status)
             world.joints.write()
             world.hooks.after(dt)
-            if not world.collisions:
-                if self.sync:
-                    self._sync.update(dt)
-                else:
-                    self._sync.accept()
-        elif world.collisions:
-            world.scatter(status)
         else:
-            self.write_end(world, dt, status)
+            world.scatter(status)
+        if not world.collisions:  # else the rehearsal has updated pymunk's shapes
+            self.update_shapes(dt)
 
     def write_end(self, world: World, dt: float, status: int) -> None:
         """Write the end of a step to the space."""
+        world.scatter(status)
+        self.update_shapes(dt)
+
+    def update_shapes(self, dt: float) -> None:
+        """Update pymunk's shapes, with `sync`, to the end of a step that was written to the bodies."""
         if self.sync:
-            self._sync.write_end(dt, status)
+            self._sync.end(dt)
         else:
-            world.scatter(status)
             self._sync.accept()
 
     def _outcome(self, world: World, dt: float) -> Outcome:

@@ -5,12 +5,12 @@
 | STATES | (2, N, 9) | the state as read from pymunk, and as written at the end of the last step (NaN: unknown) |
 | IDS | (4, N) int | ids, rows and flags of the bodies |
 | EXTRA | (N, 5) | values for bodies with flags |
-| ENDS | (18 N + 1) | four tables in the form of pymunk's batch calls, then the energy lost by damping 0 |
+| ENDS | (9 N + 1) | two tables in the form of pymunk's batch calls, then the energy lost by damping 0 |
 | HOOKED | (6, N, 9) | states and changes in steps that call functions of the program |
 
 The columns of STATES and HOOKED are position (2), angle, velocity (2), spin, force (2), torque. The tables of ENDS are
-(N, 6) pose and velocity at the end of the step; (N, 6) this pose with velocity 0, and (N, 3) this velocity, for a rest
-step in between; (N, 3) forces, reset. If no body rotates, the first three have no columns of angle and spin.
+(N, 6) pose and velocity at the end of the step; (N, 3) forces, reset. If no body rotates, the first has no columns of
+angle and spin.
 """
 
 # STATES
@@ -30,8 +30,8 @@ COG_X, COG_Y = 0, 1  # centre of mass in the body's coordinates: length
 ACCELERATION_X, ACCELERATION_Y, ANGULAR_ACCELERATION = 2, 3, 4  # of a steered body: length/time², rad/time²
 EXTRA_COLUMNS = 5
 # ENDS
-END, STOPPED, VELOCITIES, RESET_FORCES = 0, 6, 12, 15  # where each begins, in N
-END_COLUMNS = 18
+END, RESET_FORCES = 0, 6  # where each begins, in N
+END_COLUMNS = 9
 # HOOKED: changes by functions before the bodies move, and afterwards; the state at the start of the step, at the start
 # of the rehearsal, and before a function was called; the end of the step without changes by functions
 CHANGES_BEFORE, CHANGES_AFTER, START, REHEARSAL_START, BEFORE_CALL, UNALTERED = 0, 1, 2, 3, 4, 5

@@ -197,21 +197,3 @@ def write_ends(table: Table, status: int) -> int:
     """See `put_ends`."""
     R = reading_of(table)
     return put_ends(R.STATES, R.IDS, R.ENDS, status)
-
-
-@kernel
-def write_stopped_ends(table: Table, status: int) -> None:
-    """Write the end of the step to the tables STOPPED (poses, with velocity 0) and VELOCITIES, for a rest step. They
-    have the columns of END."""
-    R = reading_of(table)
-    ENDS, N = R.ENDS, R.STATES.shape[1]
-    after = R.STATES[layout.WRITTEN]
-    stopped, velocities = ENDS[layout.STOPPED * N :], ENDS[layout.VELOCITIES * N :]
-    if status & TURNS:
-        for i in range(N):
-            for k in range(3):
-                stopped[6 * i + k], stopped[6 * i + 3 + k], velocities[3 * i + k] = after[i, k], 0.0, after[i, 3 + k]
-    else:
-        for i in range(N):
-            for k in range(2):
-                stopped[4 * i + k], stopped[4 * i + 2 + k], velocities[2 * i + k] = after[i, k], 0.0, after[i, 3 + k]

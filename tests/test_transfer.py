@@ -10,7 +10,6 @@ import pytest
 
 from eeca_pymunk import layout as at
 from eeca_pymunk import transfer
-from eeca_pymunk.arrays import FloatArray
 from eeca_pymunk.geometry.flight import move_to
 from eeca_pymunk.space.world import World
 from scenes.scene import add_disk
@@ -171,27 +170,6 @@ def test_angles_are_written_only_where_some_body_turns() -> None:
     assert world.write_whole() & transfer.TURNS
     world.scatter(transfer.TURNS)
     assert body.angular_velocity == 3.0
-
-
-@pytest.mark.parametrize("turns", [False, True])
-def test_tables_of_rest_and_of_speed_make_up_the_end(turns: bool) -> None:
-    found: list[FloatArray] = []
-    for parts in (False, True):
-        world = make()
-        if not turns:
-            the_body(world).angular_velocity = 0.0
-        world.gather()
-        status = flown(world, DT, 1.0)
-        if parts:
-            world.scatter_stopped(status)
-            world.gather()
-            assert not world.state[world.IDS[at.BODY_ROW] >= 0, 3:5].any()
-            world.scatter_velocities(status)
-        else:
-            world.scatter(status)
-        world.gather()
-        found.append(world.state.copy())
-    assert np.array_equal(found[0], found[1])
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])

@@ -67,7 +67,6 @@ ENTRIES = {
     "transfer:write_states": "f8[3] i8[2] f8[2] Body[1] f8[1] f8 i8",
     "transfer:accept_static": "{Reading}",
     "transfer:write_ends": "{Reading} i8",
-    "transfer:write_stopped_ends": "{Reading} i8",
     "rehearsing:place_for_rehearsal": "{Reading} HandledShape[1] i8[2] f8 f8 f8 f8",
     "rehearsing:copy_start": "{Reading}",
     "rehearsing:accept_rounding": "{Reading}",

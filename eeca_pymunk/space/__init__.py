@@ -15,7 +15,7 @@ earlier reading of the space, of which everything that has not changed is used a
 | states in and out | `body_states.py` |
 | edits by the program | `edits.py` (shapes, bodies), `listing.py` (joints), `patching.py` (rows after edits in place) |
 | functions of the program | `hooks.py`; of handlers `rehearsal.py`, `handled_pairs.py`, `watched.py`, `decisions.py` |
-| pymunk's shapes after a step | `sync.py`, `rest_step.py`, `late_shapes.py` |
+| pymunk's shapes after a step | `sync.py`, `late_shapes.py` |
 | what else pymunk shows of a step | `arbiters.py` (contacts), `constraint_impulses.py` |
 | sleeping bodies | `sleeping.py`, `sleep_groups.py` |
 | a line of text | `describe.py` |

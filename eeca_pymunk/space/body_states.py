@@ -18,25 +18,17 @@ from ..compiled.records import Rows
 from ..model.bodies import Body
 from ..model.step import FORCES, TURNS
 from ..rehearsing import accept_rounding, alter_end, copy_start
-from ..transfer import accept_static, read_states, write_ends, write_stopped_ends
+from ..transfer import accept_static, read_states, write_ends
 from .bodies import STATE_FIELDS, Bodies
 from .private import batch as private_batch
 
 _F = batch.BodyFields
-_SPEEDS = {0: _F.VELOCITY, TURNS: _F.VELOCITY | _F.ANGULAR_VELOCITY}
-_WHOLE = {0: _F.POSITION | _F.VELOCITY, TURNS: _F.POSITION | _F.ANGLE | _F.VELOCITY | _F.ANGULAR_VELOCITY}
-_FORCES = {0: _F.FORCE | _F.TORQUE}
-# The four tables of ENDS: where each begins (in N), and its fields. The key is that place, plus TURNS if the table has
+# The tables of ENDS: where each begins (in N), and its fields. The key is that place, plus TURNS if the table has
 # angles and spins.
 _TABLES = {
-    start + turns: (start, fields)
-    for start, both in (
-        (layout.END, _WHOLE),
-        (layout.STOPPED, _WHOLE),
-        (layout.VELOCITIES, _SPEEDS),
-        (layout.RESET_FORCES, _FORCES),
-    )
-    for turns, fields in both.items()
+    layout.END: (layout.END, _F.POSITION | _F.VELOCITY),
+    layout.END + TURNS: (layout.END, _F.POSITION | _F.ANGLE | _F.VELOCITY | _F.ANGULAR_VELOCITY),
+    layout.RESET_FORCES: (layout.RESET_FORCES, _F.FORCE | _F.TORQUE),
 }
 # Where IDS, EXTRA and HOOKED begin in the memory, whose first array is STATES: in words of 8 bytes, over N.
 _IDS, _EXTRA, _HOOKED = (
@@ -44,7 +36,7 @@ _IDS, _EXTRA, _HOOKED = (
     2 * layout.STATE_COLUMNS + 4,
     2 * layout.STATE_COLUMNS + 4 + layout.EXTRA_COLUMNS,
 )
-_KERNELS = copy_start, write_ends, write_stopped_ends, alter_end, accept_rounding, accept_static
+_KERNELS = copy_start, write_ends, alter_end, accept_rounding, accept_static
 
 
 class _Writers(dict[int, Callable[[], None]]):
@@ -114,8 +106,7 @@ class BodyStates:
     def bind(self, reading: Table, bound: Callable[..., list[Callable[..., Any]]]) -> None:
         """Set `reading` and `bound`, and make the functions that use kernels on these arrays."""
         self.reading, self.bound = reading, bound
-        self.copy_start, self.write_ends, self._write_stopped_ends, self._alter_end, *more = bound(*_KERNELS)
-        self.accept_rounding, self.accept_static = more
+        self.copy_start, self.write_ends, self._alter_end, self.accept_rounding, self.accept_static = bound(*_KERNELS)
 
     def load(self) -> None:
         """Read the present states into BODY."""
@@ -227,14 +218,3 @@ class BodyStates:
         self._write[layout.END + (status & TURNS)]()
         if self.eccentric:
             self._write[layout.END + (status & TURNS)]()
-
-    def scatter_stopped(self, status: int) -> None:
-        """Write the poses, and velocity 0; `scatter_velocities` must follow."""
-        self._write_stopped_ends(status)
-        self._write[layout.STOPPED + (status & TURNS)]()
-        if self.eccentric:
-            self._write[layout.STOPPED + (status & TURNS)]()
-
-    def scatter_velocities(self, status: int) -> None:
-        """Write the velocities."""
-        self._write[layout.VELOCITIES + (status & TURNS)]()

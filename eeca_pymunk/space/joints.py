@@ -59,7 +59,7 @@ class JointRows(Listing):
         self._edits, self._timestamp = Edits(self.row), private.timestamp(space)
         self._clock = clock()
         self.rates: dict[pymunk.Constraint, Rate] = {} if past is None else past.rates
-        self._find_pushing()
+        self.parted: frozenset[tuple[pymunk.Body, pymunk.Body]] | None = None
 
     def _number(self, row: Mapping[pymunk.Body, int], n: int, others: Sequence[pymunk.Body]) -> None:
         """Write the numbers of bodies: those of `row`, and from n on of `others`. Components need a new plan."""
@@ -78,24 +78,8 @@ class JointRows(Listing):
         self._number(row, n, others)
         self.fresh = []
         self.partners.renumber(self.space, n, anew)
-        if self._reached == self.partners.reached():
-            self.parted = None
-        else:
-            self._find_pushing()
-        return True
-
-    def _find_pushing(self) -> None:
-        """Find the constraints that always exert forces in a rest step, and those with a sleeping body; forget
-        `parted`. Dynamic partners sleep or are outside the space: batch calls do not set their velocities to 0, so that
-        their constraints always exert forces, too."""
-        self._reached = dynamic, outside = self.partners.reached()
-        unreached = dict(zip(self.partners.items, dynamic, strict=True))
-        asleep = {**unreached, **{self.partners.items[i]: False for i in outside}}
-        always = sorted({*self.forcing, *self.with_body(unreached)})
-        self._always, self._asleep = [self.items[j] for j in always], {self.items[j] for j in self.with_body(asleep)}
-        self._touched, self._pushing = b"", list[pymunk.Constraint]()
-        self._last_awake: tuple[Sequence[pymunk.Constraint], list[pymunk.Constraint]] = (), []
         self.parted = None
+        return True
 
     @property
     def linkage(self) -> Linkage:
@@ -117,7 +101,7 @@ class JointRows(Listing):
         except ValueError:
             self._edits.rows.update(edited)
             raise
-        regroup = False  # whether `find_functions` and `_find_pushing` may find other constraints
+        regroup = False  # whether `find_functions` may find other constraints
         for j, values in found.items():
             item, before = self.items[j], self.values[j]
             a, b = self.pairs[item]
@@ -133,25 +117,8 @@ class JointRows(Listing):
                 self.calls[j], regroup = calls, True
         if regroup:
             self.find_functions()
-            self._find_pushing()
+            self.parted = None
         return self.replan
-
-    def pushing(self) -> list[pymunk.Constraint]:
-        """The constraints that exert forces in a rest step of pymunk (`sync.py`): those that always do, and joints that
-        are or may be violated (`touched`). The list is a new object only if its content differs (see `awake`)."""
-        touched = self.joint["touched"].tobytes()
-        if touched != self._touched:
-            violated = np.flatnonzero(self.joint["touched"]).tolist()
-            self._touched = touched
-            self._pushing = list(dict.fromkeys((*self._always, *(self.items[j] for j in violated))))
-        return self._pushing
-
-    def awake(self, items: Sequence[pymunk.Constraint]) -> list[pymunk.Constraint]:
-        """Those of the constraints that have no sleeping body. `items` must not be changed in place: the last result is
-        kept for the same object."""
-        if items is not self._last_awake[0]:
-            self._last_awake = items, [item for item in items if item not in self._asleep]
-        return self._last_awake[1]
 
     def laws(self) -> list[Callable[[Any, float], float]]:
         """The linear laws of the springs with functions in the last step."""

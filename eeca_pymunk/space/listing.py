@@ -13,16 +13,15 @@ from weakref import ref
 import numpy as np
 import pymunk
 
-from ..model.joints import MOTOR, RATCHET, ROTARY_SPRING, SPRING
+from ..model.joints import RATCHET
 from .constraints import ConstraintValues, read
 from .private import joints as private_joints
 from .spring_functions import own_function
 
 _ROUND_OFF = 1e-12  # of the distance of a pin's anchors, over that distance
-_PUSHING = SPRING, ROTARY_SPRING, MOTOR
 # The attributes of a `Listing` that another one of the same constraints uses again.
 _LISTED = (
-    "pairs", "bodies", "ends", "row", "values", "calls", "ratchets", "forcing", "functions", "with_law", "before",
+    "pairs", "bodies", "ends", "row", "values", "calls", "ratchets", "functions", "with_law", "before",
     "after", "calling", "centres",
 )  # fmt: skip
 
@@ -61,8 +60,7 @@ class Listing:
         functions: rows of springs that have a force or torque function of the program.  with_law: these springs.
         before, after, calling: constraints with a `pre_solve`, with a `post_solve`, with either.
         centres: of gravity of `bodies`, to which the anchors in `values` are relative.
-        ratchets: rows of the ratchets.  forcing: rows of springs, motors and joints with a bounded force, which exert
-            forces in a rest step of pymunk even if they are not violated.
+        ratchets: rows of the ratchets.
     """
 
     def __init__(self, space: pymunk.Space, past: Listing | None) -> None:
@@ -102,7 +100,6 @@ class Listing:
     def find_functions(self) -> None:
         """Find the lists of constraints that depend on kinds, bounds and functions."""
         self.ratchets = [j for j, values in enumerate(self.values) if values.kind == RATCHET]
-        self.forcing = [j for j, values in enumerate(self.values) if values.bounded or values.kind in _PUSHING]
         self.functions = [j for j, calls in enumerate(self.calls) if calls.own]
         self.with_law = [self.items[j] for j in self.functions]
         self.before = [item for item, calls in zip(self.items, self.calls, strict=True) if calls.before is not None]

@@ -7,7 +7,6 @@ has set, as under pymunk, though its pose does not change.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -62,7 +61,6 @@ class Partners:
         self.PARTNER = over(Body, self._memory)
         # See `read_partners`.
         self._fixed, self._known = np.full((len(items), 3), np.nan), np.full((len(items), 6), np.nan)
-        self._kinds = [math.nan] * len(items)  # the last column of _FIXED
         for i, row in enumerate(past_rows):
             if past is not None and row >= 0:
                 self._fixed[i], self._known[i] = past._fixed[row], past._known[row]
@@ -102,7 +100,6 @@ class Partners:
         now = np.array([private_joints.centre_and_kind(self.items[i]) for i in rows]).reshape(-1, 3)
         self._known[at[(now != self._fixed[at]).any(axis=1)]] = np.nan
         self._fixed[at] = now
-        self._kinds = self._fixed[:, 2].tolist()
 
     def _reader(self, rows: Sequence[int]) -> _Reader:
         """What `_read` takes, for the bodies of these rows."""
@@ -125,10 +122,6 @@ class Partners:
                 f"{body.velocity} and angular velocity {body.angular_velocity}: set finite values before stepping"
             )
         return status
-
-    def reached(self) -> tuple[list[bool], list[int]]:
-        """Which of the bodies are dynamic; and `outside`."""
-        return [kind == 0.0 for kind in self._kinds], self.outside
 
     def motion(self, i: int) -> tuple[float, float, float, float, float, float]:
         """Position of the origin (2), angle, velocity (2) and spin of the body in row i, as last read."""

@@ -18,22 +18,20 @@ A step of pymunk's own is found by its counter of steps (`Sync.is_ours`); the ne
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from functools import partial
 from typing import TYPE_CHECKING
 from weakref import WeakMethod, ref
 
-from ..model.step import TURNS
 from ..reentry import BUSY
 from .arbiters import ReadTouches, show_contacts
-from .bodies import ANGULAR_VELOCITY, VELOCITY
 from .late_shapes import late_shapes
 from .private import arbiters as private_arbiters
-from .private import joints as private_joints
 from .private import rest as private_rest
 from .private import shapes as private_shapes
 from .private import sleep as private_sleep
 from .private import spaces as private
-from .rest_step import Awake, rest_step, without_joints
+from .watched import without_joints
 
 if TYPE_CHECKING:
     from .world import World
@@ -97,8 +95,7 @@ class Sync:
                     self._world.rehearsal.take_left_out_step()
                 self.state, self.stamp = ARBITERS_CURRENT, self._timestamp()
             else:
-                with private_rest.stopped(self.space), without_joints(self.space, False):
-                    self.rest(self._dt, False)
+                self.rest(self._dt)
         self.arbiters_read |= read
 
     def call_back(self) -> None:
@@ -132,22 +129,23 @@ class Sync:
         """As `is_ours`; also true if the space was read anew since the last EECA step and no decision applies."""
         return self._timestamp() in (self.stamp, self._past_stamp)
 
-    def rest(self, dt: float, joined: bool = True) -> None:
-        """Take a rest step that calls no functions of bodies. All bodies must have velocity 0; jointed ones may end
-        with velocities of round-off. `joined`: whether joints act, as at the end of a step."""
-        world, stored = self._world, self._first or self._timestamp() != self._rested
-        if stored:
+    def rest(self, dt: float) -> None:
+        """Take a rest step: bodies keep their velocities and forces, and no functions of bodies and constraints are
+        called."""
+        world = self._world
+        if self._first or self._timestamp() != self._rested:
+            # pymunk may have corrections and impulses, also of new bodies, which it would apply.
             private_shapes.forget_corrections(world.movers)
             for arbiter in private.raw_arbiters(self.space):
                 private_arbiters.set_impulse(arbiter, None)
         slept = self._asleep and world.bodies.in_order()
-        joints = world.joints if joined else None
-        arguments = self.space, dt, joints, stored, self._awake() if self._asleep else None
-        if world.hooks.any_body:
-            with world.hooks.silent:
-                rest_step(*arguments)
-        else:
-            rest_step(*arguments)
+        with ExitStack() as within:
+            within.enter_context(private_rest.stopped(self.space))
+            if self.space.constraints:
+                within.enter_context(without_joints(self.space, False))
+            if world.hooks.any_body:
+                within.enter_context(world.hooks.silent)
+            private_rest.rest(self.space, dt, self._asleep)
         if slept and not world.bodies.in_order():
             self._stop_woken()  # gravity has accelerated the bodies that pymunk has woken
         self._rested, self._dt = self._timestamp(), dt
@@ -155,40 +153,10 @@ class Sync:
         self.state, self.stamp, self.arbiters_read, self._first = ARBITERS_CURRENT, self._rested, False, False
         self._shapes.sync = self._reference
 
-    def _awake(self) -> Awake:
-        """See `rest_step`. Which joints have sleeping bodies is known from the start of the step, unless functions of
-        the program may have woken bodies."""
-        joints = self._world.joints
-        if joints is None or self._world.hooks.any_body or joints.calling or joints.with_law:
-            return private_joints.awake
-        return joints.awake
-
-    def write_end(self, dt: float, status: int) -> None:
-        """Write the end of the step to the space, and update pymunk's shapes: by reindexing, or by a rest step between
-        poses and velocities."""
-        world = self._world
-        if self.reindexes():
-            world.scatter(status)
-            self.leave_late(dt)
-            return
-        if not status & TURNS and (world.joints is not None or world.sleeps):
-            # In the rest step joints change spins by round-off, gravity (if bodies may sleep) by more: ENDS needs them.
-            status = world.write_ends(status | TURNS)
-        world.scatter_stopped(status)
-        self.rest(dt)
-        world.scatter_velocities(status)
-
-    def update(self, dt: float) -> None:
-        """Update pymunk's shapes to the present state of the bodies: the end of a step that is already written, with
-        changes by functions."""
+    def end(self, dt: float) -> None:
+        """Update pymunk's shapes to the end of a step, which was written to the bodies: by reindexing, or by a rest
+        step."""
         if self.reindexes():
             self.leave_late(dt)
-            return
-        bodies = self._world.bodies
-        end = bodies.gather()
-        assert end is not None  # additions and removals by functions still wait
-        stopped = end.copy()
-        stopped[:, VELOCITY], stopped[:, ANGULAR_VELOCITY] = 0.0, 0.0
-        bodies.scatter(stopped, unchanged=True)
-        self.rest(dt)
-        bodies.scatter(end, unchanged=True)
+        else:
+            self.rest(dt)

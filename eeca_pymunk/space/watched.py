@@ -12,6 +12,7 @@ import pymunk
 from .joints import JointRows
 from .private import joints as private_joints
 from .private import spaces as private
+from .private.joints import clear_max_forces, restore_max_forces, restore_motions, silent, with_laws
 from .private.versions import to_return
 
 if TYPE_CHECKING:
@@ -63,11 +64,11 @@ def silent_joints(rehearsal: Rehearsal, joints: JointRows) -> Iterator[None]:
     silenced = [item for item in joints.calling if item.pre_solve is None or item.a.space is None]
     with ExitStack() as stack:
         if joints.partners.items:
-            stack.callback(private_joints.restore_motions, joints.partners.motions())
+            stack.callback(restore_motions, joints.partners.motions())
         if silenced:
-            stack.enter_context(private_joints.silent(silenced))
+            stack.enter_context(silent(silenced))
         if joints.with_law:
-            stack.enter_context(private_joints.with_laws(joints.with_law, joints.laws()))
+            stack.enter_context(with_laws(joints.with_law, joints.laws()))
         if joints.before:
             stack.enter_context(_watched_joints(rehearsal, [item for item in joints.before if item not in silenced]))
         yield
@@ -86,3 +87,19 @@ def _watched_joints(rehearsal: Rehearsal, items: Sequence[pymunk.Constraint]) ->
     finally:
         for item, before, after in functions:
             private_joints.replace_functions(item, before, after)
+
+
+@contextmanager
+def without_joints(space: pymunk.Space, forces: bool) -> Iterator[None]:
+    """Within this block steps of pymunk call no functions of constraints, and what no step moves keeps its velocities:
+    also for constraints that the program has added, or whose bodies it has changed, since the last step of EECA.
+    `forces`: whether constraints exert forces."""
+    items = private_joints.awake(list(space.constraints))  # writing the others would wake bodies
+    own = [item for item in items if private_joints.law_of(item) is not None]
+    with ExitStack() as within:
+        within.callback(restore_motions, private_joints.motions({end for item in items for end in (item.a, item.b)}))
+        within.enter_context(silent(items))
+        within.enter_context(with_laws(own, [lambda *_: 0.0] * len(own)))
+        if not forces:
+            within.callback(restore_max_forces, clear_max_forces(items))
+        yield

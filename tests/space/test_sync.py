@@ -33,8 +33,8 @@ def crowd(count: int, hashed: bool = False) -> pymunk.Space:
 def counted(stepper: ep.Stepper, monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """The ways taken from now on."""
     ways: list[str] = []
-    rest, reindex = sync.rest_step, sync.Sync.leave_late
-    monkeypatch.setattr(sync, "rest_step", lambda *how, **more: (ways.append("rest"), rest(*how, **more))[1])
+    rest, reindex = sync.Sync.rest, sync.Sync.leave_late
+    monkeypatch.setattr(sync.Sync, "rest", lambda self, dt: (ways.append("rest"), rest(self, dt))[1])
     monkeypatch.setattr(sync.Sync, "leave_late", lambda self, dt: (ways.append("reindex"), reindex(self, dt))[1])
     return ways
 
