@@ -21,7 +21,7 @@ from .space.arbiters import Touches, touches_of
 from .space.checks import check_ignored
 from .space.decisions import NO_RULES, Decisions, Rules
 from .space.describe import describe
-from .space.kept import kept_rows
+from .space.patching import kept_rows
 from .space.sleep_groups import put_to_sleep, sleeping_groups, wake_neighbours
 from .space.sleeping import AT_FIRST, Sleep
 from .space.sync import Sync

@@ -11,8 +11,7 @@ from ..arrays import FloatArray, IntArray
 from ..closures.dashpot import check_stiffness
 from ..closures.motion import DiskMotion, Disks, Geometry, Pairs, Start
 from ..energy.complementarity import solve
-from ..energy.delassus import Delassus
-from ..energy.graph import restrict
+from ..energy.delassus import Delassus, restrict
 from ..packed_stepper import PackedStepper
 from ..report import Details
 

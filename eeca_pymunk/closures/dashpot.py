@@ -12,8 +12,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..energy import balance
 from ..energy.complementarity import solve
-from ..energy.delassus import Delassus
-from ..energy.graph import islands
+from ..energy.delassus import Delassus, islands
 from .motion import Disks, Geometry
 from .simultaneous import ActiveContacts, Solution, move_disks
 

@@ -12,8 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
-from ..energy.delassus import Delassus
-from ..energy.graph import restrict
+from ..energy.delassus import Delassus, restrict
 from ..report import Details
 from .motion import DiskMotion, Disks, Geometry, Pairs, Start
 

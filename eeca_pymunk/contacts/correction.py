@@ -14,12 +14,14 @@ do not move), a common rotation of its velocities about the centre of mass remov
 from __future__ import annotations
 
 import math
+from math import inf
 
 import numpy as np
 
-from ..arrays import FlagArray, FloatArray
+from ..arrays import FlagArray, FloatArray, IntArray
 from ..compiled import kernel, nonallocating
-from ..model.contacts import Problem
+from ..geometry.sides import depth_limit
+from ..model.contacts import AnyProblem, Problem
 from ..model.parameters.intervals import (
     CORRECTION_ROUND_OFF,
     CORRECTION_SHARE,
@@ -30,8 +32,10 @@ from ..model.parameters.intervals import (
     LIFT_RESIDUAL,
     OVERLAP_LEFT,
 )
+from ..model.scene import Scene
 from ..rows.build import normal_rate
-from ..rows.lifting import lift_above_walls
+from ..rows.lifting import keep_walls, lift_above_walls
+from .memory import shapes_of
 from .works import work_of_forces
 
 
@@ -151,3 +155,20 @@ def turn_by(NEW: FloatArray, touched: FlagArray, turn: float, x: float, y: float
             V[i, at] -= turn * (NEW[i, 1] - y)
             V[i, at + 1] += turn * (NEW[i, 0] - x)
             V[i, at + 2] += turn
+
+
+@kernel
+def stop_at_walls(A: Scene, problem: AnyProblem, n: int, LEFT_OUT: IntArray, L: FloatArray, V: FloatArray) -> None:
+    """After a solve of many contacts, which may not have converged: its residuals let light bodies under heavy ones
+    sink, by a part of the depth that each interval allows, and in the end through a floor. So further impulses of walls
+    alone, which act on no other body, bring contacts with bodies without mobility, those from number n on, to u_n >= b
+    at velocities V (k, 3), where they are deeper than an interval allows. Heavy bodies then go into light ones instead.
+    Normal impulses L only grow, so that frictions remain within their limits. LEFT_OUT (m,): not 0 for contacts that no
+    impulse moves."""
+    LACK = np.full(problem.m, inf)
+    for i in range(problem.m):
+        row = problem.ROWS[i]
+        if max(row.a, row.b) >= n and row.wake == inf and LEFT_OUT[i] == 0:
+            a, b = shapes_of(A, row)
+            LACK[i] = -row.target if row.gap < -depth_limit(A, a, b) else inf
+    keep_walls(problem, n, LACK, np.zeros(problem.m), L[:, 0], V)

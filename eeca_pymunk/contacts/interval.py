@@ -33,12 +33,12 @@ from ..rows.gentle import excessive, unwedge
 from ..rows.inplace import copy
 from ..rows.laws import solved_exactly
 from ..rows.sweeps import velocities
+from .correction import stop_at_walls
 from .geometry import gather_contacts
 from .memory import find, remember_loads, table_has_room
 from .relaxation import relax
 from .statics import find_static_forces
 from .targets import target
-from .walls import stop_at_walls
 
 
 @nonallocating

@@ -14,8 +14,7 @@ from ..geometry.gap import gap, gap_at, gap_round_off
 from ..model.bodies import Body
 from ..model.contacts import Impulse
 from ..model.scene import Scene
-from ..pairs.lists import far_apart
-from ..pairs.rules import barred, law
+from ..pairs.rules import barred, far_apart, law
 
 
 @nonallocating

@@ -9,8 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import FloatArray
-from .delassus import Delassus
-from .graph import islands
+from .delassus import Delassus, islands
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ from ..model.bodies import CHANGED, MOBILITY
 from ..model.scene import Scene, scene_of
 from ..model.shapes import SURFACE as SURFACE_FIELDS
 from ..pairs.grid import relist
-from ..pairs.lists import allowed, far_apart, may_collide
+from ..pairs.rules import allowed, far_apart, may_collide
 
 # Kinds of changes: none; another mass or moment of a body; another elasticity, friction or surface velocity of a shape,
 # another filter, or another outline or place, by which results of earlier steps are lost.

@@ -9,10 +9,9 @@ from ..islands.accounting import close_interval
 from ..islands.building import build_islands
 from ..islands.intervals import begin_interval
 from ..islands.local import contact_range
-from ..jointed.ends import shorten, under_way
+from ..jointed.ends import carry, shorten, under_way
 from ..jointed.ledger import most_looks
 from ..jointed.meet import end_before
-from ..jointed.partners import carry
 from ..jointed.rest import wake_disturbed
 from ..jointed.solve import begin_jointed
 from ..model.bodies import AT_REST

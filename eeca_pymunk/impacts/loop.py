@@ -23,7 +23,7 @@ from ..model.parameters.events import AHEAD, EVENT_LOOKS, RESOLUTION
 from ..model.scene import Scene
 from ..model.step import BLOCK_DUE, DONE, HITS, IMPACTS, LOG_FULL, POOL_FULL, PUSHES_FULL
 from ..pairs.grid import renew_circle
-from ..pairs.lists import mark_pair
+from ..pairs.rules import mark_pair
 from ..prediction.disks import body_of, continue_path
 from ..prediction.heap import pop, push_event, sweep_out
 from ..prediction.next_event import margin_used

@@ -18,8 +18,7 @@ from ..model.parameters.intervals import MIDSTEP_PASSES, TOUCH
 from ..model.scene import Scene
 from ..model.step import DONE, POOL_FULL, PUSHES_FULL
 from ..pairs.candidates import cover
-from ..pairs.lists import mark_pair
-from ..pairs.rules import barred
+from ..pairs.rules import barred, mark_pair
 from .intervals import start_interval
 
 

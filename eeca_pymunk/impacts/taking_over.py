@@ -23,7 +23,7 @@ from ..islands.accounting import flag_pairs
 from ..islands.at_rest import disturb
 from ..model.contacts import LASTED
 from ..model.scene import Scene, scene_of
-from ..pairs.lists import may_collide
+from ..pairs.rules import may_collide
 from .edits import FILTER, OUTLINE, SAME, Changes, disturb_changed, drop_sides, place_beside, words_of
 
 

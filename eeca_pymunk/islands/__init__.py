@@ -2,7 +2,7 @@
 
 In: the contacts that the last step has left, impacts after which contacts persist. Out: bodies on parabolas until the
 interval ends, contacts with their impulses, works in the ledger. Open `building.py` first: islands at the start of a
-step (`membership.py`: which bodies, which contacts persist; `penetration.py`: initial penetration; `hits.py`: impacts).
+step (`membership.py`: which bodies, which contacts persist; `hits.py`: impacts).
 `intervals.py` solves one (`candidates.py`: pairs and length of the interval; `depths.py`: how deep contacts may close;
 `local.py`: its bodies in local numbering); `payment.py` says what pays for penetration corrections; `accounting.py`
 ends it, `shortened.py` replaces the forces of a shortened interval that have given energy.

@@ -22,7 +22,7 @@ from ..geometry.sides import note_side, remembers
 from ..model.bodies import AT_REST, CHANGED
 from ..model.contacts import ENDED, LASTED
 from ..model.scene import Scene, scene_of
-from ..pairs.lists import far_apart, mark_pair
+from ..pairs.rules import far_apart, mark_pair
 from ..rows.energy import offset_gain
 from .at_rest import log_contact, set_awake, wake_supported
 from .membership import members_of, unite

@@ -17,8 +17,7 @@ from ..model.bodies import AT_REST, AWAKE, CHANGED
 from ..model.contacts import LASTED
 from ..model.parameters.rest import REST_RETRY
 from ..model.scene import Scene
-from ..pairs.lists import mark_pair
-from ..pairs.rules import checksum
+from ..pairs.rules import checksum, mark_pair
 from .rest import candidate_speed, speed, spins_freely
 
 

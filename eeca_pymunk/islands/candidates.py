@@ -15,8 +15,7 @@ from ..model.contacts import Row
 from ..model.parameters import intervals
 from ..model.parameters.events import PAIR_LOOKS, RESOLUTION
 from ..model.scene import Scene
-from ..pairs.lists import far_apart
-from ..pairs.rules import barred, law
+from ..pairs.rules import barred, far_apart, law
 from ..rows.build import tangent_rate
 from .membership import approach, fixed_support, persists, remembered_force
 

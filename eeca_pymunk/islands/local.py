@@ -14,7 +14,7 @@ from ..model.bodies import AT_REST
 from ..model.contacts import ENDED
 from ..model.islands import Island, IslandContacts
 from ..model.scene import Scene
-from ..pairs.lists import mark_pair
+from ..pairs.rules import mark_pair
 from ..rows.build import normal_rate, tangent_rate
 from ..rows.inplace import sort
 from .candidates import before_end

@@ -20,7 +20,7 @@ from ..geometry.flight import move_to, norm
 from ..model.contacts import ENDED
 from ..model.parameters.intervals import INTERVAL_DEPTH, INTERVAL_RETRY, REPAY_ROUND_OFF
 from ..model.scene import Scene
-from ..pairs.lists import mark_pair
+from ..pairs.rules import mark_pair
 from ..rows.energy import scale_to_lose
 from .candidates import sweeps_of
 from .depths import times_too_long

@@ -4,14 +4,11 @@ In: an island of a scene (`..islands`), the arrays of its joints (`..joints`), a
 until the interval ends, joints and contacts with their impulses.
 
 Open first `solve.py`, the interval of an island, with `lengths.py`, how long it may be, `press.py`, its contacts,
-`advance.py`, the motion under their impulses, and `bounded_rows.py`, bounded impulses of joints (`motors.py`);
-`alone.py` is the interval of a component that is near no other shape. `meet.py` ends intervals where islands meet, by
-velocities that joints allow (`allowed.py`), `ledger.py` accounts for joints, `losses.py` has what contacts lose,
-`residual.py` what is left of their laws where these have no solution. `component.py` steps one component
-(`gathered.py`) and finds its response to impulses, which `groups.py` and `columns.py` store (laws of contacts with it:
-`..rows.laws`). `fitting.py` projects velocities onto joints after an interval, `secant.py` updates columns, `gentle.py`
-replaces excessive impulses, `ends.py` ends intervals, early ones too, `paths.py` tests them for shapes passed through,
-`partners.py` moves islands with their partners. `lifting.py` corrects penetration, `rest.py` puts islands to rest.
-`..model.joints` names the arrays. A *free* island has no contact or joint with a body that impulses do not move. A
-scene without joints calls nothing of this room.
+`advance.py`, the motion under their impulses, and `bounded_rows.py`, bounded impulses of joints; `alone.py` is the
+interval of a component that is near no other shape. `meet.py` ends intervals where islands meet (`ends.py`, early ones
+too), and tests their `paths.py`; `ledger.py` accounts for joints, `losses.py` has what contacts lose. `component.py`
+steps one component (`gathered.py`) and finds its response to impulses, which `groups.py` and `columns.py` store (laws
+of contacts with it: `..rows.laws`), and `secant.py` updates. `fitting.py` projects velocities onto joints after an
+interval, `lifting.py` corrects penetration, `rest.py` puts islands to rest. `..model.joints` names the arrays. A *free*
+island has no contact or joint with a body that impulses do not move. A scene without joints calls nothing of this room.
 """

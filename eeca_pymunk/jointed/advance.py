@@ -17,12 +17,11 @@ from ..model.parameters.joints import ARM_ERROR, ARM_ITERATIONS, COLUMN_CONTACTS
 from ..model.scene import Scene
 from ..rows.build import push_contact
 from ..rows.inplace import copy
-from .bounded_rows import fill_rows, list_rows, note_rows
+from .bounded_rows import fill_rows, let_slip, list_rows, note_rows
 from .columns import fill_group
 from .component import ready_in_step, step_component
 from .gathered import find_places, gather_component, lead_component, rewind_joints
 from .groups import Groups
-from .motors import let_slip
 
 
 class Motion(NamedTuple):

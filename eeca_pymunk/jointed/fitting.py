@@ -17,11 +17,11 @@ from ..rows.bounded import room_for_rows
 from ..rows.build import normal_rate
 from ..rows.inplace import add
 from .advance import Interval, apart, find_hit, join_points
+from .bounded_rows import acts_at_once, is_driven
 from .columns import fill_free, make_columns, set_effective_masses
 from .component import fit_speeds
 from .gathered import gather_component, number_of
 from .lifting import fill_at_end, raise_gaps
-from .motors import acts_at_once, is_driven
 
 
 @kernel

@@ -52,7 +52,7 @@ def gave_way(J: Joints, s: int) -> bool:
 
 @nonallocating
 def some_taut(J: Joints, groups: Groups) -> bool:
-    """Whether a component is held across its joints by their pull (`..joints.taut`)."""
+    """Whether a component is held across its joints by their pull (`..joints.step`)."""
     for s in groups.JOINTED:
         if J.COMPONENT[s].taut > 0:
             return True

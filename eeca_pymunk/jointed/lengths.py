@@ -22,8 +22,7 @@ from ..model.joints import Joints
 from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_WAY, SAGITTA
 from ..model.scene import Scene
-from ..pairs.lists import far_apart
-from ..pairs.rules import barred
+from ..pairs.rules import barred, far_apart
 from ..rows.build import normal_rate
 from .advance import Interval, apart
 

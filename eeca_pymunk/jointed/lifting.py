@@ -23,11 +23,11 @@ from ..rows.build import normal_rate
 from ..rows.inplace import copy
 from ..rows.lifting import lift_above_walls
 from .advance import Interval
+from .bounded_rows import keeps_speed
 from .columns import fill_group, set_effective_masses
 from .component import close_at_poses, ready_at_poses
 from .gathered import find_places, gather_component
 from .groups import is_free
-from .motors import keeps_speed
 
 
 @kernel

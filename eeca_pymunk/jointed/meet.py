@@ -25,11 +25,9 @@ from ..model.parameters.joints import (
     MEET_SECANTS_LOADED,
 )
 from ..model.scene import Scene
-from .allowed import gap_and_rate
-from .ends import end_here, left_apart, shorten, under_way
+from .ends import carry, end_here, left_apart, shorten, under_way
 from .ledger import work_left
-from .partners import carry
-from .paths import crossing_of_paths, instants_between, passes_through
+from .paths import crossing_of_paths, gap_and_rate, instants_between, passes_through
 
 
 @kernel
@@ -59,7 +57,7 @@ def end_before(A: Scene, J: Joints, root: int, t: float, fits: bool, spent: bool
 def begin_meeting(A: Scene, J: Joints, a: int, b: int, t: float, SEARCH: Rows[Meeting]) -> None:
     """Write the record of the search for the impact of shapes a and b, predicted for t. Shapes that overlap at the
     start without closing meet when they are as deep again; those that touch there, and close by velocities that joints
-    allow (`allowed`), meet at once."""
+    allow (`paths.gap_and_rate`), meet at once."""
     S, i, j = SEARCH[0], A.LINK[a].owner, A.LINK[b].owner
     S.a, S.b, S.t = a, b, t
     S.roots[0], S.roots[1] = A.STATE[i].island, A.STATE[j].island if A.BODY[j].inv_mass > 0.0 else -1

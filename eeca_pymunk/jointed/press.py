@@ -24,20 +24,44 @@ from ..model.parameters.events import RESOLUTION
 from ..model.scene import Scene
 from ..rows.build import rates
 from ..rows.columns import push_columns
-from ..rows.gentle import excessive
+from ..rows.gentle import excessive, sweep_gently
 from ..rows.inplace import copy
 from ..rows.laws import give_slips, take_slips
 from .advance import Interval, advance, advance_aligned, align, farthest_apart
-from .bounded_rows import make_bounded, settle_bounded
-from .columns import fill_free, set_effective_masses
+from .bounded_rows import make_bounded, settle_bounded, with_bounded
+from .columns import count_operations, fill_free, set_effective_masses
 from .gathered import some_give, some_refused, some_taut
-from .gentle import solve_gently
 from .groups import is_free
 from .losses import lock_jointed, lost, work_error
 from .press_laws import aims, manner_of, solve_laws
 from .secant import fit_columns
 
 GIVEN_UP, UNSOLVED, SOLVED = -1, 0, 1  # what becomes of the contacts of an interval
+
+
+@kernel
+def solve_gently(
+    A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, free: bool, quick: float
+) -> None:  # fmt: skip
+    """Impulses L (m, 2) by sweeps that begin at 0, about the motion without impulses; none if these are excessive for
+    bodies of the speed `quick`; and the motion under them."""
+    isle, groups, ROWS, _, C, m, n, _, _ = interval
+    L[:m] = 0.0
+    advance(A, J, interval, L, B, True, np.empty((0, 3)))
+    if free:
+        align(interval)
+    fill_free(groups, C, ROWS, isle.IM, isle.II, m)
+    set_effective_masses(groups, C, ROWS, m)
+    V, BOTH = interval.motion.MEAN.copy(), with_bounded(B, L, m)
+    problem = JointedProblem(ROWS, C, B, m)
+    sweep_gently(problem, BOTH, V)
+    count_operations(J, C)
+    for i in range(m):
+        L[i, 0], L[i, 1] = BOTH[i, 0], BOTH[i, 1]
+    advance(A, J, interval, L, B, False, np.empty((0, 3)))
+    if excessive(L, m, isle.IM, n, quick):
+        L[:] = 0.0
+        advance(A, J, interval, L, B, False, np.empty((0, 3)))
 
 
 @kernel
@@ -75,7 +99,7 @@ def solve_contacts(
     | of few contacts, CHORD iterations have come no nearer, or nowhere near | no | likewise | likewise |
 
     Where the exact solution of the first iteration is excessive, sweeps take its place (`rough`), and iterations go on.
-    Impulses that are excessive in the end, or not converged, are replaced by gentle ones (`gentle`). The lock is last.
+    Impulses that are excessive in the end, or not converged, are replaced (`solve_gently`). The lock is last.
 
     Args:
         slow, fast, pull: see `..contacts.interval.speeds`.  owed: energy >= 0 that the island has to lose at least.

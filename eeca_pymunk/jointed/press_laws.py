@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
-from ..contacts.walls import stop_at_walls
+from ..contacts.correction import stop_at_walls
 from ..islands.candidates import before_end, sweeps_of
 from ..model.contacts import JointedProblem
 from ..model.joints import Joints

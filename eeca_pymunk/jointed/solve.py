@@ -6,22 +6,26 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..compiled import kernel
-from ..contacts.counts import spend
+from ..contacts.counts import note_unmet, spend
 from ..contacts.geometry import gather_contacts
 from ..contacts.interval import make_contacts, recall, speeds
-from ..contacts.memory import remember_loads
+from ..contacts.memory import remember_loads, shapes_of
+from ..geometry.sides import depth_limit
 from ..islands import local
 from ..islands.candidates import pairs_within
 from ..islands.membership import lossy
+from ..model.contacts import JointedProblem
 from ..model.joint_steps import FINAL, LONG, SHORT
 from ..model.joints import Joints
 from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, REACH_ROUND_OFF, UNSOLVED_PART
 from ..model.parameters.joints import COLUMN_CONTACTS, INTERVAL_SHARE, INTERVAL_WORK, SPACING
 from ..model.scene import Scene
-from ..model.step import AGAIN, DONE, PUSHES_FULL, SPENT
+from ..model.step import AGAIN, CONTACTS, DONE, PUSHES_FULL, SPENT
 from ..rows.bounded import room_for_rows
 from ..rows.build import conserves, normal_rate
+from ..rows.columns import breach
+from ..rows.laws import give_slips, take_slips
 from .advance import Interval, advance, motion_at_start
 from .alone import account_turning, begin_alone, is_component, meets_no_other, set_path
 from .columns import make_columns
@@ -29,12 +33,38 @@ from .fitting import project_velocities
 from .gathered import gave_way, restore_joints, save_joints
 from .groups import find_groups
 from .ledger import work_left
-from .lengths import excess, too_deep_on_way, within_sagitta
+from .lengths import excess, forced_deeper, too_deep_on_way, within_sagitta
 from .lifting import lift_island
 from .losses import lost, slip_of
 from .press import GIVEN_UP, SOLVED, solve_contacts
-from .residual import note_residual
 from .rest import rest_if_still
+
+
+@kernel
+def residual_of(interval: Interval, L: FloatArray) -> float:
+    """The largest velocity by which impulses L (m, 2) and the motion under them break the laws of contacts, with
+    Coulomb's friction (`take_slips`). Joints hold in any case."""
+    ROWS, C, m = interval.ROWS, interval.C, interval.m
+    SLIP = take_slips(ROWS, m)
+    worst = breach(JointedProblem(ROWS, C, room_for_rows(0, 0), m), L, interval.motion.MEAN)
+    give_slips(ROWS, m, SLIP)
+    return worst
+
+
+@kernel
+def note_residual(A: Scene, interval: Interval, L: FloatArray, solved: bool, tolerance: float) -> None:
+    """Report a contact that joints force deeper, with its velocities, present and allowed; else, if the laws of
+    contacts are not `solved`, the velocity by which they are broken, if above `tolerance`."""
+    ROWS, h, z = interval.ROWS, interval.h, forced_deeper(A, interval)
+    if z >= 0:
+        a, b = shapes_of(A, ROWS[z])
+        most = max(ROWS[z].gap + depth_limit(A, a, b), 0.0) / h
+        note_unmet(A, CONTACTS, a, b, -normal_rate(ROWS[z], interval.motion.WAY) / h, most)
+    elif not solved and interval.m > 0:
+        residual = residual_of(interval, L)
+        if not residual <= tolerance:
+            a, b = shapes_of(A, ROWS[0])
+            note_unmet(A, CONTACTS, a, b, residual, tolerance)
 
 
 @kernel

@@ -7,13 +7,16 @@ next step begins with.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ..compiled import nonallocating
-from ..model.joint_steps import ELASTIC, HALVED, LINEAR, SPEEDS, JointLedger
-from ..model.joints import APART, GIVES_WAY, LEFT_APART, RATCHET, Workspace
-from ..model.parameters.joints import NEARLY_HELD
+from ..model.joint_steps import ELASTIC, HALVED, LINEAR, POSES, SPEEDS, JointLedger
+from ..model.joints import APART, GIVES_WAY, LEFT_APART, PIN, PIVOT, RATCHET, SLIDE, Workspace
+from ..model.parameters.joints import NEARLY_HELD, TAUT
 from ..newton.motion import save
+from ..newton.rows import start_joint
 from ..newton.solve import drop_impulses
 from .bounds import closes_on_limit, standing
 from .closing import close_joints, farthest
@@ -22,8 +25,38 @@ from .gains import take_gain
 from .ladder import climb, limit_work
 from .ledger import add_part, clear_ledger
 from .start import bounded_targets, compute_rows, read_joints
-from .taut import is_taut
 from .unheld import step_linearly
+
+
+@nonallocating
+def is_taut(W: Workspace, h: float) -> bool:
+    """Whether joints pull so hard that bodies hardly move across them: a string, a bridge as long as its gap. To first
+    order such joints allow motion across. Only their pull, whose direction turns with the motion, prevents it: a
+    solution has to begin with that pull.
+
+    That is (h/4) dF/dx > TAUT of a body's inertia, for the impulse F of a joint between points that pulls; this is the
+    entry of STIFF (`..newton.response.inertia_taken`). `turn` is -dF/dx for the body's angle, arm . F; `per` that
+    across a pin or slide, F over its length."""
+    hinge, link = W.J.HINGE, W.link
+    for k in range(W.joints):
+        kind = link[k].kind
+        if link[k].bounded != 0 or (kind != PIVOT and kind != PIN and kind != SLIDE):
+            continue
+        start_joint(W, k, POSES, h)
+        rax, ray, rbx, rby = hinge[k].arm_a[0], hinge[k].arm_a[1], hinge[k].arm_b[0], hinge[k].arm_b[1]
+        fx, fy, per = hinge[k].lam[0], hinge[k].lam[1], 0.0
+        if kind != PIVOT:
+            dx, dy = hinge[k].apart[0], hinge[k].apart[1]
+            length = math.sqrt(dx * dx + dy * dy)
+            if length > 0.0:
+                per = hinge[k].lam[0] / length
+            fx, fy, per = per * dx, per * dy, max(-per, 0.0)
+        for end in range(2):
+            i = link[k].body[0] if end == 0 else link[k].body[1]
+            turn = -(rax * fx + ray * fy) if end == 0 else rbx * fx + rby * fy
+            if 0.25 * abs(h) * max(turn * W.J.LOCAL[i].mobility[2], per * W.J.LOCAL[i].mobility[0]) > TAUT:
+                return True
+    return False
 
 
 @nonallocating

@@ -90,7 +90,7 @@ class Component(Record):
     dual_size: int  # of its matrix in the rows alone: size and half-width
     dual_band: int
     dual_for: int  # what its dual system is taken for: NOTHING, INSTANTS (POSES, SPEEDS) or STEPS too
-    taut: int  # 1 if impulses of the last step pull so hard that this one begins with them (`..joints.taut`)
+    taut: int  # 1 if impulses of the last step pull so hard that this one begins with them (`..joints.step`)
     boxes: int  # most rows of bounded impulses that may act, if few enough for `..newton.boxes`; else 0
     factored: int  # 1 if the matrix holds factors of an earlier part of the present step
     parts: int  # parts of the last solution from the present start that are known (`..joints.parts`)

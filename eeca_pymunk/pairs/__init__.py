@@ -5,7 +5,6 @@ meet before one of them leaves its margin circle. The centre of a shape's boundi
 the centre of the margin circle, which is fixed in space; when it leaves that circle, `grid.py` renews the list, from
 the places of shapes in `cells.py`. CONTRIBUTING compares near lists with pymunk's detection.
 
-Open first `lists.py`; `setup.py` makes the arrays (records of `..model.shapes`), and `margins.py` chooses margins;
-`walls.py` finds static neighbours; `rules.py` has elasticity and friction of a pair; `candidates.py` lists the pairs of
-one step.
+Open first `rules.py`; `setup.py` makes the arrays (records of `..model.shapes`), and `margins.py` chooses margins;
+`walls.py` finds static neighbours; `candidates.py` lists the pairs of one step.
 """

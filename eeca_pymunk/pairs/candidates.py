@@ -16,7 +16,7 @@ from ..geometry.gap import gap, gap_round_off
 from ..model.parameters.detection import FARTHEST_CELL, MARGIN_OF_FAST
 from ..model.scene import Scene, scene_of
 from .grid import renew_circle
-from .lists import circle_centre
+from .rules import circle_centre
 
 
 @nonallocating

@@ -13,7 +13,7 @@ from ..geometry.flight import norm, pose
 from ..model.scene import Scene, scene_of
 from ..model.shapes import BATCH, LEVELS
 from .cells import bucket, cell_at, enter, overlaps, set_circle, unlink
-from .lists import append, circle_centre, direction_of_motion, may_collide, place_in, remove
+from .rules import append, circle_centre, direction_of_motion, may_collide, place_in, remove
 from .walls import box_wall, seek_walls
 
 _FIRST_CAPACITY = 8

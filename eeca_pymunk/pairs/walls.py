@@ -8,7 +8,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import nonallocating
 from ..model.scene import Scene
 from ..model.shapes import Grid
-from .lists import append, may_collide, place_in
+from .rules import append, may_collide, place_in
 
 
 @nonallocating

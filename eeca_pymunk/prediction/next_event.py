@@ -14,8 +14,7 @@ from ..geometry.flight import norm, pose
 from ..model.bodies import CHECK, LEAVE, NOTHING, RENEW
 from ..model.parameters.events import ENTRY_LOOKS, MARGIN_LEFT, SHAPES_LOOK
 from ..model.scene import Scene
-from ..pairs.lists import circle_centre
-from ..pairs.rules import barred
+from ..pairs.rules import barred, circle_centre
 from .heap import push_event
 from .impact_times import time_of_impact
 

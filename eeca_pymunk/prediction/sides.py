@@ -20,8 +20,7 @@ from ..geometry.flight import pose
 from ..geometry.gap import gap, gap_round_off
 from ..model.parameters.detection import FLUSH, SAME_SIDE
 from ..model.scene import Scene
-from ..pairs.lists import far_apart
-from ..pairs.rules import barred
+from ..pairs.rules import barred, far_apart
 from .axes import MotionState, motion
 
 

@@ -10,8 +10,7 @@ import scenes
 from comparisons.cradle import slopes
 from comparisons.signorini import closed_form
 from eeca_pymunk.energy import balance
-from eeca_pymunk.energy.delassus import Delassus
-from eeca_pymunk.energy.graph import islands
+from eeca_pymunk.energy.delassus import Delassus, islands
 
 from ..steppers import CLOSURES, two_disks
 

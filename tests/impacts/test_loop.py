@@ -15,7 +15,7 @@ import eeca_pymunk as ep
 import scenes
 from comparisons.hard_cases import moving
 from eeca_pymunk.impacts.scene import EventLoop
-from eeca_pymunk.pairs.lists import circle_centre
+from eeca_pymunk.pairs.rules import circle_centre
 from scenes.scene import add_disk, add_walls
 
 from ..crowds import SHORT, box_of, deepest, positions, radii, reference, state

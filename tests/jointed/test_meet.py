@@ -13,9 +13,8 @@ import eeca_pymunk as ep
 from eeca_pymunk.geometry.flight import pose
 from eeca_pymunk.jointed import meet as meetings
 from eeca_pymunk.jointed import paths
-from eeca_pymunk.jointed.ends import shorten
+from eeca_pymunk.jointed.ends import carry, shorten
 from eeca_pymunk.jointed.meet import end_before, locate_impact
-from eeca_pymunk.jointed.partners import carry
 from eeca_pymunk.jointed.paths import passes_through
 from eeca_pymunk.jointed.solve import try_jointed
 from eeca_pymunk.model.joint_steps import LINEAR

@@ -13,9 +13,9 @@ from eeca_pymunk.arrays import FloatArray
 from eeca_pymunk.compiled.records import Rows, columns, rows
 from eeca_pymunk.impacts.scene import EventLoop
 from eeca_pymunk.jointed import advance
+from eeca_pymunk.jointed.bounded_rows import let_slip
 from eeca_pymunk.jointed.component import answer, ready_in_step
-from eeca_pymunk.jointed.motors import let_slip
-from eeca_pymunk.joints.taut import is_taut
+from eeca_pymunk.joints.step import is_taut
 from eeca_pymunk.joints.workspace import JointMemory, Linkage
 from eeca_pymunk.model.bodies import Body
 from eeca_pymunk.model.contacts import Row

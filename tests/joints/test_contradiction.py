@@ -11,7 +11,7 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk.jointed.alone import begin_alone
-from eeca_pymunk.joints import contradiction, ladder, limits
+from eeca_pymunk.joints import ladder, limits
 from eeca_pymunk.joints.ladder import ELASTIC_RUNG, ORDER_4, WHOLE_STEP
 from eeca_pymunk.joints.workspace import workspace
 from eeca_pymunk.model.joint_steps import ELASTIC, HALVED
@@ -142,8 +142,8 @@ def test_errors_are_a_contradiction_if_they_are_in_balance_and_do_not_arise_from
     _, J = two_bodies(gear, gear)
     J.PARTS.left = left
     misfits = iter((end, (start, 0.0, 1.0)))
-    monkeypatch.setattr(contradiction, "misfit", lambda W, h: next(misfits))
-    assert contradiction.contradicts(workspace(J, 0), STEP) == found
+    monkeypatch.setattr(ladder, "misfit", lambda W, h: next(misfits))
+    assert ladder.contradicts(workspace(J, 0), STEP) == found
 
 
 # Masses; moments over them; joints of neighbours: ratios of gears, half-widths of limits, 0 for none.

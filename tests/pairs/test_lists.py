@@ -13,7 +13,7 @@ from eeca_pymunk.model.bodies import VELOCITY
 from eeca_pymunk.model.scene import scene_of
 from eeca_pymunk.model.shapes import LEVELS
 from eeca_pymunk.pairs import cells, grid, setup
-from eeca_pymunk.pairs.lists import mark_pair
+from eeca_pymunk.pairs.rules import mark_pair
 from tests.packed import Thing, World, disk
 
 from .scenes import Crowd, crowd, moving_of
