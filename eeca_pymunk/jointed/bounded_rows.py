@@ -3,7 +3,7 @@ contacts.
 
 The columns of contacts and of these rows are responses with all exact joints, bounded impulses being given: so contacts
 and bounded rows are one problem (`..rows`). It only predicts bounded impulses: the next step of the components computes
-them again (`..newton.boxes`), exactly within their bounds.
+them again (`..newton.saturation`), exactly within their bounds.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..model.contacts import Bounded
-from ..model.joints import BOXED, MOTOR, PRESCRIBED, Joints
+from ..model.joints import BOUNDED, MOTOR, PRESCRIBED, Joints
 from ..model.parameters.joints import BOUNDED_SWEEPS, MOTOR_OFF
 from ..model.scene import Scene
 from ..newton.entries import acting_rows, interval_of, is_limit
@@ -59,11 +59,11 @@ def is_exact_limit(J: Joints, k: int) -> bool:
 @nonallocating
 def let_slip(J: Joints, s: int, slips: bool, limits: bool) -> None:
     """Count bounded impulses as given in responses, or (`slips` False) no longer: those of joints with a max_force that
-    are BOXED, and, if `limits`, those of limits that act."""
+    are solved with contacts, and, if `limits`, those of limits that act."""
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         link = J.COUPLING[k]
-        if link.bounded != 0 and J.JOINT[link.joint].max_force < 1e300 and J.COMPONENT[s].boxes > 0:
-            link.bounded = PRESCRIBED if slips else BOXED
+        if link.bounded != 0 and J.JOINT[link.joint].max_force < 1e300 and J.COMPONENT[s].bounded > 0:
+            link.bounded = PRESCRIBED if slips else BOUNDED
         elif limits and is_exact_limit(J, k):
             link.bounded = PRESCRIBED if slips and link.side != 0 else 0
 
@@ -75,7 +75,7 @@ def make_bounded(J: Joints, groups: Groups, limits: bool) -> Bounded:
     for g in range(len(groups.COMPONENT)):
         if groups.COMPONENT[g] >= 0:
             s = groups.COMPONENT[g]
-            rows = J.COMPONENT[s].boxes
+            rows = J.COMPONENT[s].bounded
             for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint if limits else 0):
                 rows += 1 if is_exact_limit(J, k) else 0
             n += rows

@@ -123,7 +123,7 @@ def has_elastic_joint(W: Workspace) -> bool:
 def limit_work(W: Workspace) -> bool:
     """Set the work that this component may take in a step, PROGRESS.limit; whether it is more than the least."""
     component, progress = W.J.COMPONENT[W.s], W.J.PROGRESS
-    one = work_of_iteration(component.system, joints.CONDENSED_PASSES, component.boxes, W.joints, component)
+    one = work_of_iteration(component.system, joints.CONDENSED_PASSES, W.joints, component)
     # With no work left, components that are solved easily still are.
     share, least = (progress.budget - progress.effort) * joints.COMPONENT_BUDGET, joints.LEAST_SOLUTIONS * one
     progress.limit = progress.effort + max(share, least)
@@ -145,15 +145,15 @@ def take_parts(W: Workspace, h: float, length: float, rung: int, parts: int, giv
 
     Args:
         length: size of the component.  give: compliance of joints over the square of a part.
-        cold: rows are redundant and begin without impulse.
+        cold: rows are redundant, and those without bounds begin without impulse.
     """
     before = h
     for p in range(parts):
         if parts > 1:
             W.J.COMPONENT[W.s].parts = 0
         piece = h / parts if rung > ORDER_4 else (1.0 - 4.0 * SUZUKI) * h if p == PARTS // 2 else SUZUKI * h
-        warm = 0.0 if cold else piece / before
         for k in range(W.joints):
+            warm = 0.0 if cold and W.link[k].bounded == 0 else piece / before
             W.J.HINGE[k].lam[0] *= warm
             W.J.HINGE[k].lam[1] *= warm
         before = piece

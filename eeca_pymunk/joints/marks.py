@@ -6,7 +6,6 @@ from ..compiled import kernel
 from ..compiled.records import Rows
 from ..model.joints import (
     BOUNDED,
-    BOXED,
     FORCES_ON,
     GEAR,
     GROOVE,
@@ -19,7 +18,7 @@ from ..model.joints import (
     Coupling,
     Joint,
 )
-from ..model.parameters.joints import BOXES_DIRECT
+from ..model.parameters.joints import MOST_BOUNDED
 
 
 @kernel
@@ -41,18 +40,14 @@ def mark_actions(
 
 @kernel
 def mark_bounded(joint: Rows[Joint], link: Rows[Coupling], component: Rows[Component], s: int) -> int:
-    """Mark the joints of component s whose impulses are bounded. Their rows are boxed if they are few
-    (`..newton.boxes`); how many rows are boxed."""
+    """Mark the joints of component s whose impulses are bounded; how many rows they have, 0 if these are too many to be
+    solved with contacts."""
     first, end, bounded = component[s].first_joint, component[s].end_joint, 0
     for k in range(first, end):
         acts = joint[link[k].joint].bounded != 0 and link[k].kind not in (SPRING, ROTARY_SPRING)
         link[k].bounded = BOUNDED if link[k].kind == MOTOR or acts else 0
         bounded += link[k].rows if link[k].bounded != 0 else 0
-    if bounded > BOXES_DIRECT:
-        return 0
-    for k in range(first, end):
-        link[k].bounded = BOXED if link[k].bounded != 0 else 0
-    return bounded
+    return bounded if bounded <= MOST_BOUNDED else 0
 
 
 @kernel

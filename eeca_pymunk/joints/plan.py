@@ -150,26 +150,27 @@ def make_plan(
         cost = component[s].unknowns * component[s].band ** 2
         pays = 0 < component[s].dual_size * component[s].dual_band ** 2 <= cost
         mark_actions(joint, member, link, component, s)
-        component[s].boxes = mark_bounded(joint, link, component, s)
+        component[s].bounded = mark_bounded(joint, link, component, s)
         component[s].dual_for = NOTHING if not pays else STEPS if hard(joint, link, component, s) else INSTANTS
-        component[s].loops = cycles(bodies, joint, link, member, component, s)
+        component[s].loops = cycles(bodies, link, member, component, s, False)
+        component[s].knots = cycles(bodies, link, member, component, s, True)
     return count
 
 
 @kernel
 def cycles(
-    bodies: Rows[Body], joint: Rows[Joint], link: Rows[Coupling], member: Rows[ComponentBody],
-    component: Rows[Component], s: int,
+    bodies: Rows[Body], link: Rows[Coupling], member: Rows[ComponentBody], component: Rows[Component], s: int,
+    bounded: bool,
 ) -> int:  # fmt: skip
     """Number of joints of component s that close a cycle in the graph of joints of points, or in that of joints of
     angles; all bodies that nothing moves, or nothing turns, are one node. Without cycles rows are independent,
-    including limits: those of points by their effect on places, those of angles on angles. Boxed rows do not count:
-    they are in no matrix."""
+    including limits: those of points by their effect on places, those of angles on angles. bounded: whether
+    bounded rows count."""
     b0, n = component[s].first_body, component[s].end_body - component[s].first_body
     parent, ends = np.arange(2 * (n + 1)), np.empty(2, np.int64)
     count = 0
     for k in range(component[s].first_joint, component[s].end_joint):
-        if link[k].rows == 0 or (joint[link[k].joint].bounded != 0 and component[s].boxes > 0):
+        if link[k].rows == 0 or (link[k].bounded != 0 and not bounded):
             continue
         for end in range(2):
             body = bodies[member[b0 + link[k].body[end]].body]

@@ -15,7 +15,6 @@ from ..compiled.records import Rows, rows
 from ..model.bodies import AT_REST, CHANGED, Body
 from ..model.joints import NOTHING, Joint, Joints, Workspace, joints_of
 from ..model.scene import scene_of
-from ..newton.boxes import room_for_boxes
 from .pinned import hold, let_go
 from .plan import make_plan, together
 
@@ -44,7 +43,7 @@ def measure_plan(J: Joints) -> bool:
         ROOM[2] = max(ROOM[2], 2 * C.unknowns)
         ROOM[3] = max(ROOM[3], whole, dual if C.dual_for != NOTHING else 0)
         ROOM[4] = max(ROOM[4], 2 * (C.unknowns + C.impulses))
-        ROOM[5] = max(ROOM[5], C.dual_size + room_for_boxes(C.boxes, C.unknowns + C.impulses))
+        ROOM[5] = max(ROOM[5], C.dual_size)
     ROOM[4] = max(ROOM[4], 2)
     small = J.LOCAL.shape[0] < ROOM[0] or J.HINGE.shape[0] < ROOM[1] or J.PIVOTS.shape[0] < ROOM[2]
     return bool(

@@ -85,14 +85,15 @@ class Component(Record):
     unknowns: int  # size and half-width of its matrix
     band: int
     loops: int  # joints whose rows may depend on those of others (`..joints.plan.cycles`)
+    knots: int  # the same, if bounded rows held exactly
     system: int  # WHOLE or CONDENSED
     impulses: int  # number of unknowns beside the matrix
     dual_size: int  # of its matrix in the rows alone: size and half-width
     dual_band: int
     dual_for: int  # what its dual system is taken for: NOTHING, INSTANTS (POSES, SPEEDS) or STEPS too
     taut: int  # 1 if impulses of the last step pull so hard that this one begins with them (`..joints.step`)
-    boxes: int  # most rows of bounded impulses that may act, if few enough for `..newton.boxes`; else 0
-    factored: int  # 1 if the matrix holds factors of an earlier part of the present step
+    bounded: int  # most rows of bounded impulses that may act, if few enough to be solved with contacts; else 0
+    factored: int  # 1 if the matrix holds factors of an earlier part of the present step; or OTHERWISE
     parts: int  # parts of the last solution from the present start that are known (`..joints.parts`)
     parts_within: float  # length of its step
     part_limit: Annotated[IntArray, 6]  # joint (`Coupling`) whose limit each part met, -1 for the last; its side
@@ -124,7 +125,7 @@ class Coupling(Record):
     body: Annotated[IntArray, 2]  # bodies a and b by their numbers in the component
     side: int  # as `Joint.side`, in the present step
     let_go: int  # `side` of a limit at the start of the present part of the step, if it was let go since, else 0
-    bounded: int  # 0 for rows that hold exactly; BOUNDED, PRESCRIBED or BOXED
+    bounded: int  # 0 for rows that hold exactly; BOUNDED or PRESCRIBED
     rows: int  # number of rows, and first unknown of their impulses
     first_row: int
     joint: int  # row of `Joint`
@@ -132,8 +133,9 @@ class Coupling(Record):
     following: Annotated[IntArray, 2]  # next joint on body a, on body b: 2 k + (0 as its body a, 1 as b), -1 for none
 
 
-# Impulses within bounds; these given, for an answer to other impulses; these found by `..newton.boxes`.
-BOUNDED, PRESCRIBED, BOXED = 1, 2, 3
+# Impulses within bounds; these given, for an answer to other impulses.
+BOUNDED, PRESCRIBED = 1, 2
+OTHERWISE = -1  # of `factored`: bounded rows have come to their bounds since, or left them
 
 
 FREE, WHOLLY, CENTRE, WELDED = 0, 1, 2, 3  # what of a body joints hold where it is

@@ -5,7 +5,7 @@ impulses that satisfy the balance of momentum and the joints to round-off, or Fa
 component responds to given impulses.
 
 Open first `rows.py`, the equations of all ten joints (`points.py`, `angles.py`, `springs.py`), then `solve.py`, the
-iteration. `systems.py` builds its linear systems from `entries.py`, `saturation.py` and `boxes.py` (bounded impulses);
+iteration. `systems.py` builds its linear systems from `entries.py` and `saturation.py` (bounded impulses);
 `banded.py` (bodies and rows together), `condensed.py` (bodies alone) and `dual.py` (rows alone) solve them. `motion.py`
 moves bodies by their velocities; `response.py` has the response to impulses.
 

@@ -1,5 +1,5 @@
 """Number of operations of the parts of an iteration, for the budget of a step; each part adds its own where it is
-computed (`systems`, `boxes`)."""
+computed (`systems`)."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def work_of_solution(system: int, passes: int, joints: int, component: Component
 
 
 @inlined
-def work_of_iteration(system: int, passes: int, boxes: int, joints: int, component: Component) -> float:
-    """Operations of an iteration with new factors, and with the columns of `boxes` boxed rows."""
-    solutions = (1 + boxes) * work_of_solution(system, passes, joints, component)
-    return work_of_rows(joints) + work_of_factors(system, component) + solutions
+def work_of_iteration(system: int, passes: int, joints: int, component: Component) -> float:
+    """Operations of an iteration with new factors."""
+    solution = work_of_solution(system, passes, joints, component)
+    return work_of_rows(joints) + work_of_factors(system, component) + solution

@@ -133,8 +133,7 @@ def put_stiffness(W: Workspace, k: int, filled: int, h: float, system: int) -> N
 
 @inlined
 def put_free(W: Workspace, k: int, r: int, system: int, build: bool) -> None:
-    """Write the equation of row r of joint k, which does not act: its impulse becomes 0; or stays, if the right side is
-    then set to 0 (`boxes.leave_box`)."""
+    """Write the equation of row r of joint k, which does not act: its impulse becomes 0."""
     hinge, row, band = W.J.HINGE, W.link[k].first_row + r, W.J.COMPONENT[W.s].band
     hinge[k].weight[r] = 0.0
     W.J.RIGHT[row] = -hinge[k].lam[r] / hinge[k].scale[r]

@@ -12,12 +12,11 @@ from __future__ import annotations
 from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..model.joint_steps import STEP, STIFF_ALL, STIFF_NONE
-from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, GEAR, GROOVE, Workspace
+from ..model.joints import CONDENSED, DUAL, GEAR, GROOVE, Workspace
 from ..model.parameters.joints import CONDENSED_PASSES, REDUNDANT_EPSILON, RESPONSE_PASSES, TAUT
 from .entries import acts
 from .motion import go_back, move
 from .rows import joint_rows, start_joint
-from .saturation import bound_otherwise
 from .systems import assemble, back, decompose, first_iterate, first_system
 
 
@@ -81,17 +80,6 @@ def prepare_response(W: Workspace, what: int, h: float) -> int:
 
     `what` is STEP, after `take_step` (whose start becomes that of `local` again), or SPEEDS, at the present poses.
     """
-    # Boxed rows are in the matrix meanwhile: those inside of their bounds are exact.
-    boxed = bound_otherwise(W, BOXED, BOUNDED)
-    system = factor_response(W, what, h)
-    if boxed:
-        bound_otherwise(W, BOUNDED, BOXED)
-    return int(system)
-
-
-@nonallocating
-def factor_response(W: Workspace, what: int, h: float) -> int:
-    """`prepare_response`, of a component without boxed rows."""
     link, local, component = W.link, W.J.LOCAL, W.J.COMPONENT[W.s]
     if what == STEP:
         for i in range(W.bodies):

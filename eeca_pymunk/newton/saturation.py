@@ -1,29 +1,22 @@
 """Rows of bounded impulse, BOUNDED, in the matrix: motors, and joints whose max_force is finite.
 
 In each iteration each joint is decided by itself, by Alart and Curnier (see `systems`): it sticks or is at its bound.
-For rows that are BOXED only the residual is computed here: `boxes` solves for them together, if they are few.
 """
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ..compiled import nonallocating
-from ..model.joints import CONDENSED, Workspace
-from ..model.parameters.joints import STIFFEST
+from ..model.joints import BOUNDED, CONDENSED, OTHERWISE, WHOLE, Workspace
+from ..model.parameters.joints import REDUNDANT_EPSILON, STIFFEST
 from ..rows.bounded import pulls
 from .condensed import freeze_row, put_row
 from .entries import acting_rows, interval_of, put_free, put_rows
 
-
-@nonallocating
-def bound_otherwise(W: Workspace, before: int, after: int) -> bool:
-    """Change `bounded` of joints from `before` to `after`; returns whether there are any."""
-    some = False
-    for k in range(W.joints):
-        if W.link[k].bounded == before:
-            W.link[k].bounded, some = after, True
-    return some
+INSIDE = 1.0 - 1e-12  # of a bound: from there on an impulse is at it, but for round-off
 
 
 @nonallocating
@@ -33,7 +26,9 @@ def put_bounded(W: Workspace, k: int, slopes: bool, h: float, system: int, build
 
     With p = lam - rho u, u = 2 value/h, rho = scale^2 (the smaller one of two): u = 0 if p is within the bounds, else
     lam is the nearest impulse within them. `turn` is the derivative of that of a disc, bound p/|p|, by p. At the end of
-    a groove these are half of a disc: the nearest impulse to one that pulls has no part along the groove.
+    a groove these are half of a disc: the nearest impulse to one that pulls has no part along the groove. If the matrix
+    is kept, `factored` says whether it has to be another one. In a LINEAR_STEP (without `slopes`) p is lam: rows hold
+    until they have come to their bounds.
     """
     hinge, link, local, matrix, right, band = (
         W.J.HINGE, W.link, W.J.LOCAL, W.J.MATRIX, W.J.RIGHT, W.J.COMPONENT[W.s].band
@@ -41,11 +36,14 @@ def put_bounded(W: Workspace, k: int, slopes: bool, h: float, system: int, build
     row, rows, bound = link[k].first_row, acting_rows(link, k), hinge[k].bound * abs(h)
     width, worst = 3 * band + 1, 0.0
     low, high = interval_of(link, k, 0, bound)
-    rho = hinge[k].scale[0] ** 2
+    rho, before_0, before_1 = hinge[k].scale[0] ** 2, hinge[k].weight[0], hinge[k].weight[1]
     if rows == 2:
         rho = min(rho, hinge[k].scale[1] ** 2)
-    p0 = hinge[k].lam[0] - rho * hinge[k].value[0] * 2.0 / h
-    p1 = hinge[k].lam[1] - rho * hinge[k].value[1] * 2.0 / h if rows == 2 else 0.0
+    per = 2.0 * rho / h if slopes else 0.0
+    p0 = hinge[k].lam[0] - per * hinge[k].value[0]
+    p1 = hinge[k].lam[1] - per * hinge[k].value[1] if rows == 2 else 0.0
+    if not slopes:
+        bound, low, high = bound * INSIDE, low * INSIDE, high * INSIDE
     if rows == 2 and pulls(p1, interval_of(link, k, 1, bound)):
         rows, worst = 1, abs(hinge[k].lam[1] * h) / hinge[k].scale[1] ** 2
     for r in range(rows, link[k].rows):
@@ -61,6 +59,8 @@ def put_bounded(W: Workspace, k: int, slopes: bool, h: float, system: int, build
             hinge[k].weight[r] = STIFFEST
             if build:
                 put_row(W, k, r, slopes, system)
+                if system == WHOLE and W.J.COMPONENT[W.s].knots > 0:
+                    matrix[(row + r) * width + band] += REDUNDANT_EPSILON
             continue
         p_r = p0 if r == 0 else p1
         goal = min(max(p0, low), high) if rows == 1 else bound * p_r / size
@@ -78,11 +78,31 @@ def put_bounded(W: Workspace, k: int, slopes: bool, h: float, system: int, build
             continue
         for q in range(2):
             same = 1.0 if q == r else 0.0
-            turn = (same - p_r * (p0 if q == 0 else p1) / size**2) * bound / size
+            turn = (same - p_r * (p0 if q == 0 else p1) / size**2) * bound / size if slopes else 0.0
             matrix[(row + r) * width + q - r + band] += (same - turn) * hinge[k].scale[q] / scale
             for end in range(2):
                 i = link[k].body[end]
                 for c in range(local[i].freedoms):
                     slope = hinge[k].slopes[q, 3 * end + c] * local[i].root[c]
                     matrix[(row + r) * width + local[i].column + c - row - r + band] += turn * rho / scale * slope
+    slides = rows == 2 and not sticks
+    if not build and (slides or hinge[k].weight[0] != before_0 or hinge[k].weight[1] != before_1):
+        W.J.COMPONENT[W.s].factored = OTHERWISE
     return worst
+
+
+@nonallocating
+def clamp(W: Workspace, h: float) -> bool:
+    """Move impulses into their bounds; whether one was beyond them by more than round-off."""
+    beyond = False
+    for k in range(W.joints):
+        lam, bound, size = W.J.HINGE[k].lam, W.J.HINGE[k].bound * abs(h), 0.0
+        for r in range(acting_rows(W.link, k) if W.link[k].bounded == BOUNDED else 0):
+            low, high = interval_of(W.link, k, r, bound)
+            to = min(max(lam[r], low), high)
+            beyond = beyond or abs(lam[r] - to) > (1.0 - INSIDE) * bound
+            lam[r], size = to, math.hypot(size, to)
+        if size > bound:
+            beyond = beyond or size * INSIDE > bound
+            lam[0], lam[1] = lam[0] * (bound / size), lam[1] * (bound / size)
+    return beyond

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from ..compiled import nonallocating
 from ..model.joint_steps import LINEAR_STEP, STEP
-from ..model.joints import BOUNDED, CONDENSED, DUAL, Workspace
+from ..model.joints import CONDENSED, DUAL, OTHERWISE, Workspace
 from ..model.parameters.joints import (
+    BOUNDED_SOLVES,
     CONDENSED_PASSES,
     ELASTIC_ROUND_OFF,
     JOINT_ROUND_OFF,
@@ -21,9 +22,9 @@ from ..model.parameters.joints import (
     REDUNDANT_EPSILON,
     SPACING,
 )
-from .boxes import bound_impulses, boxed_rows, boxes_of, rows_of, unit_impulse
 from .dual import refresh
 from .motion import balance_velocities, move
+from .saturation import clamp
 from .systems import apply, back, factorise, first_iterate, first_system, linearise
 
 KEPT, NEW, FULL = 0, 1, 2  # factors of an iteration
@@ -37,42 +38,10 @@ def drop_impulses(W: Workspace) -> None:
 
 
 @nonallocating
-def has_bounded(W: Workspace) -> bool:
-    """Whether any joint has bounded rows in the matrix."""
-    for k in range(W.joints):
-        if W.link[k].bounded == BOUNDED:
-            return True
-    return False
-
-
-@nonallocating
-def find_columns(W: Workspace, system: int, passes: int, boxes: int) -> None:
-    """Compute the columns of the `boxes` boxed rows with the factors of `decompose`: the change of all unknowns by a
-    unit impulse along each. RIGHT is kept."""
-    B, right, at = boxes_of(W, boxes), W.J.RIGHT, 0
-    for i in range(B.size):
-        B.KEPT[i] = right[i]
-    for k in range(W.joints):
-        for r in range(rows_of(W.link, k)):
-            unit_impulse(W, k, r)
-            back(W, system, passes, right)
-            for i in range(B.size):
-                B.COLUMN[at + i] = right[i]
-            at += B.size
-    for i in range(B.size):
-        right[i] = B.KEPT[i]
-
-
-@nonallocating
-def iterate(W: Workspace, what: int, system: int, passes: int, boxes: int, h: float, fresh: bool) -> None:
-    """Solve the system for the right side with its factors, and change velocities and impulses by the solution. The
-    impulses of `boxes` rows stay within their bounds, by columns that are computed if factors are `fresh`. passes: of
-    `condensed`."""
-    if boxes > 0 and fresh:
-        find_columns(W, system, passes, boxes)
+def iterate(W: Workspace, what: int, system: int, passes: int, h: float) -> None:
+    """Solve the system for the right side with its factors, and change velocities and impulses by the solution.
+    passes: of `condensed`."""
     back(W, system, passes, W.J.RIGHT)
-    if boxes > 0:
-        bound_impulses(W, boxes, h, fresh)
     apply(W, what)
     move(W.J.LOCAL, W.bodies, h)
 
@@ -108,12 +77,12 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
 
     | `factors` | are | of the next iteration |
     |---|---|---|
-    | KEPT | those of an earlier iteration, or part of the step | KEPT; NEW if errors fall too little (`slow`) |
+    | KEPT | those of an earlier iteration, or part of the step | KEPT; NEW if these are `slow` or do not `fit` |
     | NEW | computed now | KEPT; FULL if these are `slow` |
     | FULL | computed now, of `component.system` | FULL |
 
-    It begins KEPT if the component has factors, FULL if bounded rows are in the matrix, which change it in each
-    iteration, else NEW. Entering FULL, redundant rows begin again without impulses.
+    It begins KEPT if the component has factors, else NEW. They `fit` while no bounded impulse reaches or leaves its
+    bound, or slides along that of a disc. Entering FULL, redundant rows begin again without impulses.
 
     Impulses of elastic joints that contradict one another are as large as they are stiff, and cancel but for round-off:
     at this error the solve ends, and it fails if that is more than ELASTIC_ROUND_OFF, as joints have to be softer.
@@ -123,14 +92,15 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
     """
     component, progress = W.J.COMPONENT[W.s], W.J.PROGRESS
     first_iterate(W, STEP, h)
-    system, boxes = first_system(component, STEP), boxed_rows(W)
-    factors = FULL if system != DUAL and has_bounded(W) else KEPT if component.factored > 0 else NEW
+    system = first_system(component, STEP)
+    factors = KEPT if component.factored > 0 else NEW
     component.factored = 0
     # since: iteration in which the solve has begun again, with FULL.  renewed: whether the last iteration was NEW.
     best, last, stalls, since, renewed = 1e300, 1e300, 0, 0, False
     for iteration in range(NEWTON_ITERATIONS + 1):
         built = factors != KEPT
         worst = linearise(W, STEP, h, length, give, False, system, built)
+        fit = factors == KEPT and component.factored != OTHERWISE
         floor = JOINT_ROUND_OFF_KEPT if factors != FULL else NEWTON_FLOOR if stalls > 1 else JOINT_ROUND_OFF
         at_floor = iteration > since + 1 and 0.5 * best < worst < floor
         if give > 0.0 and iteration > 1:
@@ -140,7 +110,8 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
             at_floor = at_floor or worst <= left
         if iteration > 0 and (worst <= max(JOINT_TOLERANCE, progress.near) or at_floor):
             # A wide matrix is expensive to factor: the parts of a step share one while errors fall with it.
-            component.factored = 1 if factors == KEPT and system == CONDENSED and boxes == 0 else 0
+            component.factored = 1 if fit and system == CONDENSED else 0
+            clamp(W, h)
             balance_velocities(W, h)
             return True
         # Next to the solution errors cannot fall by much.
@@ -151,14 +122,15 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
         if not worst < 1e100 or stalls > 6 or iteration == NEWTON_ITERATIONS or progress.effort > progress.limit:
             return False
         last = worst
-        if factors == KEPT and slow:
-            factors = FULL if renewed else NEW
+        if factors == KEPT and (slow or not fit):
+            factors = FULL if renewed and fit else NEW
             if factors == FULL:  # only nearly singular or long steps come here
                 system, since, stalls, best = component.system, iteration, 0, worst
                 if loops:
                     drop_impulses(W)
                     first_iterate(W, STEP, h)
                     best = 1e300
+        component.factored = 0
         if factors != KEPT:
             if not built:
                 linearise(W, STEP, h, length, give, False, system, True)
@@ -171,7 +143,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
         elif system == DUAL:
             refresh(W)
         passes = 1 if give > 0.0 or factors == KEPT else CONDENSED_PASSES - 1 if factors == NEW else CONDENSED_PASSES
-        iterate(W, STEP, system, passes, boxes, h, factors != KEPT)
+        iterate(W, STEP, system, passes, h)
         renewed, factors = factors == NEW, FULL if factors == FULL else KEPT
     return False
 
@@ -181,15 +153,17 @@ def solve_linearly(W: Workspace, h: float, length: float) -> bool:
     """Solve the step h by one linear system, for v1, `lam` and `force`: the rows of the start hold for the mean
     velocity, J x = 0, and springs are linearised about the start. False if the system has no solution."""
     hinge, link, local, component = W.J.HINGE, W.link, W.J.LOCAL, W.J.COMPONENT[W.s]
-    first_iterate(W, LINEAR_STEP, h)
+    for _ in range(BOUNDED_SOLVES):  # bounded rows hold; then those that were beyond a bound are at it
+        first_iterate(W, LINEAR_STEP, h)
+        system = first_system(component, LINEAR_STEP)
+        linearise(W, LINEAR_STEP, h, length, 0.0, True, system, True)
+        system = factorise(W, LINEAR_STEP, h, length, 0.0, system, REDUNDANT_EPSILON)
+        if system < 0:
+            return False
+        iterate(W, LINEAR_STEP, system, CONDENSED_PASSES, h)
+        if not clamp(W, h):
+            break
     component.factored = 0
-    system = first_system(component, LINEAR_STEP)
-    linearise(W, LINEAR_STEP, h, length, 0.0, True, system, True)
-    system = factorise(W, LINEAR_STEP, h, length, 0.0, system, REDUNDANT_EPSILON)
-    if system < 0:
-        return False
-    boxes = boxed_rows(W)
-    iterate(W, LINEAR_STEP, system, CONDENSED_PASSES, boxes, h, True)
     for i in range(W.bodies):
         for c in range(3):
             if not abs(local[i].v1[c]) < 1e100:

@@ -26,10 +26,9 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import inlined
 from ..model.joint_steps import LINEAR_STEP, POSES, SPEEDS, STEP, STIFF_NONE
-from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, GEAR, INSTANTS, STEPS, WHOLE, Component, Workspace
+from ..model.joints import BOUNDED, CONDENSED, DUAL, GEAR, INSTANTS, STEPS, WHOLE, Component, Workspace
 from ..model.parameters.joints import STIFFEST
 from .banded import back_banded, factor_banded
-from .boxes import leave_box
 from .condensed import back_condensed, factor, put_row
 from .dual import back_dual, factor_dual
 from .effort import work_of_factors, work_of_rows, work_of_solution
@@ -135,9 +134,6 @@ def assemble(W: Workspace, what: int, h: float, give: float, first: bool, system
                 put_stiffness(W, k, filled, h, system)
         if link[k].bounded == BOUNDED and not still and acts(link, k, 0):
             off = put_bounded(W, k, slopes, h, system, build)
-        elif link[k].bounded == BOXED and not still and acts(link, k, 0):
-            off = put_bounded(W, k, slopes, h, system, False)
-            leave_box(W, k, system, build)
         else:
             off = put_exact(W, what, k, h, give, system, build)
         # What a gear holds are angles: their round-off is that of rad, whatever its ratio.

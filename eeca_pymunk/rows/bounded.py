@@ -4,7 +4,7 @@ A row is bounded alone (low <= lambda <= high), or both rows of a pivot by a dis
 groove by that half of it in which its second row pushes inwards. Inside the bounds the velocity along the row equals
 its target; at a bound its difference to the target has the opposite sign of the impulse (`on_interval`,
 `on_half_disc`, of one row and of two, all other impulses given). Two sweeps solve for all rows: `sweep_bounded` with
-velocities of bodies, beside contacts; `..newton.boxes.sweep_boxes` with those along the rows alone.
+velocities of bodies, beside contacts.
 """
 
 from __future__ import annotations

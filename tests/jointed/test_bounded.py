@@ -255,7 +255,7 @@ def test_a_motor_at_different_bounds_in_parts_of_a_step_is_given(spin: float) ->
 
 
 def test_motors_of_a_long_arm_are_solved_together() -> None:
-    """Each of twelve motors bears all links beyond it: sweeps over their torques alone do not converge."""
+    """Each of twelve motors bears all links beyond it."""
     space = pymunk.Space()
     space.gravity = (0.0, -9.81)
     before = space.static_body

@@ -17,7 +17,7 @@ from eeca_pymunk.islands.local import number_bodies
 from eeca_pymunk.jointed import meet, press, solve
 from eeca_pymunk.model.parameters import joints as parameters
 from eeca_pymunk.model.parameters.events import PAIR_LOOKS
-from eeca_pymunk.newton import boxes, effort, response, systems
+from eeca_pymunk.newton import effort, response, systems
 from eeca_pymunk.rows import columns, dense, homotopy, homotopy_start
 from eeca_pymunk.rows.coulomb import lawful
 
@@ -85,16 +85,9 @@ def impact(A: Any, J: Any) -> None:
 
 
 Case = tuple[Callable[[pymunk.Space, pymunk.Body], None], bool, Callable[[Any, Any], None]]
-IN_AIR: Case = (dragged, False, interval)
 ON_FLOOR: Case = (dragged, True, interval)
 WITH_ARMS: Case = (with_arms, True, interval)
 IMPACT: Case = (with_weight, True, impact)
-
-
-def size_of(W: Any) -> int:
-    """Unknowns of a component, and room for its impulses."""
-    component = W.J.COMPONENT[W.s]
-    return int(component.unknowns + component.impulses)
 
 
 def dual(W: Any, more: int) -> int:
@@ -116,10 +109,6 @@ BACK: list[Part] = [
     (systems, "back_dual", lambda W, right: dual(W, 30)),
 ]
 REFINEMENTS: list[Part] = [(systems, "back_condensed", lambda W, passes, *_: passes * W.joints)]
-BOX_SWEEPS: list[Part] = [(boxes, "sweep_boxes", lambda B: B.n**2)]
-BOX_ROWS: list[Part] = [(boxes, "sweep_boxes", lambda B: B.n)]
-BOX_DISCS: list[Part] = [(boxes, "sweep_boxes", lambda *_: 1)]
-BOX_COLUMNS: list[Part] = [(boxes, "measure_boxes", lambda W, B, *_: B.n * size_of(W))]
 # The box is the only body: each contact and each row has one entry.
 SWEEPS: list[Part] = [(columns, "sweep_bounded", lambda B, L, m, V: m + B.USED[0])]
 SLIPS: list[Part] = [(columns, "lawful", lambda *given: lawful(*given)[2])]
@@ -156,10 +145,6 @@ def counted(function: Callable[..., Any], amount: Callable[..., float], done: li
         (ON_FLOOR, effort, "ROW_WORK", ROWS),
         (ON_FLOOR, effort, "FACTOR_WORK", FACTORS),
         (ON_FLOOR, effort, "BACK_WORK", BACK),
-        (IN_AIR, parameters, "BOX_WORK", BOX_SWEEPS),
-        (IN_AIR, parameters, "BOX_ROW_WORK", BOX_ROWS),
-        (IN_AIR, parameters, "DISC_WORK", BOX_DISCS),
-        (IN_AIR, parameters, "BOX_COLUMN_WORK", BOX_COLUMNS),
         (ON_FLOOR, columns, "DISC_WORK", DISCS),
         (ON_FLOOR, columns, "SWEEP_WORK", SWEEPS),
         (ON_FLOOR, columns, "SWEEP_ENTRY_WORK", SWEEPS),

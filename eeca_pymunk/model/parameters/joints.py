@@ -6,11 +6,8 @@ from .record import accuracy, heuristic, round_off, work
 
 # fmt: off
 JOINT_TOUCH = round_off(1e-12, "of the component", "Gap of a limit below which it is reached.")
-BOXES_DIRECT = work(64, "bounded rows", "Number above which each row is decided on its own in each iteration.")
-BOX_SWEEPS = work(12, "sweeps", "Sweeps of bounded rows.")
-BOX_ROUNDS = work(6, "number", "Changes of the active set of bounded rows.")
-BOX_RESIDUAL = round_off(1e-15, "of the largest impulse", "Change of an impulse at which sweeps of bounded rows end.")
-BOX_REDUNDANT = round_off(1e-12, "of the diagonal", "Term added to redundant bounded rows.")
+BOUNDED_SOLVES = work(6, "solves", "Linear systems of a step whose bounded impulses come to their bounds, at most.")
+MOST_BOUNDED = work(64, "bounded rows", "Number above which bounded rows are not solved together with contacts.")
 BOX_SECULAR = work(40, "iterations", "Iterations for the multiplier of a friction disc.")
 CONDENSED_PASSES = work(3, "number", "Refinements of a condensed solution.")
 REFINEMENT_WORK = work(400.0, "operations", "Work of each of them for the rows of a joint.")
@@ -153,9 +150,6 @@ PRESS_WORK_ROUND_OFF = round_off(4e-14, "of impulses times speed", "Round-off of
 SWEEP_WORK = work(38.0, "operations", "Work of a sweep for each contact and bounded row.")
 SWEEP_ENTRY_WORK = work(15.0, "operations", "Work of a sweep for each entry of their columns.")
 SLIP_WORK = work(125.0, "operations", "Work of a contact in a sweep beside that if it does not stick.")
-BOX_WORK = work(15.0, "operations", "Work of a sweep over boxed rows for each two of them.")
-BOX_ROW_WORK = work(150.0, "operations", "Work of a sweep over boxed rows for each of them.")
-BOX_COLUMN_WORK = work(27.0, "operations", "Work of an iteration for each entry of the columns of boxed rows.")
 DISC_WORK = work(700.0, "operations", "Work of a sweep over bounded rows for each two of a disc.")
 HOMOTOPY_WORK = work(6000.0, "operations", "Work of a homotopy besides that of its matrix.")
 MATRIX_WORK = work(12.0, "operations",
