@@ -86,7 +86,7 @@ MUTATIONS = (
              "BOUNDED if link[k].kind == MOTOR or acts else 0", "0", "jointed/test_still.py", "flies_into"),
     Mutation("motors: impulses without bounds", "newton/saturation.py",
              "sticks = low <= p0 <= high if rows == 1 else size <= bound", "sticks = True",
-             "jointed/test_bounded.py", "work_of_bounded"),
+             "joints/test_limits.py", "does_not_hold_what_leaves"),
     Mutation("rest: what ends with a velocity", "jointed/rest.py", "rest.end_vx, rest.end_vy, rest.end_spin, reach)",
              "0.0, 0.0, 0.0, reach)", "jointed/test_still.py", "damping"),
     Mutation("rest: other laws of springs wake nothing", "jointed/rest.py", "if joint.push != kept.push or",
