@@ -275,6 +275,8 @@ MUTATIONS = (
     Mutation("ledger: work of supports by the balance of momentum", "joints/frame.py",
              "carried += impulse * speed", "carried -= impulse * speed", "joints/test_frame.py",
              "by_impulses"),
+    Mutation("ledger: supports without a frame give nothing", "joints/ledger.py",
+             "part.carried if frame_of(W).rigid else change", "part.carried", "joints/test_frame.py", "dead_centre"),
     Mutation("ledger: what turns has no frame", "joints/frame.py", "rigid, hangs, turns = W.J.LOCAL, True,",
              "rigid, hangs, turns = W.J.LOCAL, not has_prescribed_motion(W),", "joints/test_frame.py", "[96]"),
     Mutation("ledger: supports at impacts", "impacts/joint_impact.py",

@@ -7,8 +7,8 @@
 
 Where the motion is too slow to pay what exact rows have given, bodies keep a gain that is round-off; of a larger one
 (`keeps_gain`) they move as one, too (`unheld.stop_joints`). `lock` takes energy from the motion. Before, momenta and
-ledger are put right (`clear_errors`). Without a frame of the supports (`frame`) these may do any work: nothing is a
-gain.
+ledger are put right (`clear_errors`). Without a frame of the supports (`frame`) these may do any work: the ledger gives
+it to them, and nothing is a gain.
 """
 
 from __future__ import annotations
@@ -56,15 +56,14 @@ def repaid(W: Workspace, h: float, length: float, own: bool) -> bool:
     steps. What is taken of a gain that is much larger than the energy has its round-off: the rest is taken again.
     """
     part, before = W.J.PART_LEDGER, kinetic_of(W, SAVED)
-    if not frame_of(W).rigid:
-        return True
     for turn in range(2):
         clear_errors(W, h, length)
         gain = gain_of_rows(W, own)
-        known = JOINT_GAIN * (before + kinetic_of(W, NOW))
-        if own and gain > 0.0 and not gain <= REPAID * before:
+        if not gain > 0.0 or not frame_of(W).rigid:
+            break
+        if own and not gain <= REPAID * before:
             return False
-        if not gain > 0.0 or not (gain > known or (own and turn == 0)):
+        if not (gain > JOINT_GAIN * (before + kinetic_of(W, NOW)) or (own and turn == 0)):
             break
         part.closed -= lock_energy(W, gain, part)
     return True

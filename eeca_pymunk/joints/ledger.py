@@ -10,7 +10,7 @@ from ..model.joint_steps import JointLedger
 from ..model.joints import MOTOR, ROTARY_SPRING, SPRING, Workspace
 from ..newton.entries import acts
 from ..newton.springs import potential
-from .frame import account_frame
+from .frame import account_frame, frame_of
 
 
 @inlined
@@ -119,12 +119,13 @@ def unexplained(W: Workspace) -> float:
 
 @nonallocating
 def close_ledger(W: Workspace) -> None:
-    """Close PART_LEDGER for a step whose joints did not hold: the change of energy that is `unexplained` is `closed` if
-    it is a gain, else `limited`. The work of supports is that by the balance of momentum (`frame`).
+    """Close PART_LEDGER for a step whose joints did not hold, by the change of energy that is `unexplained`. The work
+    of supports is that by the balance of momentum, and the rest is `closed` if it is a gain, else `limited`; without a
+    `frame` supports can do any work, and all of it is theirs.
 
-    This includes the works of limits, and of supports without a frame: the impulses of contradictory rows grow without
-    bound, and their works cancel up to round-off, so that only the sum is known.
+    This includes the works of limits: the impulses of contradictory rows grow without bound, and their works cancel up
+    to round-off, so that only the sum is known.
     """
-    part = W.J.PART_LEDGER
-    change = unexplained(W) - part.carried
-    part.supports, part.closed, part.limited = part.carried, max(change, 0.0), max(-change, 0.0)
+    part, change = W.J.PART_LEDGER, unexplained(W)
+    part.supports = part.carried if frame_of(W).rigid else change
+    part.closed, part.limited = max(change - part.supports, 0.0), max(part.supports - change, 0.0)

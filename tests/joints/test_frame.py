@@ -143,3 +143,57 @@ def test_what_a_gear_alone_holds_to_a_spin_keeps_its_momentum_and_gets_no_energy
         assert abs(report.ledger.residual) <= 1e-11 * (kinetic + abs(spin * turning))
         assert far.velocity == (0.0, 0.0)
         last = now
+
+
+@pytest.mark.parametrize("seed", [56, 68, 96, 103, 109, 140, 151, 188, 247])
+def test_the_ledger_closes_where_joints_contradict_spins_of_infinite_moment(seed: int) -> None:
+    """Bodies of one to three, some of which cannot be turned, on random joints that no motion fits: supports that move
+    apart are no frame, impulses reach 1e13, and their works cancel only up to round-off."""
+    chance, space = Random(f"spins {seed}"), pymunk.Space()
+    bodies = [space.static_body]
+    for k in range(chance.choice((1, 1, 2, 3))):
+        mass = 10 ** chance.uniform(-1, 1)
+        body = pymunk.Body(mass, math.inf if k == 0 or chance.random() < 0.6 else 1.0)
+        body.position, body.angle = (chance.uniform(-1, 1), chance.uniform(-1, 1)), chance.uniform(-1, 1)
+        body.velocity = chance.uniform(-2, 2), chance.uniform(-2, 2)
+        body.angular_velocity = chance.uniform(-2, 2)
+        bodies.append(body)
+        space.add(body)
+    for _ in range(chance.choice((2, 2, 3, 4))):
+        a = chance.choice(bodies[1:])
+        b = chance.choice([body for body in bodies if body is not a])
+        p, q = ((chance.uniform(-0.5, 0.5), chance.choice((0, 0.2))) for _ in range(2))
+        space.add(chance.choice((
+            lambda a=a, b=b, p=p, q=q: pymunk.PivotJoint(a, b, p, q),
+            lambda a=a, b=b, p=p, q=q: pymunk.GrooveJoint(a, b, (0, 0), p, q),
+            lambda a=a, b=b, p=p, q=q: pymunk.PinJoint(a, b, p, q),
+            lambda a=a, b=b, p=p, q=q: pymunk.SlideJoint(a, b, p, q, 0.1, 0.5),
+            lambda a=a, b=b: pymunk.GearJoint(a, b, 0.1, 1 + chance.random()),
+            lambda a=a, b=b: pymunk.RotaryLimitJoint(a, b, -0.1, 0.1),
+        ))())  # fmt: skip
+    stepper, dt = ep.EECA(space), chance.choice((1 / 240, 1 / 60, 0.1))
+    for _ in range(4):
+        ledger = stepper.step(dt).ledger
+        scale = ep.measure(space).kinetic + abs(ledger.external) + abs(ledger.change)
+        assert abs(ledger.residual) <= 1e-9 * scale
+
+
+def test_a_crank_that_its_wheel_drives_through_a_dead_centre_loses_nothing() -> None:
+    """A wheel that turns, a rod, and a piston in a groove on the ground, without an impact: what the piston gains and
+    loses is work of the wheel, also in steps whose joints are elastic for a moment, at the dead centre."""
+    space, wheel = pymunk.Space(), pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    wheel.angular_velocity = 10.0
+    radius, length, at = 0.5, 0.50005, 0.3
+    p = pymunk.Vec2d(radius * math.cos(at), radius * math.sin(at))
+    q = pymunk.Vec2d(p.x + math.sqrt(length**2 - p.y**2), 0.0)
+    rod, piston = pymunk.Body(1.0, 0.1 * length**2), pymunk.Body(1.0, math.inf)
+    rod.position, rod.angle, piston.position = (p + q) / 2, (q - p).angle, q
+    space.add(wheel, rod, piston, pymunk.PivotJoint(wheel, rod, p), pymunk.PivotJoint(rod, piston, q))
+    space.add(pymunk.GrooveJoint(space.static_body, piston, (-50.0, 0.0), (50.0, 0.0), (0.0, 0.0)))
+    stepper, gave = ep.EECA(space), 0
+    stepper.step(1 / 30)  # velocities are made to fit the joints
+    for _ in range(200):
+        report = stepper.step(1 / 30)
+        assert report.ledger.restitution <= 1e-9 * ep.measure(space).kinetic
+        gave += report.ledger.external != 0.0
+    assert gave > 100
