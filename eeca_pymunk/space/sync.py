@@ -91,7 +91,7 @@ class Sync:
         them too; what else needs them, see `make_arbiters`, costs more than making them."""
         if self.state != ARBITERS_CURRENT and self.space not in BUSY and self.is_ours():
             if self.state == NO_REHEARSAL:
-                with without_joints(self.space, True):
+                with without_joints(self.space, True), private_rest.without_handlers(self.space):
                     self._world.rehearsal.take_left_out_step()
                 self.state, self.stamp = ARBITERS_CURRENT, self._timestamp()
             else:

@@ -189,3 +189,21 @@ def test_arbiters_are_those_of_who_stepped_last(handler: bool, sync: tuple[bool,
             total = sum((impulse for impulse, *_ in seen(body)), pymunk.Vec2d(0.0, 0.0))
             change = body.mass * (body.velocity - velocity) + pymunk.Vec2d(0.0, body.mass * G * DT)
             assert abs(total) == pytest.approx(abs(change), abs=REST_SPEED * body.mass * G * DT), who
+
+
+@pytest.mark.parametrize("handled", [False, True])
+def test_reading_arbiters_calls_no_handler_that_was_added_since_the_step(handled: bool) -> None:
+    """They are made when they are read, by a step of pymunk; also where handlers for other shapes were there before.
+    Removals by such a call would wait for the next step, when the shape may be gone."""
+    space, (_, falling) = scene()
+    if handled:
+        space.on_collision(5, 6, pre_solve=lambda *_: None)
+    stepper, calls = ep.EECA(space), list[str]()
+    for _ in range(20):
+        stepper.step(DT)
+    for phase in ("begin", "pre_solve", "post_solve", "separate"):
+        space.on_collision(**{phase: lambda *_, phase=phase: calls.append(phase)})  # type: ignore[misc]
+    assert seen(falling)
+    assert calls == []
+    stepper.step(DT)
+    assert calls == 2 * ["pre_solve"] + 2 * ["post_solve"]

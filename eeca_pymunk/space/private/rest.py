@@ -22,12 +22,34 @@ def rest(space: pymunk.Space, dt: float, keep_gravity: bool) -> None:
             lib.cpSpaceSetGravity(c, zero)
         lib.cpSpaceSetIterations(c, 1)
         lib.cpSpaceSetCollisionBias(c, 1.0)  # the part of an overlap that remains after one second: all
-        private.step_without_end(space, dt)
+        with without_handlers(space):
+            private.step_without_end(space, dt)
     finally:
         if not keep_gravity:
             lib.cpSpaceSetGravity(c, gravity)
         lib.cpSpaceSetIterations(c, iterations)
         lib.cpSpaceSetCollisionBias(c, bias)
+
+
+@contextmanager
+def without_handlers(space: pymunk.Space) -> Iterator[None]:
+    """Within this block steps of pymunk call no function of the space's collision handlers, and collisions take place:
+    such a step belongs to an earlier one, and the program may have added handlers since."""
+    held = private.functions(space) if space._handlers else []
+    try:
+        for handler, *functions in held:
+            for phase, function in zip(private.PHASES, functions, strict=True):
+                if function is not None:
+                    setattr(handler, phase, _take_place)
+        yield
+    finally:
+        for handler, *functions in held:
+            for phase, function in zip(private.PHASES, functions, strict=True):
+                setattr(handler, phase, function)
+
+
+def _take_place(*_: object) -> bool:
+    return True
 
 
 @contextmanager
