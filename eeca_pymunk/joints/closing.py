@@ -12,8 +12,8 @@ from ..newton.entries import acts
 from ..newton.motion import go_back, save
 from ..newton.rows import joint_rows, shared_part, shares_point
 from .bounds import hold_passed, limit_gap, passed_side
-from .correct import KEPT, fitting_loss, kinetic_of, kinetic_of_change, project, restore_speeds, speeds_fit
-from .frame import work_of_shift
+from .correct import KEPT, NOW, fitting_loss, kinetic_of, kinetic_of_change, project, restore_speeds, speeds_fit
+from .frame import frame_of, has_prescribed_motion, work_of_shift
 from .lock import lock_energy
 from .start import closing_share, compute_rows, springs_of
 
@@ -141,11 +141,35 @@ def close_joints(W: Workspace, h: float, ledger: JointLedger) -> bool:
         ledger.supports, ledger.carried = ledger.supports + turned, ledger.carried + turned
         ledger.stored += taken
         save(W)
-    if (edited or unknown) and not speeds_fit(W):
-        project(W, SPEEDS)
-        # Steps of another stepper may have left as much of the kinetic energy.
-        if not edited and kinetic_of_change(W) <= TAKEN_OVER_LEFT * kinetic_of(W, KEPT):
-            restore_speeds(W)
+    if (edited or unknown) and fit_speeds(W, 0.0 if edited else TAKEN_OVER_LEFT):
         ledger.projected += fitting_loss(W, ledger)
         save(W)
     return own
+
+
+@nonallocating
+def fit_speeds(W: Workspace, left: float) -> bool:
+    """Project velocities onto the joints, from `v_kept`, if more than the part `left` of the kinetic energy is across
+    them, as steps may leave; whether they have changed. Rows must be those of the present poses."""
+    if speeds_fit(W):
+        return False
+    project(W, SPEEDS)
+    if kinetic_of_change(W) <= left * kinetic_of(W, KEPT):
+        restore_speeds(W)
+        return False
+    return True
+
+
+@nonallocating
+def fit_led(W: Workspace, ledger: JointLedger) -> None:
+    """At the end of a step: if supports without a frame lead the bodies, make velocities fit the joints, unless little
+    of their energy is across these; what that takes or gives is work of the supports.
+
+    The mean of the velocities at both ends of a step follows the joints: what one end is off alternates from step to
+    step. Nothing conserves energy here, so that this would grow wherever the supports change their speed within a step,
+    as those of a crank do at its dead centres.
+    """
+    if has_prescribed_motion(W) and not frame_of(W).rigid:
+        compute_rows(W)
+        if fit_speeds(W, TAKEN_OVER_LEFT):
+            ledger.supports += kinetic_of(W, NOW) - kinetic_of(W, KEPT)

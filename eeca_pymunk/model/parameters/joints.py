@@ -17,7 +17,7 @@ JOINT_SPEED_LEFT = heuristic(0.01, "of the speeds along a row",
     "Velocity along a joint row up to which it is an error of steps and not an edit to be corrected.")
 TAKEN_OVER_LEFT = heuristic(0.05, "of the kinetic energy of the component",
     "Energy of velocities along joint rows up to which, where no earlier step is known, it is an error of the steps of "
-    "another stepper and not given by the program.")
+    "another stepper and not given by the program; or, where supports that move apart lead bodies, left as it is.")
 LEAST_INERTIA = work(0.1, "of a body's inertia",
     "Inertia that the geometric stiffness of joints may leave in the smaller one of two systems, whose solution is "
     "the same; below it the larger one is solved.")
