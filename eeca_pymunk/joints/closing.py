@@ -13,7 +13,7 @@ from ..newton.motion import go_back, save
 from ..newton.rows import joint_rows, shared_part, shares_point
 from .bounds import hold_passed, limit_gap, passed_side
 from .correct import KEPT, NOW, fitting_loss, kinetic_of, kinetic_of_change, project, restore_speeds, speeds_fit
-from .frame import frame_of, has_prescribed_motion, work_of_shift
+from .frame import move_apart, work_of_shift
 from .lock import lock_energy
 from .start import closing_share, compute_rows, springs_of
 
@@ -169,7 +169,7 @@ def fit_led(W: Workspace, ledger: JointLedger) -> None:
     step. Nothing conserves energy here, so that this would grow wherever the supports change their speed within a step,
     as those of a crank do at its dead centres.
     """
-    if has_prescribed_motion(W) and not frame_of(W).rigid:
+    if move_apart(W):
         compute_rows(W)
         if fit_speeds(W, TAKEN_OVER_LEFT):
             ledger.supports += kinetic_of(W, NOW) - kinetic_of(W, KEPT)

@@ -135,6 +135,12 @@ def frame_of(W: Workspace) -> Frame:
 
 
 @nonallocating
+def move_apart(W: Workspace) -> bool:
+    """Whether supports move, but not as one: they have no frame, and can do any work."""
+    return has_prescribed_motion(W) and not frame_of(W).rigid
+
+
+@nonallocating
 def account_frame(W: Workspace, h: float) -> None:
     """Add the work of moving supports in a solved part h, by the balance of momentum, to PART_LEDGER: 0 without a
     frame."""

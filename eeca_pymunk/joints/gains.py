@@ -19,7 +19,7 @@ from ..model.joints import Workspace
 from ..model.parameters.joints import GAIN_KEPT, JOINT_GAIN, JOINT_TOLERANCE, LINEAR_APART, REPAID
 from .closing import farthest
 from .correct import NOW, SAVED, kinetic_of
-from .frame import frame_of
+from .frame import move_apart
 from .ledger import close_ledger, unexplained
 from .lock import lock_energy, restore_momenta
 from .start import load_of
@@ -59,7 +59,7 @@ def repaid(W: Workspace, h: float, length: float, own: bool) -> bool:
     for turn in range(2):
         clear_errors(W, h, length)
         gain = gain_of_rows(W, own)
-        if not gain > 0.0 or not frame_of(W).rigid:
+        if not gain > 0.0 or move_apart(W):
             break
         if own and not gain <= REPAID * before:
             return False
@@ -77,7 +77,7 @@ def keeps_gain(W: Workspace, h: float, length: float, own: bool) -> bool:
     if W.J.PROGRESS.near > 0.0:
         return False
     gain, mass = min(gain_of_rows(W, own), unexplained(W) - W.J.PART_LEDGER.carried), 0.0
-    if not gain > 0.0 or not frame_of(W).rigid:
+    if not gain > 0.0 or move_apart(W):
         return False
     for i in range(W.bodies):
         mass += 1.0 / W.J.LOCAL[i].mobility[0] if W.J.LOCAL[i].mobility[0] > 0.0 else 0.0
@@ -115,7 +115,7 @@ def take_gain(W: Workspace, h: float, length: float, status: int, own: bool, bef
         fails = keeps_gain(W, h, length, own)
     else:
         fails = not gain_taken(W, h, length) or (status == LINEAR and not farthest(W) <= before + LINEAR_APART)
-        fails = fails and frame_of(W).rigid
+        fails = fails and not move_apart(W)
     if fails:
         stop_joints(W, h)
     return LINEAR if fails else status

@@ -10,7 +10,7 @@ from ..model.joint_steps import JointLedger
 from ..model.joints import MOTOR, ROTARY_SPRING, SPRING, Workspace
 from ..newton.entries import acts
 from ..newton.springs import potential
-from .frame import account_frame, frame_of
+from .frame import account_frame, move_apart
 
 
 @inlined
@@ -46,27 +46,24 @@ def add_part(ledger: JointLedger, part: JointLedger) -> None:
 def account_part(W: Workspace, h: float) -> None:
     """Add the works of a solved part h of the step to PART_LEDGER, and its impulses to `total`.
 
-    A joint's impulse F = J^T lam does the work F . x / h on its bodies. The local `total` is all of it, `moved` the
-    part on bodies that joints move; the rest is on supports.
+    A joint's impulse F = J^T lam does the work F . x / h on its bodies; what it does on supports, they have done.
     """
     hinge, link, ledger = W.J.HINGE, W.link, W.J.PART_LEDGER
     account_frame(W, h)
     per = 1.0 / h
     for k in range(W.joints):
-        kind, j = link[k].kind, link[k].joint
+        kind = link[k].kind
         spring = kind in (SPRING, ROTARY_SPRING)
         if not spring and not acts(link, k, 0):
             continue
-        total, moved = 0.0, 0.0
+        total = 0.0
         for end in range(2):
             i = link[k].body[end]
             for c in range(3):
                 work = hinge[k].force[3 * end + c] * W.J.LOCAL[i].way[c] * per
                 total += work
-                if W.J.LOCAL[i].mobility[c] > 0.0:
-                    moved += work
-        ledger.supports += moved - total
-        W.J.JOINT[j].work += moved
+                if not W.J.LOCAL[i].mobility[c] > 0.0:
+                    ledger.supports -= work
         hinge[k].total[0] += hinge[k].lam[0]
         hinge[k].total[1] += hinge[k].lam[1]
         if spring:
@@ -127,5 +124,5 @@ def close_ledger(W: Workspace) -> None:
     to round-off, so that only the sum is known.
     """
     part, change = W.J.PART_LEDGER, unexplained(W)
-    part.supports = part.carried if frame_of(W).rigid else change
+    part.supports = change if move_apart(W) else part.carried
     part.closed, part.limited = max(change - part.supports, 0.0), max(part.supports - change, 0.0)

@@ -114,7 +114,6 @@ def read_joints(W: Workspace, h: float, length: float) -> tuple[bool, bool]:
         hinge[k].target[0] = hinge[k].target[1] = hinge[k].scale[0] = hinge[k].scale[1] = 0.0
         hinge[k].bound = joint[j].max_force
         hinge[k].size = unit_of(joint[j], length)
-        joint[j].work = 0.0
         for end in range(2):
             for c in range(3):
                 W.J.LOCAL[link[k].body[end]].lead[c] = joint[j].led[end, c]

@@ -17,13 +17,13 @@ from .start import springs_of
 
 @nonallocating
 def undo_impulses(W: Workspace) -> None:
-    """Set the impulses of the step to 0, and the accelerations and works of joints."""
+    """Set the impulses of the step to 0, and the accelerations by joints."""
     drop_impulses(W)
     for i in range(W.bodies):
         for c in range(3):
             W.J.LOCAL[i].lead[c] = 0.0
     for k in range(W.joints):
-        W.J.HINGE[k].total[0] = W.J.HINGE[k].total[1] = W.J.JOINT[W.link[k].joint].work = 0.0
+        W.J.HINGE[k].total[0] = W.J.HINGE[k].total[1] = 0.0
 
 
 @nonallocating

@@ -50,7 +50,6 @@ class Joint(Record):
     impulse: Annotated[FloatArray, 2]  # of the last step along the rows; of a spring along d, of a rotary one on b
     struck: Annotated[FloatArray, 2]  # impulses by which the joint has answered impacts of the last step
     last_step: float  # its dt; 0 if none
-    work: float  # energy that the joint gave to its bodies in the last step
     led: Annotated[FloatArray, 2, 3]  # accelerations that joints gave to bodies a and b last
     known_parts: int  # parts of steps of order 4 that are known (`..joints.foresight`); the length of their steps
     known_step: float
@@ -70,7 +69,7 @@ EDITED, APART, LEFT_APART, GIVES_WAY, TAKEN_OVER = 1, 2, 3, 4, 5
 
 # Fields that steps change.
 OF_STEPS = (
-    "touched", "side", "impulse", "struck", "last_step", "work", "led", "known_parts", "known_step", "past_led",
+    "touched", "side", "impulse", "struck", "last_step", "led", "known_parts", "known_step", "past_led",
     "past_push", "compliance",
 )  # fmt: skip
 
