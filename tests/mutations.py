@@ -379,7 +379,7 @@ MUTATIONS = (
              "joints/test_redundant.py", "knots"),
     Mutation("joints: momenta are off by the round-off of large impulses", "joints/gains.py",
              "part.closed += restore_momenta(W, h, length, load)", "pass", "joints/test_pairs.py",
-             "[50]"),
+             "[431]"),
     Mutation("blocks: wedged contacts keep their friction", "rows/blocks.py", "slip_freely(ROWS, m)", "pass",
              "rows/test_blocks.py", "wedges"),
     Mutation("joints: momenta are off by the round-off of a projection", "joints/correct.py",
