@@ -283,7 +283,7 @@ MUTATIONS = (
     Mutation("joints: speeds of what supports lead stay off", "joints/step.py", "    fit_led(W, ledger)", "    pass",
              "joints/test_frame.py", "no_more_energy and 0.0333 and 1.01-0.001"),
     Mutation("ledger: what turns has no frame", "joints/frame.py", "rigid, hangs, turns = W.J.LOCAL, True,",
-             "rigid, hangs, turns = W.J.LOCAL, not has_prescribed_motion(W),", "joints/test_frame.py", "[96]"),
+             "rigid, hangs, turns = W.J.LOCAL, not has_prescribed_motion(W),", "joints/test_frame.py", "gives_joints_no_more and 96"),
     Mutation("ledger: supports at impacts", "impacts/joint_impact.py",
              "A.PAR.external += gained_energy(", "A.PAR.external += 0.0 * gained_energy(", "jointed/test_supports.py",
              "struck"),
