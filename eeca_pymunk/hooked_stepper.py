@@ -44,19 +44,6 @@ class HookedStepper(PackedSpace):
             loop.rejoin(joints.linkage, joints.replan)
             joints.planned(loop.held)
 
-    def catch_up(self) -> None:
-        """Take over all changes of the space since the last step, as the next one does.
-
-        Raises:
-            ValueError: as that step would.
-        """
-        world = self._present()
-        joints = world.joints
-        if joints is not None:
-            joints.catch_up()
-            world.gather()
-            self._rejoin(world, joints)
-
     def advance(self, world: World, dt: float, half_damping: float) -> int:
         """Move the bodies from `world.STATES` to `world.ENDS`; the space is not touched.
 

@@ -62,6 +62,18 @@ class RunningStepper(PackedStepper):
             world.gather()
         return world
 
+    def catch_up(self) -> None:
+        """Take over all changes of the space since the last step, as the next one does.
+
+        Raises:
+            ValueError: as that step would.
+        """
+        world = self.current()
+        joints = world.joints
+        if joints is not None:
+            joints.catch_up()
+            self._rejoin(world, joints)
+
     def compiles(self) -> bool:
         """Whether a run of the present space is one compiled call.
 

@@ -481,7 +481,7 @@ def test_from_the_same_start_a_refreshed_stepper_goes_the_same_way() -> None:
 
 
 @pytest.mark.parametrize("way", [copy.deepcopy, lambda stepper: pickle.loads(pickle.dumps(stepper))])
-@pytest.mark.parametrize("edit", ["a joint", "a body", "a shape", "a value", "a joint's value"])
+@pytest.mark.parametrize("edit", ["a joint", "a body", "a shape", "a value", "a joint's value", "a wall"])
 def test_what_was_changed_since_the_last_step_is_part_of_a_copy(way: Callable[[ep.EECA], ep.EECA], edit: str) -> None:
     """Results of earlier steps hold for what has not changed, in the copy as in its original."""
     space = pymunk.Space()
@@ -489,13 +489,16 @@ def test_what_was_changed_since_the_last_step_is_part_of_a_copy(way: Callable[[e
     floor = pymunk.Segment(space.static_body, (-9, 0), (9, 0), 0.1)
     floor.friction = 0.5
     space.add(floor)
+    wall = pymunk.Body(body_type=pymunk.Body.STATIC)
+    wall.position = (-4.0, 1.0)
+    space.add(wall, pymunk.Segment(wall, (0.0, -1.0), (0.0, 1.0), 0.1))
     for k in range(6):
         body = pymunk.Body(1.0 + k, 1.0)
         body.position, body.angle = (0.1 * k, 1.0 + 0.9 * k), 0.1 * k
         box = pymunk.Poly.create_box(body, (1.0, 0.8))
         box.friction = 0.5
         space.add(body, box)
-    low, high = list(space.bodies)[::5]
+    low, high = list(space.bodies)[1::5]
     rope = pymunk.SlideJoint(space.static_body, high, (0, 9), (0, 0), 0.0, 4.0)
     space.add(rope)
     stepper = ep.EECA(space)
@@ -511,6 +514,9 @@ def test_what_was_changed_since_the_last_step_is_part_of_a_copy(way: Callable[[e
         space.remove(next(iter(high.shapes)))
     elif edit == "a value":
         floor.friction, low.mass = 0.1, 5.0
+    elif edit == "a wall":
+        wall.position = (-0.6, 1.0)
+        space.reindex_shapes_for_body(wall)
     else:
         rope.max, rope.anchor_b = 3.5, (0.1, 0.0)
     twin = way(stepper)
