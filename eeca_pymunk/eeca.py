@@ -11,6 +11,7 @@ from .impacts.taking_over import Kept
 from .reentry import BUSY
 from .runs import RunningStepper
 from .saved import Saved
+from .space.private.spaces import handlers
 from .space.world import World
 from .stepper import Method
 
@@ -46,9 +47,12 @@ class EECA(RunningStepper):
         super().__init__(space, sync=sync, ignore=ignore)
 
     def __getstate__(self) -> dict[str, object]:
-        if self._world is not None and self.event_loop is not None and self.space not in BUSY:
+        known = bool(handlers(self.space)) if self._world is None else self.event_loop is not None
+        if known and self.space not in BUSY:
             with suppress(ValueError):  # which the next step raises
-                self.catch_up()  # what the program has changed since the last step, so that the copy has it, too
+                # What the program has changed since the last step, and what handlers have rejected, which pymunk's
+                # copies lack, so that the copy has it, too.
+                self.catch_up()
         state = super().__getstate__()
         if self._world is not None and (loop := self.event_loop) is not None:
             state["_saved"] = Saved(self._world, loop, self.decisions)

@@ -235,14 +235,18 @@ def test_states_have_what_handlers_have_decided_before(phase: str, saved: bool) 
     assert [b.position.x for b in space.bodies] == [5.0, 0.0]
 
 
+@pytest.mark.parametrize("refreshed", [False, True])
 @pytest.mark.parametrize("phase", ["begin", "pre_solve"])
-def test_copies_go_on_through_what_handlers_have_rejected(phase: str) -> None:
-    """pymunk's pickles have the contacts, but not that they were rejected."""
+def test_copies_go_on_through_what_handlers_have_rejected(phase: str, refreshed: bool) -> None:
+    """pymunk's pickles have the contacts, but not that they were rejected; also if the stepper has forgotten it, as
+    pymunk calls `begin` once."""
     space, body, stepper = passing(phase)
     body.position, body.velocity = (-0.9, 0.0), (6.0, 0.0)
     for _ in range(5):
         stepper.step(1 / 60)
     assert body.position.x == pytest.approx(-0.4)
+    if refreshed:
+        stepper.refresh()
     copied, other = pickle.loads(pickle.dumps((space, stepper)))
     for _ in range(10):
         stepper.step(1 / 60)

@@ -155,15 +155,16 @@ class Decisions:
                 self.laws[one, two] = _NONE, now
 
     def state(self, world: World) -> FloatArray:
-        """(n, DECISION_COLUMNS) all decisions that apply, sorted."""
+        """(n, DECISION_COLUMNS) all decisions that apply, sorted; also rejections that are forgotten here, but which
+        pymunk's arbiters have as long as the shapes touch: their age is too great to apply by themselves."""
         space = world.space
         now, shapes = private.timestamp(space)(), list(space.shapes)
         known: dict[tuple[pymunk.Shape, pymunk.Shape], tuple[Law, int]] = dict(self.laws)
         for arbiter in private.differing_arbiters(space):
             step = private_arbiters.stamp(arbiter)
-            if step <= self.since:
-                continue
             found = Rules.of_arbiters([arbiter], world)
+            if step <= self.since:
+                found, step = Rules(found.ignored), now - int(space.collision_persistence)
             for a, b in (*found.ignored, *found.changed):
                 one, two = sorted(arbiter.shapes, key=world.places.__getitem__)
                 if (one, two) not in known or known[one, two][1] < step:
@@ -179,7 +180,8 @@ class Decisions:
         shapes, never = list(space.shapes), set()
         for a, b, e, mu, x, y, age in rows.tolist():
             pair = shapes[int(a)], shapes[int(b)]
-            self.laws[pair] = (e, mu, x, y), self.since - int(age)
+            if age < space.collision_persistence:
+                self.laws[pair] = (e, mu, x, y), self.since - int(age)
             if e < 0.0:
                 never.add(frozenset(pair))
         for arbiter in private.arbiters(space) if never else ():
