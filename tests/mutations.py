@@ -280,7 +280,7 @@ MUTATIONS = (
              "by_impulses"),
     Mutation("ledger: supports without a frame give nothing", "joints/ledger.py",
              "change if move_apart(W) else part.carried", "part.carried", "joints/test_frame.py", "dead_centre"),
-    Mutation("joints: speeds of what supports lead stay off", "joints/step.py", "    fit_led(W, ledger)", "    pass",
+    Mutation("joints: speeds of what supports lead stay off", "joints/gains.py", "if fit_led(W):", "if False:",
              "joints/test_frame.py", "no_more_energy and 0.0333 and 1.01-0.001"),
     Mutation("ledger: what turns has no frame", "joints/frame.py", "rigid, hangs, turns = W.J.LOCAL, True,",
              "rigid, hangs, turns = W.J.LOCAL, not has_prescribed_motion(W),", "joints/test_frame.py",

@@ -161,15 +161,18 @@ def fit_speeds(W: Workspace, left: float) -> bool:
 
 
 @nonallocating
-def fit_led(W: Workspace, ledger: JointLedger) -> None:
+def fit_led(W: Workspace) -> bool:
     """At the end of a step: if supports without a frame lead the bodies, make velocities fit the joints, unless little
-    of their energy is across these; what that takes or gives is work of the supports.
+    of their energy is across these; what that takes or gives is work of the supports. Returns whether it has.
 
     The mean of the velocities at both ends of a step follows the joints: what one end is off alternates from step to
     step. Nothing conserves energy here, so that this would grow wherever the supports change their speed within a step,
     as those of a crank do at its dead centres.
     """
-    if move_apart(W):
-        compute_rows(W)
-        if fit_speeds(W, TAKEN_OVER_LEFT):
-            ledger.supports += kinetic_of(W, NOW) - kinetic_of(W, KEPT)
+    if not move_apart(W):
+        return False
+    compute_rows(W)
+    if not fit_speeds(W, TAKEN_OVER_LEFT):
+        return False
+    W.J.PART_LEDGER.supports += kinetic_of(W, NOW) - kinetic_of(W, KEPT)
+    return True

@@ -17,7 +17,7 @@ from ..compiled import nonallocating
 from ..model.joint_steps import ELASTIC, LINEAR
 from ..model.joints import Workspace
 from ..model.parameters.joints import GAIN_KEPT, JOINT_GAIN, JOINT_TOLERANCE, LINEAR_APART, REPAID
-from .closing import farthest
+from .closing import farthest, fit_led
 from .correct import NOW, SAVED, kinetic_of
 from .frame import move_apart
 from .ledger import close_ledger, unexplained
@@ -111,6 +111,8 @@ def take_gain(W: Workspace, h: float, length: float, status: int, own: bool, bef
     If the motion cannot pay, or linear rows leave joints farther apart than `before`, all bodies move as one: LINEAR.
     `own`: see `repaid`.
     """
+    if fit_led(W):
+        clear_errors(W, h, length)
     if status < ELASTIC:
         fails = keeps_gain(W, h, length, own)
     else:

@@ -19,7 +19,7 @@ from ..newton.motion import save
 from ..newton.rows import start_joint
 from ..newton.solve import drop_impulses
 from .bounds import closes_on_limit, standing
-from .closing import close_joints, farthest, fit_led
+from .closing import close_joints, farthest
 from .correct import fitting_loss, project
 from .gains import take_gain
 from .ladder import climb, limit_work
@@ -126,12 +126,9 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
     status = climb(W, h, order, length, touched, own)
     before = step_linearly(W, h, length) if status == LINEAR else 0.0
     status = take_gain(W, h, length, status, own, before)
-    far = 0.0
     if status >= ELASTIC:
         compute_rows(W)  # they were those before the last correction
-        far = farthest(W)
-    ledger.gave = max(far - ledger.apart, 0.0)
+    ledger.gave = max(farthest(W) - ledger.apart, 0.0) if status >= ELASTIC else 0.0
     add_part(ledger, W.J.PART_LEDGER)
-    fit_led(W, ledger)
     write_joints(W, h, GIVES_WAY if status == ELASTIC else LEFT_APART if status == LINEAR else 0)
-    return HALVED if status == ELASTIC and far <= NEARLY_HELD else status
+    return HALVED if status == ELASTIC and farthest(W) <= NEARLY_HELD else status

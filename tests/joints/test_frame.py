@@ -16,7 +16,7 @@ import pytest
 
 import eeca_pymunk as ep
 
-from ..programs.joined import HOLDS, apart, reach
+from ..programs.joined import HOLDS, apart, join, reach
 from .test_pairs import drawn
 
 
@@ -249,3 +249,41 @@ def test_a_wheel_gives_a_crank_no_more_energy_than_its_motion_has(
     for _ in range(200):
         stepper.step(dt)
         assert ep.measure(space).kinetic <= 1.6 * most
+
+
+@pytest.mark.parametrize("seed", [12, 87, 108])
+def test_the_ledger_closes_where_joints_throw_bodies_that_are_caught_again(seed: int) -> None:
+    """Between bodies that the program moves apart, elastic joints give speeds of which joints then keep next to none:
+    the works of both are a million times what is left."""
+    R, space = Random(f"ledx {seed}"), pymunk.Space()
+    space.gravity = 0, R.choice((0, -9.81))
+    driven, led = list[pymunk.Body](), list[pymunk.Body]()
+    for _ in range(R.choice((1, 2, 2, 3))):
+        body = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+        body.position, way = (R.uniform(-2, 2), R.uniform(-2, 2)), R.choice(("spin", "move", "both", "rest"))
+        if way in ("spin", "both"):
+            body.angular_velocity = R.uniform(-1, 1) * R.choice((1, 5, 20))
+        if way in ("move", "both"):
+            body.velocity = R.uniform(-1, 1), R.uniform(-1, 1)
+        driven.append(body)
+    for _ in range(R.randint(1, 6)):
+        mass = 10 ** R.uniform(-2, 2)
+        body = pymunk.Body(mass, mass * 10 ** R.uniform(-2, 0) if R.random() > 0.15 else math.inf)
+        body.position, body.angle = (R.uniform(-2, 2), R.uniform(-2, 2)), R.uniform(-3, 3)
+        led.append(body)
+    space.add(*driven, *led)
+    if R.random() < 0.3:
+        for body in led:
+            if R.random() < 0.6:
+                disk = pymunk.Circle(body, 0.3)
+                disk.elasticity, disk.friction = R.choice((0, 1)), 0.5
+                space.add(disk)
+    for _ in range(R.randint(2, 8)):
+        a = R.choice(led)
+        space.add(join(R, a, R.choice([b for b in (*driven, *led, space.static_body) if b is not a]), 1.0, a.mass))
+    stepper, dt = ep.EECA(space), R.choice((1 / 240, 1 / 60, 1 / 60, 1 / 30, 0.1))
+    for _ in range(90):
+        ledger = stepper.step(dt).ledger
+        now = ep.measure(space)
+        scale = now.kinetic + abs(now.potential) + abs(ledger.external) + abs(ledger.change) + ledger.friction
+        assert abs(ledger.residual) <= 1e-9 * scale
