@@ -49,15 +49,26 @@ def too_deep(A: Scene, a: int, b: int, gap: float, closing: float) -> float:
     return max(closing / room, 1.01 * intervals.INTERVAL_RETRY) if closing > room + 0.5 * deep else 0.0
 
 
+@nonallocating
+def turns_corners(A: Scene, isle: Island, END: FloatArray, row: Row, a: int, b: int) -> bool:
+    """Whether shape a or b of a contact has corners and turns by more than NORMAL_TURN until poses END (k, 3): others
+    come near than the contact's points, and these do not move along its row."""
+    for q in (row.a, row.b):
+        s = a if A.LINK[a].owner == isle.WHO[q] else b
+        if A.LINK[s].vertices > 1 and abs(END[q, 2] - isle.POSE[q, 2]) > intervals.NORMAL_TURN:
+            return True
+    return False
+
+
 @kernel
 def too_deep_at_end(A: Scene, isle: Island, END: FloatArray, ROWS: Rows[Row], m: int, h: float, every: bool) -> float:
     """How many times too long an interval h is at whose poses END (k, 3) a contact is deeper than its linear row
-    predicts; 0 if it is not. `every`: of all pairs, else of thin shapes only."""
+    predicts; 0 if it is not. `every`: of all pairs, else of thin shapes and of those that turn."""
     far, last = 0.0, -1
     for z in range(m):
         a, b = shapes_of(A, ROWS[z])
         pair = ROWS[z].key >> 1
-        if pair != last and (every or remembers(A, a, b)):
+        if pair != last and (every or remembers(A, a, b) or turns_corners(A, isle, END, ROWS[z], a, b)):
             far = max(far, deep_at_end(A, isle, END, ROWS, m, h, z))
         last = pair
     return far
@@ -150,7 +161,10 @@ def times_too_long(A: Scene, isle: Island, contacts: IslandContacts, m: int, h: 
     ROWS, VN = contacts.ROWS, contacts.VN
     far = max(excess_way(A, ROWS, isle.V, VN, m, h), closes_too_far(A, isle, ROWS, VN, m, h))
     far = max(far, rises_too_far(A, ROWS, contacts.L, VN, m, h))
-    if far <= intervals.INTERVAL_RETRY and len(A.SIDE) > 0:
+    turned = 0.0
+    for q in range(len(VN)):
+        turned = max(turned, 0.5 * h * abs(isle.V[q, 2] + VN[q, 2]))
+    if far <= intervals.INTERVAL_RETRY and (len(A.SIDE) > 0 or turned > intervals.NORMAL_TURN):
         END = isle.POSE + 0.5 * h * (isle.V + VN)
         far = too_deep_at_end(A, isle, END, ROWS, m, h, False)
     return far

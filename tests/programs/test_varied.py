@@ -399,3 +399,10 @@ def test_elastic_joints_do_not_become_softer_where_a_shorter_interval_holds_them
     """A heavy body stretches a light link, and another one lies at the end of a groove of the same component: joints
     that had given way by 1e-8 gave way by 1e-3 in a longer interval."""
     assert Varied(50001288, True).play(40).apart <= 1e-6
+
+
+@pytest.mark.skipif(not prepare().entries, reason="kernels as plain Python")
+def test_what_others_press_and_turn_does_not_turn_through_a_wall() -> None:
+    """A triangle between bodies up to 1600 times heavier and a corner of walls turns by half a radian in an interval of
+    many contacts: those that it has at its start do not tell that another corner goes through the wall."""
+    Varied(57010091).play(30)
