@@ -208,14 +208,14 @@ def farthest_apart(V: FloatArray, W: FloatArray, EXTENT: FloatArray, n: int) -> 
 
 
 @kernel
-def advance_aligned(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, free: bool) -> None:
+def advance_aligned(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, free: bool) -> float:
     """`advance`; in a `free` island repeated until the arms of contacts with an impulse fit the motion (`align`), which
-    keeps angular momentum.
+    keeps angular momentum. Returns the error of the arms that is left.
 
     Each motion has errors r of the arms. They change by w r, with w by Aitken's method for vectors:
     w+ = -w r.(r+ - r)/|r+ - r|^2, from 1 on. So they converge where arms turn bodies as much as these move them.
     """
-    m, weight = interval.m, 1.0
+    m, weight, worst = interval.m, 1.0, 0.0
     OFF, BEFORE = np.zeros((m, 2)), np.zeros((m, 2))
     for turn in range(ARM_ITERATIONS):
         advance(A, J, interval, L, B, False, np.empty((0, 3)))
@@ -237,3 +237,4 @@ def advance_aligned(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: B
         for i in range(m):
             join_points(interval.ROWS[i], weight * OFF[i, 0], weight * OFF[i, 1])
         copy(BEFORE, OFF)
+    return worst

@@ -208,7 +208,9 @@ def solve_contacts(
         solve_gently(A, J, interval, L, B, free, quick)
         converged, bent = False, np.inf if free else 0.0
     if bent > joints.ARM_ERROR:
-        advance_aligned(A, J, interval, L, B, free)
+        bent = advance_aligned(A, J, interval, L, B, free)
+        if bent > joints.ARM_LEFT and J.PROGRESS.length == LONG:
+            return GIVEN_UP  # contacts move less in a shorter interval
     # If joints pull hard, velocities, and so works, are only as exact as they agree.
     known = joints.PRESS_WORK_ROUND_OFF
     if some_give(J, groups) or some_taut(J, groups):
@@ -217,4 +219,4 @@ def solve_contacts(
     lock_jointed(A, J, interval, L, B, free, elastic, owed, work_error(interval, L, slow, pull, known))
     J.PROGRESS.tolerance = max(agree, joints.AGREE * scale)
     agreed = farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n) <= J.PROGRESS.tolerance
-    return SOLVED if converged and agreed else UNSOLVED
+    return SOLVED if converged and agreed and bent <= joints.ARM_LEFT else UNSOLVED

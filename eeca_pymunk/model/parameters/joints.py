@@ -81,6 +81,9 @@ TAUT = heuristic(0.5, "of a body's inertia",
 ARM_ITERATIONS = work(30, "iterations",
     "Most iterations of the motion in which arms of contacts become those of its middle (`advance_aligned`).")
 ARM_ERROR = round_off(1e-15, "of the component", "Error of the arms of contacts at which these iterations end.")
+ARM_LEFT = round_off(1e-12, "of the component",
+    "Error of the arms of contacts that is left by these iterations, above which contacts are not solved: angular "
+    "momentum changes by as much of what they exchange.")
 MOTOR_OFF = round_off(1e-9, "of the speed, and of its bound",
     "Speed of a bounded row off its target, inside its bounds, that is an error.")
 BOUNDED_SWEEPS = work(30, "sweeps", "Sweeps over bounded joint rows and contacts.")
