@@ -53,7 +53,8 @@ def repaid(W: Workspace, h: float, length: float, own: bool) -> bool:
 
     Joints that an earlier step left apart (`own`) close at once; if that gives much energy beside what was there, the
     step fails. Other rows hold to round-off e of their places, and give e times their impulse over h: more in shorter
-    steps. What is taken of a gain that is much larger than the energy has its round-off: the rest is taken again.
+    steps. What is taken of a gain that is much larger than the energy has its round-off: the rest is taken again. What
+    rows have taken, more than round-off of the energy, is lost: nothing outside has it.
     """
     part, before = W.J.PART_LEDGER, kinetic_of(W, SAVED)
     for turn in range(2):
@@ -66,6 +67,8 @@ def repaid(W: Workspace, h: float, length: float, own: bool) -> bool:
         if not (gain > JOINT_GAIN * (before + kinetic_of(W, NOW)) or (own and turn == 0)):
             break
         part.closed -= lock_energy(W, gain, part)
+    if -part.closed > JOINT_GAIN * (before + kinetic_of(W, NOW)):
+        part.limited, part.closed = part.limited - part.closed, 0.0
     return True
 
 

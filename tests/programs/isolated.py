@@ -131,7 +131,7 @@ class Isolated:
             scale = energy + kinetic + abs(book.external) + abs(book.change) + sum(losses) + stored(self.space)
             if abs(book.residual) > CLOSES * scale or min(losses) < -GAINS * scale:
                 raise Broken(f"step {k}: {book}")
-            if not (drives or off) and book.external > GAINS * scale:
+            if not (drives or off) and abs(book.external) > GAINS * scale:
                 raise Broken(f"step {k}: {book.external / scale:.1e} from outside")
             if any(overdone(c, self.dt) > 1 + BOUND for c in joints):
                 raise Broken(f"step {k}: a joint exceeds its max_force")
