@@ -124,7 +124,7 @@ def note_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float, V: FloatArray) 
 
 @nonallocating
 def list_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float, V: FloatArray) -> int:
-    """Append to B the rows of component s whose impulses count as given (`motors.let_slip`); the first of them."""
+    """Append to B the rows of component s whose impulses count as given (`let_slip`); the first of them."""
     first = B.USED[0]
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         rows = acting_rows(J.COUPLING, k) if J.COUPLING[k].bounded == PRESCRIBED else 0
