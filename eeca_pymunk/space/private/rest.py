@@ -22,7 +22,10 @@ def rest(space: pymunk.Space, dt: float, keep_gravity: bool) -> None:
             lib.cpSpaceSetGravity(c, zero)
         lib.cpSpaceSetIterations(c, 1)
         lib.cpSpaceSetCollisionBias(c, 1.0)  # the part of an overlap that remains after one second: all
-        with without_handlers(space):
+        if space._handlers:
+            with without_handlers(space):
+                private.step_without_end(space, dt)
+        else:  # most spaces; a context would cost more
             private.step_without_end(space, dt)
     finally:
         if not keep_gravity:
@@ -35,7 +38,7 @@ def rest(space: pymunk.Space, dt: float, keep_gravity: bool) -> None:
 def without_handlers(space: pymunk.Space) -> Iterator[None]:
     """Within this block steps of pymunk call no function of the space's collision handlers, and collisions take place:
     such a step belongs to an earlier one, and the program may have added handlers since."""
-    held = private.functions(space) if space._handlers else []
+    held = private.functions(space)
     try:
         for handler, *functions in held:
             for phase, function in zip(private.PHASES, functions, strict=True):
