@@ -34,7 +34,7 @@ from .program_scenes import PROGRAMS
 PARTS: dict[str, tuple[tuple[type, str], ...]] = {
     "kernel": ((EventLoop, "step"),),
     "re-reads": ((PackedSpace, "_update_world"),),
-    "sync": ((Sync, "write_end"), (Sync, "leave_late"), (Sync, "update"), (Sync, "call_back"), (Late, "move")),
+    "sync": ((Sync, "end"), (Sync, "leave_late"), (Sync, "call_back"), (Late, "move")),
     "handlers": (
         (Rehearsal, "run"), (Rehearsal, "rules"), (Sync, "finish_rehearsal"), (Hooks, "velocity_changes"),
         (Hooks, "before"), (Hooks, "after"), (Hooks, "positions"),

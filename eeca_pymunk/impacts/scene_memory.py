@@ -26,7 +26,7 @@ from .new_scene import begin_scene
 RULE_COLUMNS = 6
 _MISSED = 32  # rows of MISSED: those reported of a step
 _CONTACTS = 256  # rows of PUSHED at first, a power of 2
-_OF_A_BODY, _MANY = 8, 1 << 16  # rows for each body where contacts may persist, and all rows at most at first
+_OF_A_BODY, _MANY = 32, 1 << 16  # rows for each body where contacts may persist, and all rows at most at first
 _NO_RULE: FloatArray = np.zeros((0, RULE_COLUMNS))
 _ZEROS = (*OF_SCENE, "PULL", "BEGAN", "HEAP_TIME", "HEAP_BODY", "BLOCK", "BOX", "CORNER", "MISSED")
 _FILLED = "LOG", "KEYS", "FORCES", "PUSHED_BY", "PUSHED"  # before they are read
