@@ -18,8 +18,9 @@ A step of pymunk's own is found by its counter of steps (`Sync.is_ours`); the ne
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import ExitStack
-from functools import partial
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 from weakref import WeakMethod, ref
 
@@ -27,6 +28,7 @@ from ..reentry import BUSY
 from .arbiters import ReadTouches, show_contacts
 from .late_shapes import late_shapes
 from .private import arbiters as private_arbiters
+from .private import batch as private_batch
 from .private import rest as private_rest
 from .private import shapes as private_shapes
 from .private import sleep as private_sleep
@@ -139,19 +141,33 @@ class Sync:
             for arbiter in private.raw_arbiters(self.space):
                 private_arbiters.set_impulse(arbiter, None)
         slept = self._asleep and world.bodies.in_order()
-        with ExitStack() as within:
-            within.enter_context(private_rest.stopped(self.space))
-            if self.space.constraints:
-                within.enter_context(without_joints(self.space, False))
-            if world.hooks.any_body:
-                within.enter_context(world.hooks.silent)
-            private_rest.rest(self.space, dt, self._asleep)
+        # Writing all bodies would wake those that sleep; those that came since the last reading have no room.
+        all_known = not world.sleeps and len(self.space.bodies) == len(world.bodies) - 1
+        stop, go_on = self._stopper if all_known else private_rest.stopper(self.space)
+        stop()
+        try:
+            if not self.space.constraints and not world.hooks.any_body:  # contexts would cost more
+                private_rest.rest(self.space, dt, self._asleep)
+            else:
+                with ExitStack() as within:
+                    if self.space.constraints:
+                        within.enter_context(without_joints(self.space, False))
+                    if world.hooks.any_body:
+                        within.enter_context(world.hooks.silent)
+                    private_rest.rest(self.space, dt, self._asleep)
+        finally:
+            go_on()
         if slept and not world.bodies.in_order():
             self._stop_woken()  # gravity has accelerated the bodies that pymunk has woken
         self._rested, self._dt = self._timestamp(), dt
         self._shapes.late, self._shapes.read, self._shapes.reindexings = False, False, private_shapes.REINDEXINGS
         self.state, self.stamp, self.arbiters_read, self._first = ARBITERS_CURRENT, self._rested, False, False
         self._shapes.sync = self._reference
+
+    @cached_property
+    def _stopper(self) -> tuple[Callable[[], None], Callable[[], None]]:
+        """See `private_batch.stopper`."""
+        return private_batch.stopper(self.space, len(self._world.bodies))
 
     def end(self, dt: float) -> None:
         """Update pymunk's shapes to the end of a step, which was written to the bodies: by reindexing, or by a rest

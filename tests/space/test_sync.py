@@ -11,6 +11,7 @@ import pytest
 import eeca_pymunk as ep
 from eeca_pymunk.space import sync
 from eeca_pymunk.space.late_shapes import MOST_READ
+from eeca_pymunk.space.private import batch as private_batch
 from eeca_pymunk.space.private import rest as private_rest
 from scenes.scene import add_disk
 
@@ -220,13 +221,18 @@ def test_where_bodies_may_sleep_arbiters_are_renewed_when_somebody_asks_too(monk
     assert stepper.reads == 1  # pymunk's steps in between are not steps of the program
 
 
-def test_a_step_at_rest_leaves_settings_and_what_is_stopped_moves_on() -> None:
+@pytest.mark.parametrize("together", [False, True])
+def test_a_step_at_rest_leaves_settings_and_what_is_stopped_moves_on(together: bool) -> None:
     space, box = standing()
+    space.static_body.velocity = 7.0, 8.0
     box.velocity, box.angular_velocity, box.force, box.torque = (1.0, -2.0), 3.0, (4.0, 5.0), 6.0
     settings = space.gravity, space.iterations, space.collision_bias
-    with private_rest.stopped(space):
-        assert (box.velocity, box.angular_velocity, box.force, box.torque) == ((0.0, 0.0), 0.0, (0.0, 0.0), 0.0)
-        private_rest.rest(space, DT, False)
+    stop, go_on = private_batch.stopper(space, len(space.bodies) + 1) if together else private_rest.stopper(space)
+    stop()
+    assert (box.velocity, box.angular_velocity, box.force, box.torque) == ((0.0, 0.0), 0.0, (0.0, 0.0), 0.0)
+    private_rest.rest(space, DT, False)
+    go_on()
+    assert space.static_body.velocity == (7.0, 8.0)
     assert (box.velocity, box.angular_velocity, box.force, box.torque) == ((1.0, -2.0), 3.0, (4.0, 5.0), 6.0)
     assert (box.position, space.current_time_step) == ((0.0, 0.5), DT)
     assert (space.gravity, space.iterations, space.collision_bias) == settings

@@ -17,6 +17,8 @@ OF_LIBRARY = (
     "cpSpaceEachCachedArbiter", "pmSpaceArbiterIteratorFuncBatched", "pmIntArrayNew", "pmIntArrayFree",
 )  # fmt: skip
 TYPES = ("pmBatchedData *", "pmFloatArray *", "pmIntArray *")
+_MOTION = batch.BodyFields.VELOCITY | batch.BodyFields.ANGULAR_VELOCITY
+_MOTION |= batch.BodyFields.FORCE | batch.BodyFields.TORQUE
 _BOTH_IDS = batch.ArbiterFields.BODY_A_ID | batch.ArbiterFields.BODY_B_ID
 # The readers and writers of whole spaces have attributes: `values` and `numbers`, the C arrays to which a later call
 # may give other memory (`last`), and `held`, the present memory, which is not freed before.
@@ -103,6 +105,20 @@ def writer(
         made.values, made.numbers, made.held = values, numbers, floats
         return write
     return _one_by_one(lib.pmSpaceBodySetIteratorFuncBatched, bodies, data, values, (floats, numbers))
+
+
+def stopper(space: pymunk.Space, count: int) -> tuple[Callable[[], None], Callable[[], None]]:
+    """As `rest.stopper`, for a space of so many bodies, the static one included, of which none sleeps and none comes or
+    goes meanwhile: three calls, however many they are."""
+    kept, zeros = np.zeros(6 * (count + 1)), np.zeros(6 * (count + 1))
+    read = reader(space, _MOTION, kept, np.zeros(1, np.int64))
+    stop, go_on = writer(space, _MOTION, zeros), writer(space, _MOTION, kept)
+
+    def read_and_stop() -> None:
+        read()
+        stop()
+
+    return read_and_stop, go_on
 
 
 def arbiter_bodies(space: pymunk.Space) -> list[int]:

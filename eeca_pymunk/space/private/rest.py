@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
@@ -55,22 +55,26 @@ def _take_place(*_: object) -> bool:
     return True
 
 
-@contextmanager
-def stopped(space: pymunk.Space) -> Iterator[None]:
-    """Within this block bodies have velocity and force 0; sleeping bodies are not woken."""
-    held, static = [], lib.CP_BODY_TYPE_STATIC
-    for body in space.bodies:
-        c = body._body
-        if lib.cpBodyGetType(c) != static and not lib.cpBodyIsSleeping(c):
-            held.append((c, *_motion(c)))
-    try:
+def stopper(space: pymunk.Space) -> tuple[Callable[[], None], Callable[[], None]]:
+    """Two functions: one stores velocities and forces of the bodies that do not sleep, and sets them to 0; the other
+    restores them. Sleeping bodies are not woken."""
+    held: list[tuple[Any, ...]] = []
+
+    def stop() -> None:
+        static, sleeps, kind = lib.CP_BODY_TYPE_STATIC, lib.cpBodyIsSleeping, lib.cpBodyGetType
+        for body in space.bodies:
+            c = body._body
+            if kind(c) != static and not sleeps(c):
+                held.append((c, *_motion(c)))
         for c, v, spin, f, torque in held:
             if v.x != 0.0 or v.y != 0.0 or spin != 0.0 or f.x != 0.0 or f.y != 0.0 or torque != 0.0:
                 _set_motion(c, (0.0, 0.0), 0.0, (0.0, 0.0), 0.0)
-        yield
-    finally:
+
+    def go_on() -> None:
         for motion in held:
             _set_motion(*motion)
+
+    return stop, go_on
 
 
 def _motion(c: Any) -> tuple[Any, float, Any, float]:
