@@ -19,7 +19,7 @@ A step of pymunk's own is found by its counter of steps (`Sync.is_ours`); the ne
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import ExitStack
+from contextlib import nullcontext
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
 from weakref import WeakMethod, ref
@@ -33,7 +33,7 @@ from .private import rest as private_rest
 from .private import shapes as private_shapes
 from .private import sleep as private_sleep
 from .private import spaces as private
-from .watched import without_joints
+from .watched import stop_joints
 
 if TYPE_CHECKING:
     from .world import World
@@ -93,8 +93,12 @@ class Sync:
         them too; what else needs them, see `make_arbiters`, costs more than making them."""
         if self.state != ARBITERS_CURRENT and self.space not in BUSY and self.is_ours():
             if self.state == NO_REHEARSAL:
-                with without_joints(self.space, True), private_rest.without_handlers(self.space):
-                    self._world.rehearsal.take_left_out_step()
+                go_on = stop_joints(self.space, True)
+                try:
+                    with private_rest.without_handlers(self.space):
+                        self._world.rehearsal.take_left_out_step()
+                finally:
+                    go_on()
                 self.state, self.stamp = ARBITERS_CURRENT, self._timestamp()
             else:
                 self.rest(self._dt)
@@ -145,18 +149,15 @@ class Sync:
         all_known = not world.sleeps and len(self.space.bodies) == len(world.bodies) - 1
         stop, go_on = self._stopper if all_known else private_rest.stopper(self.space)
         stop()
+        then = [go_on]
         try:
-            if not self.space.constraints and not world.hooks.any_body:  # contexts would cost more
+            if self.space.constraints:
+                then.append(stop_joints(self.space, False))
+            with world.hooks.silent if world.hooks.any_body else nullcontext():
                 private_rest.rest(self.space, dt, self._asleep)
-            else:
-                with ExitStack() as within:
-                    if self.space.constraints:
-                        within.enter_context(without_joints(self.space, False))
-                    if world.hooks.any_body:
-                        within.enter_context(world.hooks.silent)
-                    private_rest.rest(self.space, dt, self._asleep)
         finally:
-            go_on()
+            for again in reversed(then):
+                again()
         if slept and not world.bodies.in_order():
             self._stop_woken()  # gravity has accelerated the bodies that pymunk has woken
         self._rested, self._dt = self._timestamp(), dt

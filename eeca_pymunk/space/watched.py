@@ -89,17 +89,23 @@ def _watched_joints(rehearsal: Rehearsal, items: Sequence[pymunk.Constraint]) ->
             private_joints.replace_functions(item, before, after)
 
 
-@contextmanager
-def without_joints(space: pymunk.Space, forces: bool) -> Iterator[None]:
-    """Within this block steps of pymunk call no functions of constraints, and what no step moves keeps its velocities:
-    also for constraints that the program has added, or whose bodies it has changed, since the last step of EECA.
-    `forces`: whether constraints exert forces."""
+def stop_joints(space: pymunk.Space, forces: bool) -> Callable[[], None]:
+    """Let steps of pymunk call no functions of constraints, and what no step moves keep its velocities, until the
+    function that is returned is called: also for constraints that the program has added, or whose bodies it has
+    changed, since the last step of EECA. `forces`: whether constraints exert forces."""
     items = private_joints.awake(list(space.constraints))  # writing the others would wake bodies
+    kept, max_forces = private_joints.motions_of_ends(items), [] if forces else clear_max_forces(items)
     own = [item for item in items if private_joints.law_of(item) is not None]
-    with ExitStack() as within:
-        within.callback(restore_motions, private_joints.motions({end for item in items for end in (item.a, item.b)}))
-        within.enter_context(silent(items))
+    called = [item for item in items if private_joints.has_functions(item)]
+    within = ExitStack()
+    if own:
         within.enter_context(with_laws(own, [lambda *_: 0.0] * len(own)))
-        if not forces:
-            within.callback(restore_max_forces, clear_max_forces(items))
-        yield
+    if called:
+        within.enter_context(silent(called))
+
+    def go_on() -> None:
+        within.close()
+        restore_max_forces(max_forces)
+        restore_motions(kept)
+
+    return go_on

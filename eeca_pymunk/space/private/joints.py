@@ -53,11 +53,12 @@ def replace_functions(
 
 
 def law_of(spring: Any) -> Callable[[Any, float], float] | None:
-    """The force or torque function of a spring, None if none was ever set."""
-    law: Callable[[Any, float], float] | None = getattr(
-        spring, FORCE_FUNCTION if isinstance(spring, pymunk.DampedSpring) else TORQUE_FUNCTION, None
-    )
-    return law
+    """The force or torque function of a spring, None if none was ever set, and for other constraints."""
+    for kind, name in ((pymunk.DampedSpring, FORCE_FUNCTION), (pymunk.DampedRotarySpring, TORQUE_FUNCTION)):
+        if isinstance(spring, kind):
+            law: Callable[[Any, float], float] | None = getattr(spring, name, None)
+            return law
+    return None
 
 
 def centre_and_kind(body: pymunk.Body) -> tuple[float, float, float]:
@@ -76,8 +77,18 @@ def bounds(constraint: Any) -> tuple[float, float, float]:
 
 def motions(bodies: Iterable[pymunk.Body]) -> list[tuple[Any, Any, float]]:
     """Velocities and spins of the bodies, as `restore_motions` takes them."""
+    return _motions(body._body for body in bodies)
+
+
+def motions_of_ends(constraints: Iterable[Any]) -> list[tuple[Any, Any, float]]:
+    """The same of the bodies of constraints."""
+    a, b, pointers = lib.cpConstraintGetBodyA, lib.cpConstraintGetBodyB, [one._constraint for one in constraints]
+    return _motions({*map(a, pointers), *map(b, pointers)})
+
+
+def _motions(pointers: Iterable[Any]) -> list[tuple[Any, Any, float]]:
     velocity, spin = lib.cpBodyGetVelocity, lib.cpBodyGetAngularVelocity
-    return [(c := body._body, velocity(c), spin(c)) for body in bodies]
+    return [(c, velocity(c), spin(c)) for c in pointers]
 
 
 def restore_motions(kept: Iterable[tuple[Any, Any, float]]) -> None:
@@ -110,6 +121,12 @@ def restore_max_forces(before: Iterable[tuple[Any, float]]) -> None:
     """Undo `clear_max_forces`."""
     for c, max_force in before:
         lib.cpConstraintSetMaxForce(c, max_force)
+
+
+def has_functions(constraint: Any) -> bool:
+    """Whether pymunk calls a `pre_solve` or `post_solve` of a constraint."""
+    c, null = constraint._constraint, ffi.NULL
+    return bool(lib.cpConstraintGetPreSolveFunc(c) != null or lib.cpConstraintGetPostSolveFunc(c) != null)
 
 
 @contextmanager
