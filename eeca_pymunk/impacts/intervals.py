@@ -6,7 +6,7 @@ from __future__ import annotations
 from ..compiled import kernel, nonallocating
 from ..contacts.counts import note_unmet
 from ..islands.accounting import close_interval
-from ..islands.building import build_islands
+from ..islands.building import begin_islands, build_islands
 from ..islands.intervals import begin_interval
 from ..islands.local import contact_range
 from ..jointed.ends import carry, shorten, under_way
@@ -36,11 +36,17 @@ def start_interval(A: Scene, J: Joints, root: int, t: float) -> int:
 @kernel
 def start_islands(A: Scene, J: Joints) -> int:
     """Build the islands of the start of a step and begin their intervals. DONE, or PUSHES_FULL: to be called again with
-    more memory."""
-    if J.TALLY.components > 0:
-        wake_disturbed(A, J)
-    if build_islands(A) != DONE:
-        return PUSHES_FULL
+    more memory, when it goes on where it was (COUNT.phase, see `step.act`): bodies that come near the busy ones make
+    these busy, so that islands built a second time would be larger."""
+    if A.COUNT.phase == 0:
+        if J.TALLY.components > 0:
+            wake_disturbed(A, J)
+        build_islands(A)
+        A.COUNT.phase = 1
+    if A.COUNT.phase == 1:
+        if begin_islands(A) != DONE:
+            return PUSHES_FULL
+        A.COUNT.phase = 2
     for i in range(A.BODY.shape[0] - 1 if J.TALLY.components > 0 else 0):
         if A.STATE[i].island == i and A.MEMBER[i].jointed > 0 and A.MEMBER[i].open == 0:
             if start_interval(A, J, i, 0.0) != DONE:

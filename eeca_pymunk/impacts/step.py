@@ -61,23 +61,23 @@ def act(A: Scene, J: Joints) -> int:
     """All impulses of a step that has begun: of all contacts together at its middle, or event by event after the
     intervals of islands have begun. DONE, or which memory is full: provide more, and call again.
 
-    COUNT.phase: 0 until the first intervals of islands have begun and all events are predicted, 1 in the event loop, 2
-    after it.
+    COUNT.phase: 0 until the islands are built, 1 until the first intervals of those without joints have begun, 2 until
+    those of all have and all events are predicted, 3 in the event loop, 4 after it.
     """
     COUNT = A.COUNT
     if COUNT.together > 0:
         return act_together(A, J)
-    if COUNT.phase == 0:
+    if COUNT.phase < 3:
         if COUNT.pushes + COUNT.any_placed + J.TALLY.components > 0 and start_islands(A, J) != DONE:
             return PUSHES_FULL
-        COUNT.phase = 1
+        COUNT.phase = 3
         COUNT.work = 0.0  # the intervals at the start of a step do not count
         predict_due(A)
-    if COUNT.phase == 1:
+    if COUNT.phase == 3:
         status = process_events(A, J, COUNT.lossy > 0 or A.PAR.pulled > 0.0)
         if status != DONE:
             return status
-        COUNT.phase = 2
+        COUNT.phase = 4
     return DONE
 
 

@@ -138,9 +138,8 @@ def join_reachable(A: Scene, QUEUE: IntArray, queued: int, t: float) -> int:
 
 
 @kernel
-def build_islands(A: Scene) -> int:
-    """Build the islands of the start of a step, and begin the intervals of those without joints. DONE, or PUSHES_FULL:
-    to be called again with more memory."""
+def build_islands(A: Scene) -> None:
+    """Build the islands of the start of a step."""
     STATE, COUNT, BODY = A.STATE, A.COUNT, A.BODY
     n = BODY.shape[0] - 1
     if COUNT.any_placed > 0:
@@ -172,11 +171,22 @@ def build_islands(A: Scene) -> int:
         if STATE[i].island >= 0 and A.MEMBER[i].rest != AT_REST:
             QUEUE[queued] = i
             queued += 1
-    queued = join_reachable(A, QUEUE, queued, 0.0)
+    join_reachable(A, QUEUE, queued, 0.0)
+
+
+@kernel
+def begin_islands(A: Scene) -> int:
+    """Begin the intervals of the islands without joints at the start of a step. DONE, or, with everything as it was,
+    PUSHES_FULL: to be called again with more memory."""
+    STATE, COUNT = A.STATE, A.COUNT
+    n, moving = A.BODY.shape[0] - 1, 0
+    for i in range(n):
+        moving += 1 if STATE[i].island >= 0 and A.MEMBER[i].rest != AT_REST else 0
+    QUEUE = np.empty(n, np.int64)
     kept, wanted = 0, 0
     for c in range(COUNT.pushes):
         kept += 1 if A.PUSHED_BY[c].root >= 0 else 0
-    for i in range(n if queued > 0 else 0):
+    for i in range(n if moving > 0 else 0):
         if STATE[i].island < 0 or (A.MEMBER[i].rest == AT_REST and COUNT.may_support == 0):
             continue  # islands at rest count only if they may have to be solved as supports
         for s in range(STATE[i].first_shape, STATE[i].first_shape + STATE[i].shapes):
