@@ -36,8 +36,6 @@ class JointRows(Listing):
             that other bodies may be held by joints (`..joints.pinned`).
     """
 
-    parted: frozenset[tuple[pymunk.Body, pymunk.Body]] | None
-
     def __init__(self, space: pymunk.Space, row: Mapping[pymunk.Body, int], n: int, past: JointRows | None) -> None:
         """Read the constraints of `space`. `row`: row in BODY (of n rows) of its bodies. Rows of `past` are used again.
 
