@@ -20,7 +20,7 @@ import numpy as np
 
 from ..arrays import FlagArray, FloatArray, IntArray
 from ..compiled import kernel, nonallocating
-from ..geometry.sides import depth_limit
+from ..geometry.widths import depth_limit
 from ..model.contacts import AnyProblem, Problem
 from ..model.parameters.intervals import (
     CORRECTION_ROUND_OFF,

@@ -21,8 +21,9 @@ from typing import NamedTuple
 
 from ..arrays import FloatArray
 from ..compiled import inlined, nonallocating
-from ..model.parameters.detection import AXIS_TIE, DIRECTION_ROUND_OFF, EDGE_TIE
+from ..model.parameters.detection import AXIS_TIE, DIRECTION_ROUND_OFF, EDGE_TIE, MANY_CORNERS
 from ..model.scene import Scene
+from .separation import along_edge, beyond_edge, separation, separation_of_many, vertex_edge
 
 
 class Faces(NamedTuple):
@@ -69,63 +70,6 @@ def place_vertices(A: Scene, s: int, x: float, y: float, angle: float, OUT: Floa
         OUT[k, 2] = c * nx - z * ny
         OUT[k, 3] = z * nx + c * ny
     return count
-
-
-@inlined
-def separation(P: FloatArray, p: int, Q: FloatArray, q: int, mx: float, my: float) -> tuple[float, int, int]:
-    """Largest distance of Q (q vertices) from P (p vertices) along an edge normal of P, that edge, and the vertex of Q
-    that is nearest along it; (-inf, 0, 0) for a point P. Unless m = 0, only edges whose normals have a positive
-    component along m count; m = 0 as a constant costs nothing, since the kernel is inlined."""
-    best, edge, vertex, some = -math.inf, 0, 0, mx != 0.0 or my != 0.0
-    if p > 1:
-        for j in range(p):
-            nx, ny = P[j, 2], P[j, 3]
-            if some and nx * mx + ny * my <= 0.0:
-                continue
-            px, py = P[j, 0], P[j, 1]
-            least, lowest = math.inf, 0
-            for i in range(q):
-                height = (Q[i, 0] - px) * nx + (Q[i, 1] - py) * ny
-                if height < least:
-                    least, lowest = height, i
-            if least > best:
-                best, edge, vertex = least, j, lowest
-    return best, edge, vertex
-
-
-@nonallocating
-def along_edge(P: FloatArray, p: int, edge: int, x: float, y: float) -> tuple[float, float]:
-    """Position of the foot of (x, y) along an edge, times the edge's length, and that length squared."""
-    end = edge + 1 if edge + 1 < p else 0
-    ex, ey = P[end, 0] - P[edge, 0], P[end, 1] - P[edge, 1]
-    return (x - P[edge, 0]) * ex + (y - P[edge, 1]) * ey, ex * ex + ey * ey
-
-
-@nonallocating
-def vertex_edge(P: FloatArray, p: int, Q: FloatArray, q: int) -> tuple[float, int, int, float, float, bool]:
-    """The vertex of P closest to the outline of Q, q > 1: squared distance, vertex, edge, the point of the edge, and
-    whether that is inside the edge."""
-    best, vertex, edge, fx, fy, inside = math.inf, 0, 0, 0.0, 0.0, False
-    for j in range(q):
-        end = j + 1 if j + 1 < q else 0
-        bx, by = Q[j, 0], Q[j, 1]
-        ex, ey = Q[end, 0] - bx, Q[end, 1] - by
-        squared = ex * ex + ey * ey
-        for i in range(p):
-            x, y = P[i, 0], P[i, 1]
-            along = (x - bx) * ex + (y - by) * ey
-            within = 0.0 < along < squared
-            if within:
-                along /= squared
-                px, py = bx + along * ex, by + along * ey
-            elif along <= 0.0:
-                px, py = bx, by
-            else:
-                px, py = Q[end, 0], Q[end, 1]
-            d = (x - px) * (x - px) + (y - py) * (y - py)
-            if d < best:
-                best, vertex, edge, fx, fy, inside = d, i, j, px, py, within
-    return best, vertex, edge, fx, fy, inside
 
 
 @nonallocating
@@ -189,8 +133,12 @@ def closest(P: FloatArray, p: int, Q: FloatArray, q: int) -> Closest:
     if q == 1:
         d, nx, ny, flat, edge, apart = point_core(Q[0, 0], Q[0, 1], P, p)
         return Closest(d, -nx, -ny, Q[0, 0] + d * nx, Q[0, 1] + d * ny, flat, Faces(edge, apart, 0, -math.inf))
-    apart_p, edge_p, vertex_q = separation(P, p, Q, q, 0.0, 0.0)
-    apart_q, edge_q, vertex_p = separation(Q, q, P, p, 0.0, 0.0)
+    if min(p, q) < MANY_CORNERS:
+        apart_p, edge_p, vertex_q = separation(P, p, Q, q, 0.0, 0.0)
+        apart_q, edge_q, vertex_p = separation(Q, q, P, p, 0.0, 0.0)
+    else:
+        apart_p, edge_p, vertex_q = separation_of_many(P, p, Q, q)
+        apart_q, edge_q, vertex_p = separation_of_many(Q, q, P, p)
     faces = Faces(edge_p, apart_p, edge_q, apart_q)
     size = abs(P[0, 0]) + abs(P[0, 1]) + abs(Q[0, 0]) + abs(Q[0, 1])
     size += abs(P[1, 0] - P[0, 0]) + abs(P[1, 1] - P[0, 1]) + abs(Q[1, 0] - Q[0, 0]) + abs(Q[1, 1] - Q[0, 1])
@@ -200,12 +148,16 @@ def closest(P: FloatArray, p: int, Q: FloatArray, q: int) -> Closest:
     if apart > -near:
         # If the foot of the nearest vertex is not on the edge, some other vertex and edge are closest.
         if second:
-            along, squared = along_edge(Q, q, edge_q, P[vertex_p, 0], P[vertex_p, 1])
+            off, nx, ny = beyond_edge(Q, q, edge_q, P[vertex_p, 0], P[vertex_p, 1]), Q[edge_q, 2], Q[edge_q, 3]
+            high = Q[edge_q, 0] * nx + Q[edge_q, 1] * ny
         else:
-            along, squared = along_edge(P, p, edge_p, Q[vertex_q, 0], Q[vertex_q, 1])
-        if along < 0.0 or along > squared:
-            d2, i, j, fx, fy, inside = vertex_edge(P, p, Q, q)
-            e2, k, m, gx, gy, within = vertex_edge(Q, q, P, p)
+            off, nx, ny = beyond_edge(P, p, edge_p, Q[vertex_q, 0], Q[vertex_q, 1]), -P[edge_p, 2], -P[edge_p, 3]
+            high = P[edge_p, 0] * nx + P[edge_p, 1] * ny - apart
+        if off > 0.0:
+            # Along n, from Q to P, all of Q is below `high` and all of P above `high` + `apart`.
+            low, high = high + apart - off - near, high + off + near
+            d2, i, j, fx, fy, inside = vertex_edge(P, p, Q, q, nx, ny, low, high)
+            e2, k, m, gx, gy, within = vertex_edge(Q, q, P, p, -nx, -ny, -high, -low)
             d = math.sqrt(min(d2, e2))
             if d > near:
                 if d2 <= e2:

@@ -26,10 +26,12 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.parameters.detection import STRAIGHT
-from ..model.parameters.intervals import INTERVAL_DEPTH, INTERVAL_DEPTH_LEAST, INTERVAL_DEPTH_WIDTH, INTERVAL_WAY
+from ..model.parameters.intervals import INTERVAL_DEPTH_LEAST, INTERVAL_WAY
 from ..model.scene import Scene
 from ..model.shapes import Side
-from .convex import Closest, Faces, closest, from_faces, separation
+from .convex import Closest, Faces, closest, from_faces
+from .separation import separation
+from .widths import half_width, smaller
 
 _PROBES = 16  # rows in which a pair may be
 _SCATTER = 40503
@@ -80,12 +82,6 @@ def side_row(A: Scene, key: int) -> int:
 
 
 @nonallocating
-def smaller(A: Scene, a: int, b: int) -> float:
-    """The smaller extent of two shapes, length."""
-    return min(A.SHAPE[a].extent, A.SHAPE[b].extent)
-
-
-@nonallocating
 def held_side(A: Scene, a: int, b: int) -> float:
     """Distance of cores (length) up to which the memory determines the side of shapes that forces hold in contact."""
     return INTERVAL_WAY * smaller(A, a, b)
@@ -106,28 +102,6 @@ def note_side(A: Scene, a: int, b: int, nx: float, ny: float, held: bool) -> Non
 def near_side(A: Scene, a: int, b: int) -> float:
     """Distance of cores (length) up to which the memory determines their side."""
     return INTERVAL_DEPTH_LEAST * smaller(A, a, b)
-
-
-@nonallocating
-def half_width(A: Scene, s: int) -> float:
-    """Half the least width of shape s: a shape that is less deep inside is on the side from which it came."""
-    VERTEX, first, count, least = A.VERTEX, A.LINK[s].first, A.LINK[s].vertices, math.inf
-    if count < 3:
-        return A.SHAPE[s].rounding
-    for j in range(first, first + count):
-        most = 0.0
-        for k in range(first, first + count):
-            x, y = VERTEX[j, 0] - VERTEX[k, 0], VERTEX[j, 1] - VERTEX[k, 1]
-            most = max(most, x * VERTEX[j, 2] + y * VERTEX[j, 3])
-        least = min(least, most)
-    return A.SHAPE[s].rounding + 0.5 * least
-
-
-@nonallocating
-def depth_limit(A: Scene, a: int, b: int) -> float:
-    """Depth (length) by which a contact of shapes a and b may close in one interval."""
-    small, thick = smaller(A, a, b), half_width(A, a) + half_width(A, b)
-    return max(min(INTERVAL_DEPTH * small, INTERVAL_DEPTH_WIDTH * thick), INTERVAL_DEPTH_LEAST * small)
 
 
 @nonallocating

@@ -10,7 +10,7 @@ from __future__ import annotations
 from ..compiled import kernel, nonallocating
 from ..geometry.flight import fastest, norm, pose
 from ..geometry.gap import gap
-from ..geometry.sides import smaller
+from ..geometry.widths import smaller
 from ..islands.candidates import travel_bound
 from ..islands.membership import approach, unite
 from ..model.joints import Joints

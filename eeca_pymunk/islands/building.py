@@ -9,7 +9,7 @@ from ..arrays import IntArray
 from ..compiled import kernel, nonallocating
 from ..contacts.memory import table_has_room
 from ..geometry.flight import fastest, move_to
-from ..geometry.sides import smaller
+from ..geometry.widths import smaller
 from ..model.bodies import AT_REST
 from ..model.contacts import ENDED, LASTED
 from ..model.parameters.events import INITIAL_PENETRATION

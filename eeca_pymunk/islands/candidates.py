@@ -10,7 +10,7 @@ from ..compiled.records import Rows
 from ..contacts.memory import shapes_of
 from ..contacts.targets import hardly_bounces
 from ..geometry.flight import fastest, norm
-from ..geometry.sides import smaller
+from ..geometry.widths import smaller
 from ..model.contacts import Row
 from ..model.parameters import intervals
 from ..model.parameters.events import PAIR_LOOKS, RESOLUTION

@@ -12,7 +12,8 @@ from ..compiled.records import Rows
 from ..contacts.memory import shapes_of
 from ..contacts.turning import gap_rate
 from ..geometry.gap import gap_at
-from ..geometry.sides import depth_limit, half_width, held_side, remembers, smaller
+from ..geometry.sides import held_side, remembers
+from ..geometry.widths import depth_limit, half_width, smaller
 from ..model.contacts import Row
 from ..model.islands import Island, IslandContacts
 from ..model.parameters import intervals

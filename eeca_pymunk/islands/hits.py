@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..compiled import kernel, nonallocating
 from ..geometry.flight import norm
-from ..geometry.sides import half_width
+from ..geometry.widths import half_width
 from ..model.parameters.events import BUSY_STEPS, RESOLUTION, WORK_JOINTED
 from ..model.parameters.intervals import INTERVAL_DEPTH_WIDTH
 from ..model.scene import Scene

@@ -10,7 +10,7 @@ from ..contacts.memory import find, key_of
 from ..contacts.targets import hardly_bounces
 from ..geometry.flight import move_to, opening_rate
 from ..geometry.gap import gap_at
-from ..geometry.sides import smaller
+from ..geometry.widths import smaller
 from ..model.bodies import AT_REST
 from ..model.parameters.events import RESOLUTION, WORK_JOINTED
 from ..model.parameters.intervals import ELASTIC_REST, ELASTIC_REST_ON, LARGE_ISLAND, SOLVES_BEFORE_HASTE, TOUCH

@@ -22,7 +22,7 @@ from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..contacts.memory import shapes_of
-from ..geometry.sides import depth_limit
+from ..geometry.widths import depth_limit
 from ..model.bodies import MOVED
 from ..model.contacts import Row
 from ..model.islands import Island

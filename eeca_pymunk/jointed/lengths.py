@@ -16,7 +16,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..contacts.memory import key_of, shapes_of
 from ..geometry.flight import fastest, norm
-from ..geometry.sides import depth_limit, smaller
+from ..geometry.widths import depth_limit, smaller
 from ..islands.depths import closes_too_far, too_deep_at_end
 from ..model.joints import Joints
 from ..model.parameters.events import RESOLUTION

@@ -7,7 +7,8 @@ import math
 from ..compiled import kernel, nonallocating
 from ..geometry.flight import opening_rate, pose, rate
 from ..geometry.gap import gap
-from ..geometry.sides import depth_limit, remembers, smaller
+from ..geometry.sides import remembers
+from ..geometry.widths import depth_limit, smaller
 from ..islands.membership import members_of
 from ..joints.start import release_limits
 from ..joints.workspace import workspace

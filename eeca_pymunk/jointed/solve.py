@@ -10,7 +10,7 @@ from ..contacts.counts import note_unmet, spend
 from ..contacts.geometry import gather_contacts
 from ..contacts.interval import make_contacts, recall, speeds
 from ..contacts.memory import remember_loads, shapes_of
-from ..geometry.sides import depth_limit
+from ..geometry.widths import depth_limit
 from ..islands import local
 from ..islands.candidates import pairs_within
 from ..islands.membership import lossy

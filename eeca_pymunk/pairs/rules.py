@@ -18,7 +18,7 @@ from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..geometry.flight import norm, pose, rate, rotated
 from ..geometry.gap import gap_round_off
-from ..geometry.sides import smaller
+from ..geometry.widths import smaller
 from ..model.parameters.impulses import FACE_ROUND_OFF, ROCKING
 from ..model.scene import Scene
 from ..model.shapes import Link

@@ -15,9 +15,11 @@ from __future__ import annotations
 from ..arrays import FloatArray
 from ..compiled import inlined, nonallocating
 from ..geometry import sides
-from ..geometry.convex import place_vertices, separation
+from ..geometry.convex import place_vertices
 from ..geometry.flight import pose
 from ..geometry.gap import gap, gap_round_off
+from ..geometry.separation import separation
+from ..geometry.widths import smaller
 from ..model.parameters.detection import FLUSH, SAME_SIDE
 from ..model.scene import Scene
 from ..pairs.rules import barred, far_apart
@@ -97,7 +99,7 @@ def on_other_side(
     pressing = closing_rate(
         one, two, PULL[i, 0], PULL[i, 1], PULL[i, 2], PULL[j, 0], PULL[j, 1], PULL[j, 2], nx, ny, px, py
     )
-    fast = abs(u) + abs(two.spin - one.spin) * sides.smaller(A, a, b)
+    fast = abs(u) + abs(two.spin - one.spin) * smaller(A, a, b)
     if fast * fast <= 2.0 * abs(pressing) * sides.near_side(A, a, b):
         return pressing < 0.0
     return d <= tolerance and u < 0.0 and -u * duration > tolerance
@@ -119,7 +121,7 @@ def begin_side(A: Scene, a: int, b: int, start: float, duration: float, toleranc
     d, nx, ny = near.distance, near.nx, near.ny
     key = sides.side_key(A, a, b)
     side = A.SIDE[sides.side_row(A, key)]
-    depth, most = sides.near_side(A, a, b), FLUSH * sides.smaller(A, a, b)
+    depth, most = sides.near_side(A, a, b), FLUSH * smaller(A, a, b)
     held = d < -depth or in_one_island(A, i, j)
     if side.key != key and d <= most and flush(P, p, Q, q, nx, ny, most):
         if on_other_side(A, a, b, d, nx, ny, near.x, near.y, start, duration, tolerance):
@@ -147,7 +149,7 @@ def find_sides(A: Scene, every: bool) -> None:
                     continue
                 a, b = min(s, o), max(s, o)
                 mx, my = sides.side_of(A, a, b)
-                most, extent = FLUSH * sides.smaller(A, a, b), A.SHAPE[a].rounding + A.SHAPE[b].rounding
+                most, extent = FLUSH * smaller(A, a, b), A.SHAPE[a].rounding + A.SHAPE[b].rounding
                 if mx == 0.0 and my == 0.0 and not far_apart(A, a, b, 0.0, most):
                     if gap(A, a, b, 0.0)[0] + extent <= most:
                         begin_side(A, a, b, 0.0, A.PAR.dt, gap_round_off(A, a, b))

@@ -26,6 +26,7 @@ from ..geometry import sides
 from ..geometry.convex import closest, place_vertices
 from ..geometry.gap import gap_round_off
 from ..geometry.manifold import face_points
+from ..geometry.widths import smaller
 from ..model.bodies import Body
 from ..model.parameters.events import ADVANCES, APPROACH_ROUND_OFF, LONGEST_SEARCH, RESOLUTION
 from ..model.parameters.intervals import TOUCH
@@ -200,7 +201,7 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float, most: float) 
     around, bend_a, bend_b = bends(A, a, b, start, duration)
     extent = SHAPE[a].rounding + SHAPE[b].rounding
     still = APPROACH_ROUND_OFF * (speed_bound(A, a, start) + speed_bound(A, b, start))
-    depth = TOUCH * sides.smaller(A, a, b)
+    depth = TOUCH * smaller(A, a, b)
     of_a, of_b = Closing(extent, bend_a, tolerance, depth, still), Closing(extent, bend_b, tolerance, depth, still)
     P, Q = A.CORE[0], A.CORE[1]
     looks, mark, interval = 0, s, duration / RESOLUTION

@@ -46,7 +46,9 @@ def cores(world: World) -> tuple[np.ndarray, np.ndarray]:
 
 
 @pytest.mark.parametrize("unit", UNITS)
-@pytest.mark.parametrize("counts", [(1, 1), (1, 2), (1, 5), (2, 1), (2, 2), (2, 4), (3, 2), (3, 5), (4, 4), (6, 1)])
+@pytest.mark.parametrize(
+    "counts", [(1, 1), (1, 2), (1, 5), (2, 1), (2, 2), (2, 4), (3, 2), (3, 5), (4, 4), (6, 1), (9, 30), (100, 40)]
+)
 def test_gap_normal_and_point_of_random_shapes(counts: tuple[int, int], unit: float) -> None:
     rng = np.random.default_rng(7)
     for _ in range(60):

@@ -8,7 +8,8 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk.compiled.records import zeros
-from eeca_pymunk.geometry.sides import depth_limit, note_side
+from eeca_pymunk.geometry.sides import note_side
+from eeca_pymunk.geometry.widths import depth_limit
 from eeca_pymunk.islands.depths import closes_too_far, deep_at_end
 from eeca_pymunk.model.contacts import ROW
 from eeca_pymunk.model.islands import Island

@@ -11,6 +11,8 @@ CORNER_ROUND_OFF = round_off(4.0, "times GAP_ROUND_OFF",
     "Error of corners whose place follows from the angle of a body.")
 DIRECTION_ROUND_OFF = round_off(1e-12, "of coordinates and sizes",
     "Distance of two points below which their direction is round-off and the normal of the edge is used.")
+MANY_CORNERS = work(9, "corners",
+    "Corners of two polygons from which on their edges are compared in one turn around them.")
 AXIS_TIE = round_off(1e-14, "of the sizes",
     "Separation by which the axis of a longer edge is preferred. Larger: less precise axes.")
 EDGE_TIE = round_off(1.0 + 1e-09, "ratio of squared lengths",
