@@ -8,7 +8,7 @@ from ..geometry.flight import pose, rate
 from ..joints.ledger import clear_interval
 from ..joints.parts import meets_limit
 from ..model.joint_steps import ELASTIC, LINEAR
-from ..model.joints import GIVES_WAY, LEFT_APART, RATCHET, Joints
+from ..model.joints import GIVES_WAY, LEFT_APART, RATCHET, UNTESTED, Joints
 from ..model.parameters.joints import NEARLY_HELD
 from ..model.scene import Scene
 from ..newton.motion import read_body, seat, size_up
@@ -18,7 +18,7 @@ from .groups import Groups
 @nonallocating
 def save_joints(J: Joints, s: int) -> None:
     """Save the joints of component s, at the start of an interval."""
-    J.COMPONENT[s].parts = 0
+    J.COMPONENT[s].parts, J.COMPONENT[s].dependence = 0, UNTESTED
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         j = J.COUPLING[k].joint
         J.KEPT[j] = J.JOINT[j]

@@ -29,6 +29,7 @@ from ..newton.effort import work_of_iteration
 from ..newton.entries import acting_rows
 from ..newton.motion import move
 from ..newton.rows import joint_rows
+from .bounds import standing
 from .foresight import PARTS, forget_parts, predict_part, recalls, remember_part
 from .gains import repaid
 from .ledger import clear_ledger
@@ -160,7 +161,8 @@ def take_parts(W: Workspace, h: float, length: float, rung: int, parts: int, giv
         if rung == ORDER_4 and recalls(W, h):
             predict_part(W, p, piece, cold)
         if not step_with_limits(W, False, piece, length, cold, give, rung == ORDER_4):
-            return CONTRADICTED if p == 0 and rung < ELASTIC_RUNG and contradicts(W, piece) else FAILED
+            exact = p == 0 and rung < ELASTIC_RUNG
+            return CONTRADICTED if exact and (cold or standing(W)) and contradicts(W, piece) else FAILED
         if rung == ORDER_4:
             remember_part(W, piece)
     return TAKEN
@@ -176,7 +178,7 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
     """
     first, progress = W.J.JOINT[W.link[0].joint], W.J.PROGRESS
     loops = W.J.COMPONENT[W.s].loops > 0
-    cold, yields = loops and W.J.COMPONENT[W.s].taut == 0, has_elastic_joint(W)
+    cold, yields = W.J.COMPONENT[W.s].cold > 0, has_elastic_joint(W)
     rung = ELASTIC_RUNG if yields else ORDER_4 if order == 4 and smooth(W) else WHOLE_STEP
     if rung != ORDER_4 or touched:
         forget_parts(W)
@@ -192,11 +194,12 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
             first.compliance = compliance
             return EXACT if rung <= WHOLE_STEP else HALVED if rung < ELASTIC_RUNG else ELASTIC
         # A rung that began with predicted values, or with impulses of redundant rows, is tried again without these.
-        again = cold != loops or (rung == ORDER_4 and recalls(W, h))
+        again = recalls(W, h) if rung == ORDER_4 else rung == WHOLE_STEP and cold != loops
         restore_start(W)
         forget_parts(W)
         tight = loops and rung == WHOLE_STEP and not again and progress.most_epsilon == joints.REDUNDANT_MOST
-        rung, cold = ELASTIC_RUNG if outcome == CONTRADICTED else rung if again or tight else rung + 1, loops
+        rung = ELASTIC_RUNG if outcome == CONTRADICTED else rung if again or tight else rung + 1
+        cold = loops if again or tight or rung >= ELASTIC_RUNG else W.J.COMPONENT[W.s].cold > 0
         # Compliance makes rows independent by itself.
         progress.most_epsilon = joints.REDUNDANT_EPSILON if tight or rung >= ELASTIC_RUNG else joints.REDUNDANT_MOST
     return LINEAR

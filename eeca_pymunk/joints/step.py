@@ -13,7 +13,19 @@ import numpy as np
 
 from ..compiled import nonallocating
 from ..model.joint_steps import ELASTIC, HALVED, LINEAR, POSES, SPEEDS, JointLedger
-from ..model.joints import APART, GIVES_WAY, LEFT_APART, PIN, PIVOT, RATCHET, SLIDE, Workspace
+from ..model.joints import (
+    APART,
+    DEPENDENT,
+    GIVES_WAY,
+    INDEPENDENT,
+    LEFT_APART,
+    PIN,
+    PIVOT,
+    RATCHET,
+    SLIDE,
+    UNTESTED,
+    Workspace,
+)
 from ..model.parameters.joints import NEARLY_HELD, TAUT
 from ..newton.motion import save
 from ..newton.rows import start_joint
@@ -24,6 +36,7 @@ from .correct import fitting_loss, project
 from .gains import take_gain
 from .ladder import climb, limit_work
 from .ledger import add_part, clear_ledger
+from .redundancy import rows_depend
 from .start import bounded_targets, compute_rows, read_joints
 from .unheld import step_linearly
 
@@ -102,7 +115,10 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
     touched, bounded = read_joints(W, h, length)
     # Redundant rows begin without impulses, unless their pull holds bodies.
     component.taut = 1 if component.loops > 0 and is_taut(W, h) else 0
-    if component.loops > 0 and component.taut == 0:
+    if component.loops > 0 and component.dependence == UNTESTED:
+        component.dependence = DEPENDENT if rows_depend(W) else INDEPENDENT
+    component.cold = 1 if component.dependence == DEPENDENT and component.taut == 0 else 0
+    if component.cold > 0:
         drop_impulses(W)
     for i in range(W.bodies):
         for c in range(3):

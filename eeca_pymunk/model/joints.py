@@ -91,6 +91,8 @@ class Component(Record):
     dual_band: int
     dual_for: int  # what its dual system is taken for: NOTHING, INSTANTS (POSES, SPEEDS) or STEPS too
     taut: int  # 1 if impulses of the last step pull so hard that this one begins with them (`..joints.step`)
+    dependence: int  # of its rows at the present start: UNTESTED, INDEPENDENT, DEPENDENT (`..joints.redundancy`)
+    cold: int  # 1 if rows depend on one another, and begin without impulses
     bounded: int  # most rows of bounded impulses that may act, if few enough to be solved with contacts; else 0
     factored: int  # 1 if the matrix holds factors of an earlier part of the present step; or OTHERWISE
     parts: int  # parts of the last solution from the present start that are known (`..joints.parts`)
@@ -103,6 +105,7 @@ class Component(Record):
 # Linear systems: of bodies and rows; of bodies alone (`..newton.condensed`); of rows alone (`..newton.dual`).
 WHOLE, CONDENSED, DUAL = 0, 1, 2
 NOTHING, INSTANTS, STEPS = 0, 1, 2  # uses of a dual one: `Component.dual_for`
+UNTESTED, INDEPENDENT, DEPENDENT = 0, 1, 2  # `Component.dependence`; UNTESTED where no joint closes a cycle
 FORCES_ON, TORQUES_ON = 1, 2  # bits: what joints exert on a body
 
 
@@ -163,6 +166,7 @@ class Tally(Record):
     worst: int  # status of the step
     answers: int  # linear system with which the component that is ready answers impulses, -1 for none
     gives: int  # 1 if its joints give way in that
+    refined: int  # refinements of each answer, as rows may be redundant
 
 
 class Joints(NamedTuple):

@@ -9,9 +9,9 @@ in each iteration. `solve.solve` uses the component's other system if that is to
 from __future__ import annotations
 
 from ..arrays import FloatArray
-from ..compiled import inlined
+from ..compiled import inlined, nonallocating
 from ..model.joints import Workspace
-from ..model.parameters.joints import LEAST_INERTIA
+from ..model.parameters.joints import LEAST_INERTIA, ROW_APART
 from .condensed import add_column, factor, freeze_row, row_times, substitute
 
 
@@ -78,6 +78,18 @@ def factor_dual(W: Workspace, slopes: bool, add: float) -> bool:
             put_pairs(W, one, local[i].first)
             one = link[one >> 1].following[one & 1]
     return factor(matrix, size, band)
+
+
+@nonallocating
+def are_independent(W: Workspace) -> bool:
+    """Whether no row depends on others, or nearly so, by the factors of S = J M^-1 J^T without a term on the diagonal,
+    which is 1: a pivot is the square of the distance of a row from the span of those before it."""
+    component = W.J.COMPONENT[W.s]
+    for i in range(component.dual_size):
+        inverse = W.J.MATRIX[i * (2 * component.dual_band + 1) + component.dual_band]
+        if not 0.0 < inverse * ROW_APART <= 1.0:
+            return False
+    return True
 
 
 @inlined

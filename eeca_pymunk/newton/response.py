@@ -12,8 +12,9 @@ from __future__ import annotations
 from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..model.joint_steps import STEP, STIFF_ALL, STIFF_NONE
-from ..model.joints import CONDENSED, DUAL, GEAR, GROOVE, Workspace
+from ..model.joints import CONDENSED, DUAL, GEAR, GROOVE, INDEPENDENT, Workspace
 from ..model.parameters.joints import CONDENSED_PASSES, REDUNDANT_EPSILON, RESPONSE_PASSES, TAUT
+from .dual import are_independent
 from .entries import acts
 from .motion import go_back, move
 from .rows import joint_rows, start_joint
@@ -99,12 +100,16 @@ def prepare_response(W: Workspace, what: int, h: float) -> int:
         first_iterate(W, what, h)
     system = first_system(component, what)
     give = W.J.JOINT[link[0].joint].compliance / h**2 if what == STEP else 0.0
-    epsilon = REDUNDANT_EPSILON if component.loops > 0 and give == 0.0 else 0.0
+    # Rows in cycles may be redundant. Factors at an instant tell it; of a step it is known.
+    loops = component.loops > 0 and give == 0.0 and (what != STEP or component.dependence != INDEPENDENT)
+    tells = loops and what != STEP and system == DUAL
+    epsilon = REDUNDANT_EPSILON if loops and not tells else 0.0
     while True:
         for i in range(component.unknowns + component.impulses):
             W.J.RIGHT[i] = 0.0
         assemble(W, what, h, give, True, system, True)
-        if decompose(W, what, system, epsilon, give):
+        if decompose(W, what, system, epsilon, give) and (epsilon > 0.0 or not tells or are_independent(W)):
+            W.J.TALLY.refined = RESPONSE_PASSES if loops and epsilon > 0.0 and system != CONDENSED else 0
             return int(system)
         if epsilon == 0.0:
             epsilon = REDUNDANT_EPSILON
@@ -132,11 +137,10 @@ def respond(W: Workspace, system: int, push: FloatArray, gives: bool) -> None:
             right[local[i].column + c] = push[i, c] * local[i].root[c]
     back(W, system, 1 if gives else CONDENSED_PASSES, right)
     # (A + epsilon) x = b leaves b - A x = epsilon x in the rows, and each correction d leaves epsilon d.
-    passes = 0 if system == CONDENSED or component.loops == 0 or gives else RESPONSE_PASSES
     rest = right[size : 2 * size]
-    for i in range(size if passes > 0 else 0):
+    for i in range(size if W.J.TALLY.refined > 0 else 0):
         rest[i] = right[i]
-    for _ in range(passes):
+    for _ in range(W.J.TALLY.refined):
         for i in range(W.bodies):
             for c in range(local[i].freedoms):
                 rest[local[i].column + c] = 0.0

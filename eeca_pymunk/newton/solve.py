@@ -73,7 +73,8 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
     that is more, and the balance of momentum holds to round-off. False if there is none after NEWTON_ITERATIONS,
     beyond PROGRESS.limit, or after more than 6 that have stalled (`stalls`): the error has come to no smaller one than
     before, or, below NEWTON_FLOOR, not to half of the last one. After two of these an error below NEWTON_FLOOR is
-    round-off, as bodies in line leave it. The factors of an iteration:
+    round-off, as bodies in line leave it; a small one is, if at the `pace` of the iteration before it would be less
+    than JOINT_TOLERANCE. The factors of an iteration:
 
     | `factors` | are | of the next iteration |
     |---|---|---|
@@ -96,13 +97,17 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
     factors = KEPT if component.factored > 0 else NEW
     component.factored = 0
     # since: iteration in which the solve has begun again, with FULL.  renewed: whether the last iteration was NEW.
-    best, last, stalls, since, renewed = 1e300, 1e300, 0, 0, False
+    # pace: by which factor the last iteration has made the error smaller.
+    best, last, pace, stalls, since, renewed = 1e300, 1e300, 1.0, 0, 0, False
     for iteration in range(NEWTON_ITERATIONS + 1):
         built = factors != KEPT
         worst = linearise(W, STEP, h, length, give, False, system, built)
         fit = factors == KEPT and component.factored != OTHERWISE
         floor = JOINT_ROUND_OFF_KEPT if factors != FULL else NEWTON_FLOOR if stalls > 1 else JOINT_ROUND_OFF
         at_floor = iteration > since + 1 and 0.5 * best < worst < floor
+        # Next to the solution errors cannot fall by much.
+        slow = not worst <= NEWTON_PROGRESS * last and (iteration > 2 or not worst <= JOINT_ROUND_OFF)
+        at_floor = at_floor or (slow and worst < JOINT_ROUND_OFF and last * pace <= JOINT_TOLERANCE)
         if give > 0.0 and iteration > 1:
             left = round_off_of_impulses(W, h, length)
             if worst <= left and left > ELASTIC_ROUND_OFF:
@@ -114,18 +119,16 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
             clamp(W, h)
             balance_velocities(W, h)
             return True
-        # Next to the solution errors cannot fall by much.
-        slow = not worst <= NEWTON_PROGRESS * last and (iteration > 2 or not worst <= JOINT_ROUND_OFF)
         if iteration > since + 3 and not worst < (0.5 * last if worst < NEWTON_FLOOR else best):
             stalls += 1
         best = min(best, worst)
         if not worst < 1e100 or stalls > 6 or iteration == NEWTON_ITERATIONS or progress.effort > progress.limit:
             return False
-        last = worst
+        last, pace = worst, worst / last
         if factors == KEPT and (slow or not fit):
             factors = FULL if renewed and fit else NEW
             if factors == FULL:  # only nearly singular or long steps come here
-                system, since, stalls, best = component.system, iteration, 0, worst
+                system, since, stalls, best, pace = component.system, iteration, 0, worst, 1.0
                 if loops:
                     drop_impulses(W)
                     first_iterate(W, STEP, h)
