@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Callable
 
 import pymunk
@@ -17,40 +16,6 @@ from comparisons.output import Row
 DT, STEPS = 1 / 60, 300
 CONVERGED, APART, WORK = 0.99, 1e-9, 1e-9  # share of the steps; joints, over the size; energy from nowhere, over m g l
 G, LONG = 9.81, 0.5
-
-
-def walker() -> pymunk.Space:
-    """A crank with a motor of bounded torque moves six legs, of two bars each: 14 bodies."""
-    space = pymunk.Space()
-    space.gravity = 0.0, -G
-    floor = pymunk.Segment(space.static_body, (-100.0, 0.0), (100.0, 0.0), 0.0)
-    floor.friction = 1.5
-    trunk = pymunk.Body(5.0, pymunk.moment_for_box(5.0, (3.0, 0.5)))
-    crank = pymunk.Body(1.0, pymunk.moment_for_circle(1.0, 0.0, 0.6))
-    trunk.position = crank.position = 0.0, 3.0
-    motor = pymunk.SimpleMotor(crank, trunk, 4.0)
-    motor.max_force = 400.0
-    space.add(floor, trunk, pymunk.Poly.create_box(trunk, (3.0, 0.5)), crank, pymunk.Circle(crank, 0.6))
-    space.add(pymunk.PivotJoint(trunk, crank, (0.0, 3.0)), motor)
-    for k, side in itertools.product(range(3), (-1.0, 1.0)):
-        arm = pymunk.Vec2d(0.6, 0.0).rotated(2.0 * math.pi * k / 3.0)
-        thigh, leg = pymunk.Body(0.5, 0.2), pymunk.Body(0.5, 0.4)
-        hip, knee, foot = (2.0 * side, 3.0), (2.2 * side, 4.2), (2.6 * side, 0.3)
-        thigh.position, leg.position = (2.1 * side, 3.6), (2.3 * side, 1.65)
-        to = leg.world_to_local
-        shapes = pymunk.Circle(leg, 0.2, to(foot)), pymunk.Segment(leg, to(hip), to(foot), 0.05)
-        shapes[0].friction, shapes[1].friction = 1.5, 1.0
-        space.add(
-            thigh, leg, *shapes,
-            pymunk.PinJoint(crank, leg, arm, to((1.2 * side, 2.2))),
-            pymunk.PinJoint(crank, thigh, arm, thigh.world_to_local(knee)),
-            pymunk.PivotJoint(trunk, thigh, hip),
-            pymunk.PinJoint(thigh, leg, thigh.world_to_local(hip), to((2.1 * side, 1.8))),
-        )  # fmt: skip
-    for shape in space.shapes:
-        if shape.body is not None and shape.body.body_type == pymunk.Body.DYNAMIC:
-            shape.filter = pymunk.ShapeFilter(group=1)
-    return space
 
 
 def straight(links: int, load: float, pins: bool) -> pymunk.Space:
@@ -79,8 +44,9 @@ def straight(links: int, load: float, pins: bool) -> pymunk.Space:
 
 
 NAMED: dict[str, Callable[[], pymunk.Space]] = {
-    "walker, six legs on a crank": walker,
+    "walker, six legs on a crank": lambda: program_joints.six_legs().space,
     "three soft rings": lambda: program_joints.soft_rings().space,
+    "three rings of planks": lambda: program_joints.rings_of_planks().space,
     "bridge of 20 planks, five boxes": lambda: program_joints.bridge().space,
     "car with suspension": lambda: program_joints.car().space,
 }

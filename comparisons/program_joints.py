@@ -112,6 +112,65 @@ def soft_rings() -> Program:
     return Program(space, 1 / 120, _nothing)
 
 
+def six_legs() -> Program:
+    """A crank with a motor of bounded torque moves six legs, of two bars each: 14 bodies."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -9.81
+    floor = pymunk.Segment(space.static_body, (-100.0, 0.0), (100.0, 0.0), 0.0)
+    floor.friction = 1.5
+    trunk = pymunk.Body(5.0, pymunk.moment_for_box(5.0, (3.0, 0.5)))
+    crank = pymunk.Body(1.0, pymunk.moment_for_circle(1.0, 0.0, 0.6))
+    trunk.position = crank.position = 0.0, 3.0
+    motor = pymunk.SimpleMotor(crank, trunk, 4.0)
+    motor.max_force = 400.0
+    space.add(floor, trunk, pymunk.Poly.create_box(trunk, (3.0, 0.5)), crank, pymunk.Circle(crank, 0.6))
+    space.add(pymunk.PivotJoint(trunk, crank, (0.0, 3.0)), motor)
+    for k, side in itertools.product(range(3), (-1.0, 1.0)):
+        arm = pymunk.Vec2d(0.6, 0.0).rotated(2.0 * math.pi * k / 3.0)
+        thigh, leg = pymunk.Body(0.5, 0.2), pymunk.Body(0.5, 0.4)
+        hip, knee, foot = (2.0 * side, 3.0), (2.2 * side, 4.2), (2.6 * side, 0.3)
+        thigh.position, leg.position = (2.1 * side, 3.6), (2.3 * side, 1.65)
+        to = leg.world_to_local
+        shapes = pymunk.Circle(leg, 0.2, to(foot)), pymunk.Segment(leg, to(hip), to(foot), 0.05)
+        shapes[0].friction, shapes[1].friction = 1.5, 1.0
+        space.add(
+            thigh, leg, *shapes,
+            pymunk.PinJoint(crank, leg, arm, to((1.2 * side, 2.2))),
+            pymunk.PinJoint(crank, thigh, arm, thigh.world_to_local(knee)),
+            pymunk.PivotJoint(trunk, thigh, hip),
+            pymunk.PinJoint(thigh, leg, thigh.world_to_local(hip), to((2.1 * side, 1.8))),
+        )  # fmt: skip
+    for shape in space.shapes:
+        if shape.body is not None and shape.body.body_type == pymunk.Body.DYNAMIC:
+            shape.filter = pymunk.ShapeFilter(group=1)
+    return Program(space, 1 / 60, _nothing)
+
+
+def rings_of_planks() -> Program:
+    """Three rings of sixteen planks each, on pivots and damped springs that bend them round, fall on a floor."""
+    space, count = pymunk.Space(), 16
+    space.gravity = 0.0, -9.81
+    floor = pymunk.Segment(space.static_body, (-1000.0, 0.0), (1000.0, 0.0), 0.0)
+    floor.friction = 0.7
+    space.add(floor)
+    for ring in range(3):
+        centre, planks = pymunk.Vec2d(0.0, 3.0 + 5.0 * ring), list[pymunk.Body]()
+        for i in range(count):
+            plank = pymunk.Body(1.0, pymunk.moment_for_box(1.0, (0.5, 0.7)))
+            angle = 2.0 * math.pi * i / count
+            plank.position, plank.angle = centre + pymunk.Vec2d(2.0, 0.0).rotated(angle), angle + 0.5 * math.pi
+            shape = pymunk.Poly.create_box(plank, (0.5, 0.7))
+            shape.friction, shape.filter = 0.6, pymunk.ShapeFilter(group=ring + 1)
+            space.add(plank, shape)
+            planks.append(plank)
+        for i, plank in enumerate(planks):
+            other, bend = planks[(i + 1) % count], 2.0 * math.pi / count
+            at = centre + pymunk.Vec2d(2.0, 0.0).rotated((i + 0.5) * bend)
+            rest = -bend if i < count - 1 else 2.0 * math.pi - bend
+            space.add(pymunk.PivotJoint(plank, other, at), pymunk.DampedRotarySpring(plank, other, rest, 150.0, 5.0))
+    return Program(space, 1 / 60, _nothing)
+
+
 def _figure(space: pymunk.Space, x: float, y: float, group: int) -> None:
     """Six parts on pivots with limits; they pass through one another."""
 

@@ -8,7 +8,17 @@ from collections.abc import Callable
 import pymunk
 from pymunk import Vec2d
 
-from .program_joints import Program, bridge, car, rag_dolls, soft_rings, walker, walls
+from .program_joints import (
+    Program,
+    bridge,
+    car,
+    rag_dolls,
+    rings_of_planks,
+    six_legs,
+    soft_rings,
+    walker,
+    walls,
+)
 
 
 def push_t() -> Program:
@@ -127,7 +137,27 @@ def arcade() -> Program:
     return Program(space, dt, play)
 
 
+def many_corners() -> Program:
+    """Sixty polygons of a hundred corners each fall into a box."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -9.81
+    for a, b in (((-5.0, 30.0), (-5.0, 0.0)), ((-5.0, 0.0), (5.0, 0.0)), ((5.0, 0.0), (5.0, 30.0))):
+        wall = pymunk.Segment(space.static_body, a, b, 0.0)
+        wall.friction = 0.5
+        space.add(wall)
+    corners = [pymunk.Vec2d(0.5, 0.0).rotated(2.0 * math.pi * k / 100) for k in range(100)]
+    for i in range(60):
+        row, place = divmod(i, 8)
+        body = pymunk.Body(1.0, pymunk.moment_for_poly(1.0, corners))
+        body.position = -4.0 + 1.1 * place + 0.05 * (row % 2), 1.0 + 1.1 * row
+        shape = pymunk.Poly(body, corners)
+        shape.friction, shape.elasticity = 0.4, 0.1
+        space.add(body, shape)
+    return Program(space, 1 / 60, lambda k: None)
+
+
 PROGRAMS: dict[str, Callable[[], Program]] = {
     "Push-T": push_t, "pistonball": piston_ball, "arcade": arcade, "walker": walker, "car": car, "bridge": bridge,
-    "soft rings": soft_rings, "ragdolls": rag_dolls,
+    "soft rings": soft_rings, "ragdolls": rag_dolls, "six legs": six_legs, "rings of planks": rings_of_planks,
+    "a hundred corners": many_corners,
 }  # fmt: skip

@@ -10,7 +10,7 @@ import pymunk
 import pytest
 
 import eeca_pymunk as ep
-from comparisons import meeting_scenes, program_joints
+from comparisons import program_joints
 from eeca_pymunk.contacts.interval import make_contacts
 from eeca_pymunk.jointed import press, press_laws
 from eeca_pymunk.jointed.advance import Interval, Motion
@@ -30,7 +30,7 @@ Spaces = Callable[[], pymunk.Space]
 @pytest.mark.parametrize(
     ("make", "rates", "share"),
     [
-        (meeting_scenes.walker, (60,), 0.99),
+        (lambda: program_joints.six_legs().space, (60,), 0.99),
         (lambda: program_joints.soft_rings().space, (60,), 0.99),
         (lambda: program_joints.car().space, (60,), 0.99),
         (lambda: program_joints.rag_dolls(5).space, (100, 120, 140), 0.95),
