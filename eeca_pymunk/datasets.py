@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,11 +10,11 @@ import numpy as np
 from .arrays import FloatArray, IntArray
 from .energy.ledger import Ledger
 from .events import Events
-from .files import arrays_of, load_arrays, save_arrays, take_part
+from .files import ArrayFile
 
 
 @dataclass
-class Rollouts:
+class Rollouts(ArrayFile):
     """The results of K rollouts of b bodies, T frames each.
 
     Attributes:
@@ -30,6 +29,8 @@ class Rollouts:
         error: (K,) length, an estimate of the largest position error in any frame; NaN until `certify` is called.
         parameters: arguments of `rollout`, versions, and what the user adds (seeds, units, licence).
     """
+
+    _PARTS = {"events": Events}  # noqa: RUF012
 
     states: FloatArray
     frames: FloatArray
@@ -54,21 +55,3 @@ class Rollouts:
     def ledger_of(self, k: int, t: int = -1) -> Ledger:
         """The ledger of rollout k from its start to frame t."""
         return Ledger(*self.ledger[k, t].tolist())
-
-    def save(self, path: str | Path) -> None:
-        """Write to `path`, whole or not at all: NumPy's format for .npz; HDF5 for .h5 and .hdf5, which needs h5py.
-
-        The file contains the arrays by the names of the attributes (`events.time`, ...), the parameters as JSON, and a
-        SHA-256 hash of everything.
-        """
-        save_arrays(path, arrays_of(self) | arrays_of(self.events, "events."), self.parameters)
-
-    @staticmethod
-    def load(path: str | Path) -> Rollouts:
-        """Read a file of `save`; ValueError if it is another file, or its content has changed."""
-        try:
-            found, parameters = load_arrays(path)
-            events = Events(**take_part(found, "events."))
-            return Rollouts(**found, events=events, parameters=parameters)
-        except (KeyError, TypeError, AttributeError, ValueError) as error:
-            raise ValueError(f"{path} does not hold the rollouts that Rollouts.save wrote ({error})") from error

@@ -8,12 +8,13 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import fields
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any, ClassVar, TypeAlias, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 _Array: TypeAlias = npt.NDArray[Any]
+Own = TypeVar("Own", bound="ArrayFile")
 _HASH = "sha256"
 _HDF5 = (".h5", ".hdf5")
 
@@ -40,6 +41,40 @@ def check_writable(path: str | Path) -> Path:
     probe.touch()
     probe.unlink()
     return path
+
+
+class ArrayFile:
+    """A dataclass of arrays, and of dataclasses of arrays (`_PARTS`), with `parameters`, that is saved in a file."""
+
+    _PARTS: ClassVar[dict[str, type[Any]]]
+    parameters: dict[str, Any]
+
+    def save(self, path: str | Path) -> None:
+        """Write to `path`, whole or not at all: NumPy's format for .npz; HDF5 for .h5 and .hdf5, which needs h5py.
+
+        The file contains the arrays by the names of the attributes (`events.time`, ...), the parameters as JSON, and a
+        SHA-256 hash of everything.
+        """
+        arrays: dict[str, _Array] = {}
+        parts: list[tuple[str, Any]] = [("", self), *((f"{name}.", getattr(self, name)) for name in self._PARTS)]
+        for prefix, part in parts:
+            values = {f"{prefix}{f.name}": getattr(part, f.name) for f in fields(part)}
+            arrays |= {name: value for name, value in values.items() if isinstance(value, np.ndarray)}
+        save_arrays(path, arrays, self.parameters)
+
+    @classmethod
+    def load(cls: type[Own], path: str | Path) -> Own:
+        """Read a file of `save`; ValueError if it is another file, or its content has changed."""
+        try:
+            found, parameters = load_arrays(path)
+            parts: dict[str, dict[str, Any]] = {name: {} for name in cls._PARTS}
+            for name in [name for name in found if "." in name]:
+                part, field = name.split(".")
+                parts[part][field] = found.pop(name)
+            found |= {name: kind(**parts[name]) for name, kind in cls._PARTS.items()} | {"parameters": parameters}
+            return cls(**found)
+        except (KeyError, TypeError, AttributeError, ValueError) as error:
+            raise ValueError(f"{path} is not a file that {cls.__name__}.save wrote ({error})") from error
 
 
 def save_arrays(path: str | Path, arrays: Mapping[str, _Array], parameters: Mapping[str, Any]) -> None:
@@ -84,17 +119,6 @@ def load_arrays(path: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
     if digest and _digest(found, text) != digest:
         raise ValueError("its hash does not fit its content")
     return found, json.loads(text)
-
-
-def arrays_of(record: Any, prefix: str = "") -> dict[str, _Array]:
-    """The fields of a dataclass whose values are arrays, by their names with a prefix."""
-    values = {f"{prefix}{f.name}": getattr(record, f.name) for f in fields(record)}
-    return {name: value for name, value in values.items() if isinstance(value, np.ndarray)}
-
-
-def take_part(arrays: dict[str, Any], prefix: str) -> dict[str, Any]:
-    """Remove from `arrays` those whose names begin with a prefix; returns them by the rest of their names."""
-    return {name.removeprefix(prefix): arrays.pop(name) for name in list(arrays) if name.startswith(prefix)}
 
 
 def _digest(arrays: Mapping[str, _Array], text: str) -> str:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from importlib import import_module
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,15 +11,12 @@ import numpy as np
 from .arrays import FloatArray
 from .energy.ledger import LedgerTrace
 from .events import Events
-from .files import arrays_of, load_arrays, save_arrays, take_part
+from .files import ArrayFile
 from .space.outlines import Outlines
-
-# The attributes of a recording that are dataclasses of arrays.
-_PARTS: dict[str, type[Any]] = {"outlines": Outlines, "ledger": LedgerTrace, "events": Events}
 
 
 @dataclass
-class Recording:
+class Recording(ArrayFile):
     """T moments of N bodies: those of `space.bodies` that are not static, in that order.
 
     A body that is removed during the run is NaN from then on. At the end of a notebook cell a recording is shown as a
@@ -41,6 +37,8 @@ class Recording:
         events: the impacts, each at its instant.
         parameters: stepper, dt, duration, every, and versions.
     """
+
+    _PARTS = {"outlines": Outlines, "ledger": LedgerTrace, "events": Events}  # noqa: RUF012
 
     time: FloatArray
     position: FloatArray
@@ -67,23 +65,6 @@ class Recording:
 
     def __len__(self) -> int:
         return len(self.time)
-
-    def save(self, path: str | Path) -> None:
-        """Write to `path`, whole or not at all: NumPy's format for .npz; HDF5 for .h5 and .hdf5, which needs h5py."""
-        arrays = arrays_of(self)
-        for part in _PARTS:
-            arrays |= arrays_of(getattr(self, part), f"{part}.")
-        save_arrays(path, arrays, self.parameters)
-
-    @staticmethod
-    def load(path: str | Path) -> Recording:
-        """Read a file of `save`; ValueError if it is another file, or its content has changed."""
-        try:
-            found, parameters = load_arrays(path)
-            parts = {part: kind(**take_part(found, f"{part}.")) for part, kind in _PARTS.items()}
-            return Recording(**found, **parts, parameters=parameters)
-        except (KeyError, TypeError, AttributeError, ValueError) as error:
-            raise ValueError(f"{path} is not a recording that Recording.save wrote ({error})") from error
 
     def _repr_html_(self) -> str:
         # The only import of a higher room: a recording in a notebook is shown as a player.

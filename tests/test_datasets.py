@@ -51,7 +51,7 @@ def test_a_file_whose_content_was_changed_is_refused(tmp_path: Path) -> None:
         ep.Rollouts.load(tmp_path / "films.npz")
     del found["ledger"]
     np.savez(tmp_path / "films.npz", **found)
-    with pytest.raises(ValueError, match="does not hold the rollouts"):
+    with pytest.raises(ValueError, match=r"is not a file that Rollouts\.save wrote"):
         ep.Rollouts.load(tmp_path / "films.npz")
 
 

@@ -262,7 +262,7 @@ def test_outlines_and_recording_survive_a_file(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="the recording goes from 0"):
         render.strip(again, [0.3])
     np.savez(tmp_path / "other.npz", time=np.zeros(3))
-    with pytest.raises(ValueError, match=r"other.npz is not a recording"):
+    with pytest.raises(ValueError, match=r"other.npz is not a file that Recording.save wrote"):
         ep.Recording.load(tmp_path / "other.npz")
 
 
