@@ -91,7 +91,7 @@ ENTRIES = {
     "impacts.run:run": "{Scene} {Joints} {RunArrays} {Reading}",
     "joints.workspace:plan_components": "{Scene} {Joints}",
     "joints.workspace:tie_components": "{Scene} {Joints}",
-    "joints.pinned:hold_again": "{Scene} {Joints}",
+    "joints.pinned:hold": "{Scene} {Joints}",
     "joints.pinned:release_held": "{Scene} {Joints}",
     "joints.partners:read_partners": "f8[1] i8[1] f8[2] f8[2] Body[1] Joint[1] i8",
     # Only tests call this, which solves single islands: some hundred times slower as plain Python.

@@ -14,7 +14,7 @@ from ..compiled.library import result_of
 from ..compiled.records import R, Rows, columns, from_bytes, rows
 from ..contacts.memory import copy_recent
 from ..islands.accounting import flag_pairs
-from ..joints.pinned import hold_again, release_held
+from ..joints.pinned import hold, release_held
 from ..joints.workspace import NO_LINKAGE, Linkage, tie_components
 from ..model.bodies import CHECK, MOBILITY, Body
 from ..model.contacts import Force, Impulse
@@ -113,7 +113,7 @@ class EventLoop(Remembering):
             replan: whether components may differ; else only whether joints hold other bodies where they are.
         """
         self.release()
-        if replan or hold_again(self.table, self.ties):
+        if replan or hold(self.table, self.ties):
             self.release()
             self._plan(linkage)
             if not self.jointed:

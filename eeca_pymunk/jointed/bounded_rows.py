@@ -13,41 +13,13 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..model.contacts import Bounded
-from ..model.joints import BOUNDED, MOTOR, PRESCRIBED, Joints
+from ..model.joints import BOUNDED, PRESCRIBED, Joints
 from ..model.parameters.joints import BOUNDED_SWEEPS, MOTOR_OFF
 from ..model.scene import Scene
 from ..newton.entries import acting_rows, interval_of, is_limit
 from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, bounded_rate, room_for_rows, sweep_bounded, weigh_rows
 from .component import answer
 from .groups import Groups
-
-
-@nonallocating
-def keeps_speed(J: Joints, s: int) -> bool:
-    """Whether component s has motors or joints with a max_force: their rows prescribe speeds at the end of an
-    interval."""
-    for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
-        if J.COUPLING[k].bounded != 0:
-            return True
-    return False
-
-
-@nonallocating
-def is_driven(J: Joints, s: int) -> bool:
-    """Whether component s has a motor of unlimited force, whose speed an impulse of contacts alone would change."""
-    for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
-        if J.COUPLING[k].kind == MOTOR and J.JOINT[J.COUPLING[k].joint].bounded == 0:
-            return True
-    return False
-
-
-@nonallocating
-def acts_at_once(J: Joints, s: int) -> bool:
-    """Whether component s has joints without bounds. If it has none, impulses at one instant move its bodies freely."""
-    for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
-        if J.COUPLING[k].bounded == 0:
-            return True
-    return False
 
 
 @nonallocating

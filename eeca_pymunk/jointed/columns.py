@@ -14,7 +14,7 @@ from ..compiled.records import Rows
 from ..model.contacts import Columns, Row
 from ..model.joints import Joints
 from ..rows.build import invert
-from ..rows.columns import push_column, put_free_body
+from ..rows.columns import put_free_body
 from .component import answer
 from .groups import Groups, least_mobility
 
@@ -139,12 +139,3 @@ def set_effective_masses(groups: Groups, C: Columns, ROWS: Rows[Row], m: int) ->
             ROWS[i].friction, ROWS[i].a_nt = 0.0, 0.0
         if ROWS[i].friction > 0.0:
             invert(ROWS[i], nn, nt, tt)
-
-
-@nonallocating
-def leave_out(C: Columns, L: FloatArray, m: int, V: FloatArray) -> None:
-    """Set the impulses of contacts that are left out to 0, and update the velocities V."""
-    for i in range(m):
-        if C.LEFT_OUT[i] != 0:
-            push_column(C, i, -L[i, 0], -L[i, 1], V)
-            L[i, 0] = L[i, 1] = 0.0

@@ -17,7 +17,6 @@ from ..rows.bounded import room_for_rows
 from ..rows.build import normal_rate
 from ..rows.inplace import add
 from .advance import Interval, apart, find_hit, join_points
-from .bounded_rows import acts_at_once, is_driven
 from .columns import fill_free, make_columns, set_effective_masses
 from .component import fit_speeds
 from .gathered import gather_component, number_of
@@ -45,14 +44,17 @@ def project_velocities(A: Scene, J: Joints, interval: Interval, L: FloatArray, e
     payer, DRIVEN = -1, np.zeros(len(groups.COMPONENT) + 1, np.int64)
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
-        DRIVEN[g + 1] = 1 if s >= 0 and is_driven(J, s) else 0
-        if s < 0 or PUSHED[g + 1] == 0 or not acts_at_once(J, s):
+        if s < 0:
+            continue
+        C, DRIVEN[g + 1] = J.COMPONENT[s], J.COMPONENT[s].driven
+        # Impulses at one instant move bodies freely whose joints are all bounded.
+        if PUSHED[g + 1] == 0 or C.bounded_joints == C.end_joint - C.first_joint:
             continue
         payer = s if payer < 0 else payer
         length = gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, end, interval.h)
         fit_speeds(J, s, length)
         J.STEPPED[s].projected += fitting_loss(workspace(J, s), J.STEPPED[s])
-        for w in range(J.COMPONENT[s].end_body - J.COMPONENT[s].first_body):
+        for w in range(C.end_body - C.first_body):
             q = number_of(A, J, s, w)
             for c in range(3 if q >= 0 else 0):
                 motion.V[q, c] = J.LOCAL[w].v0[c]

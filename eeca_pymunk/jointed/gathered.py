@@ -11,7 +11,7 @@ from ..model.joint_steps import ELASTIC, LINEAR
 from ..model.joints import GIVES_WAY, LEFT_APART, RATCHET, UNTESTED, Joints
 from ..model.parameters.joints import NEARLY_HELD
 from ..model.scene import Scene
-from ..newton.motion import read_body, seat, size_up
+from ..newton.motion import seat, size_up
 from .groups import Groups
 
 
@@ -133,10 +133,13 @@ def gather_alone(A: Scene, J: Joints, s: int, t: float, h: float) -> float:
     C = J.COMPONENT[s]
     for i in range(C.end_body - C.first_body):
         if not gather_fixed(A, J, s, i, t):
-            member = J.JOINED[C.first_body + i]
-            read_body(J.LOCAL[i], A.BODY[member.body])
+            local, row = J.LOCAL[i], int(J.JOINED[C.first_body + i].body)
+            body = A.BODY[row]
+            local.pose[0], local.pose[1], local.pose[2] = body.x, body.y, body.angle
+            local.v0[0], local.v0[1], local.v0[2] = body.vx, body.vy, body.spin
             for c in range(3):
-                J.LOCAL[i].acceleration[c] = A.PULL[member.body, c]
+                local.mobility[c] = body.inv_mass if c < 2 else body.inv_inertia
+                local.acceleration[c] = A.PULL[row, c]
     return size_up(J, s, h)
 
 

@@ -23,7 +23,6 @@ from ..rows.build import normal_rate
 from ..rows.inplace import copy
 from ..rows.lifting import lift_above_walls
 from .advance import Interval
-from .bounded_rows import keeps_speed
 from .columns import fill_group, set_effective_masses
 from .component import close_at_poses, ready_at_poses
 from .gathered import find_places, gather_component
@@ -106,8 +105,8 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
         # The columns of the interval, in which stiff springs resist, so that D hardly strains them; but bounded rows
-        # would keep speeds in it.
-        if s >= 0 and keeps_speed(J, s):
+        # prescribe speeds at its end.
+        if s >= 0 and J.COMPONENT[s].bounded_joints > 0:
             fill_at_end(A, J, interval, C, g, INDEX, ROWS, m, end)
     KEEP = ROWS[:m].copy()
     set_effective_masses(groups, C, KEEP, m)

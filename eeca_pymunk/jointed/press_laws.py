@@ -16,6 +16,7 @@ from ..model.parameters.impulses import WEDGED
 from ..model.parameters.intervals import LARGE_ISLAND
 from ..model.scene import Scene
 from ..rows.build import conserves, rubs
+from ..rows.columns import push_column
 from ..rows.conjugate import sweep_conjugate
 from ..rows.gentle import excessive
 from ..rows.inplace import copy
@@ -23,7 +24,7 @@ from ..rows.laws import solve_columns, solve_wedged
 from ..rows.sweeps import sweep
 from .advance import Interval
 from .bounded_rows import with_bounded
-from .columns import count_operations, leave_out
+from .columns import count_operations
 
 
 class Manner(NamedTuple):
@@ -71,7 +72,10 @@ def begin_laws(interval: Interval, problem: JointedProblem, L: FloatArray, FORES
     """The impulses with which a solution of the laws begins: L, without contacts that are left out, and those of the
     bounded rows. FORESEEN becomes the velocities by the columns under these."""
     copy(FORESEEN, interval.motion.MEAN)
-    leave_out(interval.C, L, interval.m, FORESEEN)
+    for i in range(interval.m):
+        if interval.C.LEFT_OUT[i] != 0:
+            push_column(interval.C, i, -L[i, 0], -L[i, 1], FORESEEN)
+            L[i, 0] = L[i, 1] = 0.0
     return with_bounded(problem.D, L, interval.m)
 
 

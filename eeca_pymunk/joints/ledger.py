@@ -9,7 +9,6 @@ from ..compiled import inlined, nonallocating
 from ..model.joint_steps import JointLedger
 from ..model.joints import MOTOR, ROTARY_SPRING, SPRING, Workspace
 from ..newton.entries import acts
-from ..newton.springs import potential
 from .frame import account_frame, move_apart
 
 
@@ -82,20 +81,6 @@ def account_part(W: Workspace, h: float) -> None:
             ledger.limited -= total
         else:
             ledger.closed += total
-
-
-@nonallocating
-def springs_hold(W: Workspace) -> float:
-    """The energy that springs hold at the start of the part, after `..newton.rows.start_joint`."""
-    joint = W.J.JOINT
-    total = 0.0
-    for k in range(W.joints):
-        j, kind = W.link[k].joint, W.link[k].kind
-        if kind in (SPRING, ROTARY_SPRING):
-            sign = 1.0 if kind == SPRING else -1.0
-            at = sign * (W.J.HINGE[k].began - joint[j].rest)
-            total += potential(joint[j].push, -joint[j].stiffness, joint[j].max_force, at)
-    return total
 
 
 @nonallocating

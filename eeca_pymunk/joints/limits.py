@@ -33,7 +33,7 @@ from ..newton.solve import drop_impulses, solve, solve_linearly
 from . import bounds
 from .correct import fitting_loss, project, release
 from .ledger import account_part
-from .parts import begin_as_before, begin_next, meets_limit, note_part, weaken_lead
+from .parts import begin_as_before, begin_next, meets_limit, note_part
 
 GOES_ON, MEETS, ENDS, FAILS = 0, 1, 2, 3  # what follows a solve
 
@@ -188,8 +188,10 @@ def meet_limit(W: Workspace, S: Parts, h: float) -> None:
         note_part(W, S.part, S.limit, S.side, S.when)
         S.part += 1
         S.left -= S.when
-        if S.when < S.left:
-            weaken_lead(W, S.when / S.left)
+        # In a short part most accelerations by joints correct velocities that violate these, and are no forces.
+        for i in range(W.bodies if S.when < S.left else 0):
+            for c in range(3):
+                W.J.LOCAL[i].lead[c] *= S.when / S.left
     stop_at(W, S.limit, S.side, at_once, False)
 
 

@@ -65,12 +65,3 @@ def begin_as_before(W: Workspace, before: float, h: float) -> None:
     for k in range(W.joints):
         hinge[k].lam[0] *= longer
         hinge[k].lam[1] *= longer
-
-
-@nonallocating
-def weaken_lead(W: Workspace, share: float) -> None:
-    """Begin the next part with only this share of the accelerations by joints in the part before. In a short part most
-    of them correct velocities that violate joints, and are no forces."""
-    for i in range(W.bodies):
-        for c in range(3):
-            W.J.LOCAL[i].lead[c] *= share

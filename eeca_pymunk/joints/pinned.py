@@ -10,7 +10,7 @@ from ..compiled import Table, kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.bodies import Body
 from ..model.joints import CENTRE, FREE, GEAR, PIN, PIVOT, SLIDE, Joints, joints_of
-from ..model.scene import Scene, scene_of
+from ..model.scene import scene_of
 from .plan import find_turning, together
 from .straight import hold_chains
 from .welds import weld
@@ -43,9 +43,11 @@ def note_pinned(J: Joints, k: int, body: Body, row: int, kind: int, weld: IntArr
 
 
 @kernel
-def hold(A: Scene, J: Joints) -> bool:
+def hold(table: Table, joints: Table) -> bool:
     """Find the bodies that joints hold where they are, at their present poses, which lose their mobilities; returns
-    whether PINNED differs from the last one. Contacts turn bodies, unless these have no friction."""
+    whether PINNED differs from the last one. Contacts turn bodies, unless these have no friction. What was held before
+    is released first (`release_held`)."""
+    A, J = scene_of(table), joints_of(joints)
     BODY, SHAPE, LINK = A.BODY, A.SHAPE, A.LINK
     before, found, changed = J.TALLY.pinned, 0, False
     if may_hold(J, len(BODY)):
@@ -75,23 +77,12 @@ def hold(A: Scene, J: Joints) -> bool:
 
 
 @nonallocating
-def let_go(A: Scene, J: Joints) -> None:
+def release_held(table: Table, joints: Table) -> None:
     """Give the bodies that joints hold their mobilities back; PINNED is kept, to be compared with the next one."""
+    A, J = scene_of(table), joints_of(joints)
     for k in range(J.TALLY.pinned):
         body = A.BODY[J.PINNED[k].body]
         body.inv_mass, body.inv_inertia = J.PINNED[k].inv_mass, J.PINNED[k].inv_inertia
-
-
-@nonallocating
-def release_held(table: Table, joints: Table) -> None:
-    """See `let_go`."""
-    let_go(scene_of(table), joints_of(joints))
-
-
-@kernel
-def hold_again(table: Table, joints: Table) -> bool:
-    """See `hold`, after `release_held`."""
-    return hold(scene_of(table), joints_of(joints))
 
 
 @nonallocating

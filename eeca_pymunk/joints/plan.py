@@ -12,11 +12,11 @@ import numpy as np
 from ..arrays import IntArray
 from ..compiled import kernel
 from ..compiled.records import Rows, empty
+from ..model import joints as model
 from ..model.bodies import BODIES, Body
-from ..model.joints import GEAR, GROOVE, INSTANTS, NOTHING, STEPS, Component, ComponentBody, Coupling, Joint
-from ..model.parameters.joints import CONDENSE_BAND
+from ..model.joints import GEAR, GROOVE, Component, ComponentBody, Coupling, Joint
+from ..model.parameters.joints import CONDENSE_BAND, MOST_BOUNDED
 from ..newton.rows import row_count
-from .marks import hard, has_disc, mark_actions, mark_bounded
 from .ordering import order_rows, order_unknowns
 
 
@@ -101,6 +101,43 @@ def find_turning(bodies: Rows[Body], joint: Rows[Joint], joints: int, turns: Int
 
 
 @kernel
+def mark_actions(
+    joint: Rows[Joint], member: Rows[ComponentBody], link: Rows[Coupling], component: Rows[Component], s: int
+) -> None:
+    """Mark the bodies of component s that its joints push, and those on which they exert torques."""
+    for i in range(component[s].first_body, component[s].end_body):
+        member[i].acted = 0
+    for k in range(component[s].first_joint, component[s].end_joint):
+        j, kind = link[k].joint, link[k].kind
+        for end in range(2):
+            one = member[component[s].first_body + link[k].body[end]]
+            anchor = joint[j].anchor_a if end == 0 else joint[j].anchor_b
+            off = anchor[0] != 0.0 or anchor[1] != 0.0 or (kind == GROOVE and end == 0)
+            one.acted |= model.FORCES_ON if kind < GEAR else 0
+            one.acted |= model.TORQUES_ON if kind >= GEAR or off else 0
+
+
+@kernel
+def mark_joints(joint: Rows[Joint], link: Rows[Coupling], component: Rows[Component], s: int) -> tuple[bool, bool]:
+    """Mark the joints of component s whose impulses are bounded, and set what the component has of them. Returns
+    whether a disc bounds two impulses of a joint, and whether all joints hold exactly, those with limits included."""
+    one, discs, hard, rows = component[s], False, True, 0
+    one.bounded_joints = one.driven = 0
+    for k in range(one.first_joint, one.end_joint):
+        motor, limited = link[k].kind == model.MOTOR, joint[link[k].joint].bounded != 0
+        bounded = motor or (limited and link[k].kind not in (model.SPRING, model.ROTARY_SPRING))
+        link[k].bounded = model.BOUNDED if bounded else 0
+        if bounded:
+            rows, one.bounded_joints = rows + link[k].rows, one.bounded_joints + 1
+        if motor and not limited:
+            one.driven = 1
+        discs = discs or (limited and link[k].rows == 2)
+        hard = hard and not (link[k].rows == 0 or motor or limited)
+    one.bounded = rows if rows <= MOST_BOUNDED else 0  # too many are not solved with contacts
+    return discs, hard
+
+
+@kernel
 def make_plan(
     bodies: Rows[Body], joint: Rows[Joint], component: Rows[Component], member: Rows[ComponentBody],
     link: Rows[Coupling], OF: IntArray,
@@ -143,15 +180,15 @@ def make_plan(
                     used += 1
                 link[k].body[end] = place[body] - component[s].first_body
         component[s].end_body = used
+        discs, hard = mark_joints(joint, link, component, s)
         order_unknowns(component, member, link, s, False)
-        if component[s].band > CONDENSE_BAND and not has_disc(joint, link, component, s):
+        if component[s].band > CONDENSE_BAND and not discs:  # which couple two impulses: no condensed system has that
             order_unknowns(component, member, link, s, True)
         order_rows(component, member, link, s)
         cost = component[s].unknowns * component[s].band ** 2
         pays = 0 < component[s].dual_size * component[s].dual_band ** 2 <= cost
         mark_actions(joint, member, link, component, s)
-        component[s].bounded = mark_bounded(joint, link, component, s)
-        component[s].dual_for = NOTHING if not pays else STEPS if hard(joint, link, component, s) else INSTANTS
+        component[s].dual_for = model.NOTHING if not pays else model.STEPS if hard else model.INSTANTS
         component[s].loops = cycles(bodies, link, member, component, s, False)
         component[s].knots = cycles(bodies, link, member, component, s, True)
     return count

@@ -11,9 +11,9 @@ from ..model.joints import GEAR, GROOVE, MOTOR, PIN, ROTARY_SPRING, SPRING, Join
 from ..model.parameters.joints import STALLED
 from ..newton.entries import is_limit
 from ..newton.rows import joint_rows, unit_of
+from ..newton.springs import potential
 from ..newton.systems import first_iterate
 from .bounds import limit_gap, limit_gap_rate
-from .ledger import springs_hold
 
 
 @nonallocating
@@ -139,9 +139,16 @@ def compute_rows(W: Workspace) -> None:
 
 @nonallocating
 def springs_of(W: Workspace) -> float:
-    """Energy stored in springs at the present poses, after `compute_rows`."""
+    """Energy stored in springs at the present poses; `compute_rows` is called first."""
     compute_rows(W)
-    return springs_hold(W)
+    total = 0.0
+    for k in range(W.joints):
+        joint, kind = W.J.JOINT[W.link[k].joint], W.link[k].kind
+        if kind in (SPRING, ROTARY_SPRING):
+            sign = 1.0 if kind == SPRING else -1.0
+            at = sign * (W.J.HINGE[k].began - joint.rest)
+            total += potential(joint.push, -joint.stiffness, joint.max_force, at)
+    return total
 
 
 @nonallocating

@@ -15,7 +15,7 @@ from ..compiled.records import Rows, rows
 from ..model.bodies import AT_REST, CHANGED, Body
 from ..model.joints import NOTHING, Joint, Joints, Workspace, joints_of
 from ..model.scene import scene_of
-from .pinned import hold, let_go
+from .pinned import hold, release_held
 from .plan import make_plan, together
 
 
@@ -82,10 +82,10 @@ def plan_components(table: Table, joints: Table) -> int:
     J.OF[:] = -1
     J.TALLY.order = 4
     if J.JOINT.shape[0] > 0:
-        hold(A, J)
+        hold(table, joints)
         J.TALLY.components = make_plan(together(A.BODY, J.PARTNER), J.JOINT, J.COMPONENT, J.JOINED, J.COUPLING, J.OF)
     if not measure_plan(J):
-        let_go(A, J)
+        release_held(table, joints)
         return -1
     tie_components(table, joints)
     return J.TALLY.pinned

@@ -94,6 +94,8 @@ class Component(Record):
     dependence: int  # of its rows at the present start: UNTESTED, INDEPENDENT, DEPENDENT (`..joints.redundancy`)
     cold: int  # 1 if rows depend on one another, and begin without impulses
     bounded: int  # most rows of bounded impulses that may act, if few enough to be solved with contacts; else 0
+    bounded_joints: int  # its motors, and joints with a finite max_force
+    driven: int  # 1 if it has a motor of unlimited force
     factored: int  # 1 if the matrix holds factors of an earlier part of the present step; or OTHERWISE
     parts: int  # parts of the last solution from the present start that are known (`..joints.parts`)
     parts_within: float  # length of its step

@@ -6,7 +6,6 @@ import numpy as np
 
 from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
-from ..model.bodies import Body
 from ..model.joint_steps import BodyStep
 from ..model.joints import ComponentBody, Joints, Workspace
 
@@ -17,14 +16,6 @@ def seat(local: BodyStep, joined: ComponentBody) -> None:
     local.column, local.freedoms = joined.column, joined.freedoms
     local.first, local.cayley = joined.first, joined.cayley
     local.acted = joined.acted
-
-
-@inlined
-def read_body(local: BodyStep, body: Body) -> None:
-    """Copy pose, velocity and mobility of a body to its scratch; accelerations are set by the caller."""
-    local.pose[0], local.pose[1], local.pose[2] = body.x, body.y, body.angle
-    local.v0[0], local.v0[1], local.v0[2] = body.vx, body.vy, body.spin
-    local.mobility[0], local.mobility[1], local.mobility[2] = body.inv_mass, body.inv_mass, body.inv_inertia
 
 
 @nonallocating
