@@ -154,15 +154,6 @@ def find_rest(
 
 
 @kernel
-def test_statics(
-    A: Scene, isle: Island, contacts: IslandContacts, n: int, h: float, rest_speed: float, hold: bool
-) -> int:  # fmt: skip
-    """`find_rest` at the start of an interval h. Returns the number of contacts; 0 without static forces."""
-    begun = begin_contacts(A, isle, contacts, n, h, 0.0)
-    return begun.m if begun.m > 0 and find_rest(A, isle, contacts, n, h, begun, rest_speed, hold) else 0
-
-
-@kernel
 def step_island(
     SCENE: Table, ISLE: Table, CONTACTS: Table, n: int, h: float, most: int, least: float, owed: float,
     rest_speed: float,

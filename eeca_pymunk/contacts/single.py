@@ -79,13 +79,6 @@ def note(
     row.gap, row.duration = gap, 0.0
 
 
-@nonallocating
-def law_of_disks(BODY: Rows[Body], i: int, j: int) -> tuple[float, float, float, float]:
-    """Elasticity, friction, and surface velocity (0, 0) of two single disks from their rows of BODY, as `law` returns
-    them; valid without friction and without decisions of handlers."""
-    return BODY[i].elasticity * BODY[j].elasticity, BODY[i].friction * BODY[j].friction, 0.0, 0.0
-
-
 @inlined
 def strike_disk(A: Scene, i: int, o: int, t: float) -> None:
     """Impact of the single disk i with shape o, another single disk or a static shape.
@@ -108,7 +101,7 @@ def strike_disk(A: Scene, i: int, o: int, t: float) -> None:
         px, py = x + BODY[i].extent * nx, y + BODY[i].extent * ny
     else:
         _, nx, ny, px, py = gap_at(A, i, x, y, BODY[i].angle, o, BODY[j].x, BODY[j].y, BODY[j].angle)
-    e, mu, sx, sy = law_of_disks(BODY, i, j)
+    e, mu, sx, sy = BODY[i].elasticity * BODY[j].elasticity, BODY[i].friction * BODY[j].friction, 0.0, 0.0
     if not disk or mu > 0.0 or A.RULE.shape[0] > 0:
         e, mu, sx, sy = law(A, i, o)
     vx, vy = BODY[j].vx - BODY[i].vx, BODY[j].vy - BODY[i].vy

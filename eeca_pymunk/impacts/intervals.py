@@ -73,15 +73,6 @@ def start_waiting(A: Scene, J: Joints) -> int:
     return DONE
 
 
-@nonallocating
-def note_cut(A: Scene, J: Joints, i: int) -> None:
-    """Note that the step ends at the event of body i, since its budget is spent."""
-    own, other = A.STATE[i].own, A.STATE[i].other
-    if other < 0:  # the end of an interval, without a partner
-        own, other = A.STATE[i].first_shape if A.STATE[i].shapes > 0 else -1, -1
-    note_unmet(A, SOLVES, own, other, A.COUNT.work + most_work(A) - most_looks(A, J), most_work(A))
-
-
 @kernel
 def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
     """End the step at instant t, that of the event of body i, since its budget is spent; so no impact is ignored.
@@ -98,7 +89,10 @@ def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
     In between all bodies whose intervals have ended, or that are beyond t, count as there at t. What would be corrected
     at the planned ends of these intervals is left to the next step.
     """
-    note_cut(A, J, i)
+    own, other = A.STATE[i].own, A.STATE[i].other
+    if other < 0:  # the end of an interval, without a partner
+        own, other = A.STATE[i].first_shape if A.STATE[i].shapes > 0 else -1, -1
+    note_unmet(A, SOLVES, own, other, A.COUNT.work + most_work(A) - most_looks(A, J), most_work(A))
     A.PAR.dt = t
     A.COUNT.heap = 0
     if J.TALLY.components > 0:

@@ -121,13 +121,6 @@ def run_events(A: Scene, may_persist: bool, most: float) -> int:
 
 
 @nonallocating
-def has_room(A: Scene) -> bool:
-    """Whether there is memory for the contacts that an impact on islands with joints may add."""
-    more = 2 * A.COUNT.pushes + _ROOM
-    return bool(more <= A.PUSHED.shape[0] and table_has_room(A, more))
-
-
-@nonallocating
 def end_of_interval(A: Scene, J: Joints, i: int, t: float) -> int:
     """End the interval of the island of body i at instant t, within the step. Writes its bodies to A.BLOCK; returns
     their number."""
@@ -182,7 +175,8 @@ def process_events(A: Scene, J: Joints, may_persist: bool) -> int:
             joints = waiting < 0  # others of the block are jointed: nothing was done
         if joints and work_left(A, J) < 0.0:
             return cut_short(A, J, i, t)
-        if joints and not has_room(A):
+        more = 2 * COUNT.pushes + _ROOM
+        if joints and (more > A.PUSHED.shape[0] or not table_has_room(A, more)):
             COUNT.heap = push_event(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
             return PUSHES_FULL
         if not met:

@@ -60,15 +60,6 @@ def finish_block(
 
 
 @nonallocating
-def holds_joints(A: Scene, n: int) -> bool:
-    """Whether any of the n bodies in A.BLOCK is jointed, or in an island with joints."""
-    for q in range(n):
-        if A.MEMBER[A.BLOCK[q]].tied >= 0 or jointed(A, A.BLOCK[q]):
-            return True
-    return False
-
-
-@nonallocating
 def lacks_room(A: Scene, n: int, m: int) -> bool:
     """Whether LOG is too short for the impulses of a block of n bodies and m pairs, two for each pair. If so, the block
     is dissolved, and its impact has to be repeated with more memory (COUNT.room)."""
@@ -107,9 +98,10 @@ def strike(A: Scene, a: int, b: int, t: float, lasts: bool) -> int:
         lasts: whether the contact of a and b persists from now on.
     """
     n, m, PAIRS = gather_block(A, a, b, t)
-    if holds_joints(A, n):
-        clear_places(A, A.BLOCK[:n])
-        return -1
+    for q in range(n):
+        if A.MEMBER[A.BLOCK[q]].tied >= 0 or jointed(A, A.BLOCK[q]):
+            clear_places(A, A.BLOCK[:n])
+            return -1
     if lacks_room(A, n, m):
         return list_ended(A, n)
     owed, piled = take_owed_energy(A, n)

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
-from ..contacts.interval import make_contacts, test_statics
+from ..contacts.interval import begin_contacts, find_rest, make_contacts
 from ..model.bodies import AT_REST, AWAKE
 from ..model.parameters.intervals import IMPACT_SPEED, LARGE_ISLAND
 from ..model.parameters.rest import MOVING_SHARE, PARTIAL_REST_FACTORS_STEP, REST_RETRY
@@ -57,12 +57,12 @@ def test_rest(A: Scene, MINE: IntArray, V0: FloatArray, with_supports: int, free
     """
     BODY, COUNT, dt, root, n = A.BODY, A.COUNT, A.PAR.dt, A.STATE[MINE[0]].island, len(MINE)
     set_places(A, MINE)
-    found = pairs_within(A, root, 0.0, A.PAR.dt, True, MINE)
+    near = pairs_within(A, root, 0.0, A.PAR.dt, True, MINE)
     LOAD = np.zeros((n, 3))
     if not freezing:
         add_loads(A, root, False, LOAD)
-    p = len(found)
-    isle = local_island(A, MINE, found, 0.0)
+    p = len(near)
+    isle = local_island(A, MINE, near, 0.0)
     clear_places(A, MINE)
     most = 0.0
     for q in range(n):
@@ -75,9 +75,10 @@ def test_rest(A: Scene, MINE: IntArray, V0: FloatArray, with_supports: int, free
         return False
     rest_speed = (IMPACT_SPEED if freezing else candidate_speed(with_supports)) * A.PAR.pulled / most
     contacts = make_contacts(p, len(isle.WHO))
-    m = test_statics(A, isle, contacts, n, dt, rest_speed, not freezing)
+    begun = begin_contacts(A, isle, contacts, n, dt, 0.0)
+    found = begun.m > 0 and find_rest(A, isle, contacts, n, dt, begun, rest_speed, not freezing)
     COUNT.direct += contacts.OUT[0].direct
-    if contacts.OUT[0].at_rest == 0:
+    if not found:
         postpone_test(A, MINE)
         return False
     if freezing:
@@ -85,7 +86,7 @@ def test_rest(A: Scene, MINE: IntArray, V0: FloatArray, with_supports: int, free
             stop(A, MINE[q])
             A.RESTING[MINE[q]].rest_timer = 1.0
         return True
-    open_interval(A, root, isle, contacts, contacts.VN, m, 0.0, dt)
+    open_interval(A, root, isle, contacts, contacts.VN, begun.m, 0.0, dt)
     A.MEMBER[root].with_supports = with_supports
     for q in range(n):
         A.MEMBER[MINE[q]].busy = 0

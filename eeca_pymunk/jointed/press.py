@@ -87,8 +87,8 @@ def solve_contacts(
     Each iteration steps the components under L, and ends if their velocities agree with FORESEEN, those that the
     contacts' laws gave before; else it solves these laws with the columns, for L and FORESEEN. Columns are computed
     again in every CHORD-th iteration, else updated (`secant`). A long interval (PROGRESS.length) is given up where a
-    component gives way or is not stepped as a whole, or CHORD iterations have not come near; of many contacts only if
-    the step has work for many shorter intervals. Else iterations end in five ways:
+    component gives way or is not stepped as a whole; of many contacts only if the step has work for many shorter
+    intervals. Else iterations end in five ways:
 
     | because | `agreed` | `converged` | impulses |
     |---|---|---|---|
@@ -154,9 +154,6 @@ def solve_contacts(
             if off < best:
                 best, better = off, outer
                 copy(LEAST, L)
-            if J.PROGRESS.length == LONG and exactly and outer >= joints.CHORD and off > joints.OUTER_FAR * scale:
-                if payable:
-                    return GIVEN_UP
             if exactly and outer >= joints.CHORD and (off > scale or outer - better > joints.CHORD):
                 break  # new columns have not helped either
         if not build and not fit_columns(interval, B, L, USED, NOW, PREVIOUS):

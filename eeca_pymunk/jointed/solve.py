@@ -110,7 +110,7 @@ def excess_length(
 ) -> float:
     """How many times too long the interval of an island is, whose motion under impulses L of its contacts took so much
     effort; also sets its `strays`. `press.solve_contacts` gives a long interval up before there is a motion, for what
-    only its iterations show: components that are not stepped as a whole, or few contacts that come to agree nowhere.
+    only its iterations show: components that are not stepped as a whole.
 
     Args:
         solved: whether contacts are.  last: whether no other attempt follows, see `try_jointed`.

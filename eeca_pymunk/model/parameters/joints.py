@@ -130,9 +130,6 @@ COLUMN_HOMOTOPIES = work(8, "homotopies", "Homotopies to the solution, at most."
 COLUMN_PROXIMAL = round_off(10000000000.0, "over the effective mass",
     "Stiffness of the proximal term of redundant contacts of components.")
 OUTER = work(20, "steps of the components", "Iterations between contacts and components, at most.")
-OUTER_FAR = work(0.01, "of |a| h and the speed",
-    "Difference of the velocities of contacts and components beyond which, after CHORD iterations, a shorter interval "
-    "is tried at once.")
 OUTER_MANY = work(2, "steps of the components", "These iterations with more than COLUMN_CONTACTS contacts.")
 OUTER_PART = work(1, "steps of the components",
     "These iterations in an interval of many contacts that ends within the step.")
