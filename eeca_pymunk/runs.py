@@ -11,7 +11,7 @@ import numpy.typing as npt
 from tqdm import tqdm
 
 from .arrays import FloatArray, IntArray
-from .impacts.edits import FILTER, Changes, write_edits
+from .impacts.edits import FILTER, Changes, Edits, write_edits
 from .impacts.run_buffers import RunBuffers
 from .impacts.taking_over import kept_in_place
 from .layout import BODY_ROW, READ, WRITTEN
@@ -139,15 +139,16 @@ class RunningStepper(PackedStepper):
         loop = self.event_loop
         if loop is None:
             return False
-        changes: Changes | None
-        if not moved and (edits := world.patch_values()) is not None:
-            write_edits(loop.table, edits)
-            changes = [(FILTER, row) for row in edits.filters]
+        found = world.patch(not moved, self._sleep is not None)
+        if found is None:
+            return False
+        changes: Changes
+        if isinstance(found, Edits):
+            write_edits(loop.table, found)
+            changes = [(FILTER, row) for row in found.filters]
             renewed = not changes or loop.go_on(changes, loop.measured)
         else:
-            changes = world.patch_rows(self._sleep is not None)
-            if changes is None:
-                return False
+            changes = found
             renewed = world.joints is None and loop.go_on(changes, world.packed.measured())
         if not renewed:
             self.choose_method(world, world, kept_in_place(len(world.BODY), len(world.shapes), changes))

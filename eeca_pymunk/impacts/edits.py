@@ -46,9 +46,9 @@ class Edits(NamedTuple):
         filters: by row of SHAPE: group, categories, mask. `renew` has to follow.
     """
 
-    surfaces: Mapping[int, tuple[float, ...]]
-    masses: Mapping[int, tuple[float, ...]]
-    filters: Mapping[int, tuple[int, ...]]
+    surfaces: dict[int, tuple[float, ...]]
+    masses: dict[int, tuple[float, ...]]
+    filters: dict[int, tuple[int, ...]]
 
 
 @nonallocating

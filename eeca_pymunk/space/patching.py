@@ -1,17 +1,17 @@
 """Patching: after edits in place the rows of a world are updated without reading the whole space.
 
-Only edited objects are read again, and their rows, or all, are written in place: afterwards these are those that a new
-reading would give, bit by bit. Which edits can be patched, by which function:
+Only edited objects are read again (`patch`), and their rows, or all, are written in place: afterwards these are those
+that a new reading would give, bit by bit. Which edits can be patched:
 
-| function | space | edits | rows |
-|---|---|---|---|
-| `patch_values` | any | elasticity, friction, surface velocity, filter | those edited |
-| | without joints | masses and moments of bodies | those edited |
-| `patch_rows` | without joints and sleeping | also radii, moved static bodies | all |
+| space | edits | what is written |
+|---|---|---|
+| any | elasticity, friction, surface velocity, filter | the rows edited |
+| without joints | masses and moments of bodies | the rows edited |
+| without joints and sleeping | also radii, moved static bodies | all rows |
 
 All others (of vertices, kinds and functions of bodies, sensors; additions and removals) need a new reading. In either
-case results of earlier steps are kept for all that has not changed (`..impacts.taking_over`). `patch_values` does not
-even make a new scene; only the islands at rest that touch what was edited are solved again.
+case results of earlier steps are kept for all that has not changed (`..impacts.taking_over`). Where only rows edited
+are written there is not even a new scene; only the islands at rest that touch what was edited are solved again.
 """
 
 from __future__ import annotations
@@ -100,62 +100,16 @@ def _is_kept(new: ShapeRecord, old: ShapeRecord, jointed: bool) -> bool:
     return (now[1] < 1.0) == (then[1] < 1.0) and not (jointed and (now[2] > 0.0) != (then[2] > 0.0))
 
 
-def _signed(word: int) -> int:
-    """The integer with the bits of 64 that are read as one without sign."""
-    return word - (word >> 63 << 64)
-
-
-def patch_values(world: World) -> Edits | None:
-    """Read edited surfaces, filters and masses again.
-
-    Returns:
-        what the event loop must write into the rows; None, with nothing changed, if there were other edits.
-
-    Raises:
-        ValueError: as a new reading would.
-    """
-    now, edited, bodies, jointed = clock(), _edited(world), world.bodies, world.joints is not None
-    if edited is None or not edited.values:
-        return None
-    places = world.places
-    records: dict[pymunk.Shape, ShapeRecord] = {}
-    masses: dict[int, bytes] = {}
-    surfaces, filters = {}, {}
-    for thing in edited.things:
-        if (record := world.records.get(thing)) is not None:
-            if record.outside or thing in edited.reshaped:
-                return None
-            records[thing] = new = read_surface(thing, record)
-            if not _is_kept(new, record, jointed):
-                return None
-            if new.filter != record.filter:
-                filters[places[thing]] = tuple([_signed(word) for word in new.filter])
-            if new.numbers != record.numbers:
-                surfaces[places[thing]] = new.numbers[1:]
-        elif thing in world.records:  # a sensor
-            return None
-        elif thing in bodies.row:
-            values, others_changed = bodies.changed(bodies.row[thing])
-            if others_changed or jointed:
-                return None
-            if values is not None:
-                masses[bodies.row[thing]] = values
-    world.records.update(records)
-    world.packed.write_edited(records)
-    bodies.set_masses(masses)
-    mobilities = {int(world.IDS[BODY_ROW, i]): masses_in(values)[2:] for i, values in masses.items()}
-    world.read_at, world.objects_read = now, world.objects_read + len(records) + len(masses)
-    return Edits(surfaces, mobilities, filters)
-
-
-def patch_rows(world: World, surfaces: bool) -> Changes | None:
-    """Write all edits since the world was read into its rows. No shapes were added or removed.
+def patch(world: World, in_values: bool, surfaces: bool) -> Edits | Changes | None:
+    """Read what was edited since the world was read. No shapes were added or removed.
 
     Args:
+        in_values: whether no static body may have moved, so that it may be enough to edit values.
         surfaces: whether only edits may be patched that leave sizes, masses and places unchanged.
 
     Returns:
-        the changes; None if a new reading is needed.
+        the values that the event loop must write into the rows, which are those before; or the changes, after all edits
+        were written into the rows; None if a new reading is needed.
 
     Raises:
         ValueError, UnsupportedFeature, NotFiniteError: as a new reading would.
@@ -163,52 +117,62 @@ def patch_rows(world: World, surfaces: bool) -> Changes | None:
     now, edited, joints, bodies = clock(), _edited(world), world.joints, world.bodies
     if edited is None:
         return None
-    stale, reshaped, _ = edited
-    records: dict[pymunk.Shape, ShapeRecord] = {}
-    for shape in [thing for thing in stale if thing in world.records]:
-        record = world.records[shape]
-        if record is None or record.outside or shape.sensor:
-            return None
-        records[shape] = new = read(shape) if shape in reshaped else read_surface(shape, record)
-        if (new.body, new.points) != (record.body, record.points):
-            return None
-        if surfaces and new.numbers[0] != record.numbers[0]:
-            return None
+    found: dict[pymunk.Shape, tuple[ShapeRecord, ShapeRecord]] = {}  # the records now and before
     masses: dict[int, bytes] = {}
-    for i in [bodies.row[thing] for thing in stale if thing in bodies.row]:
-        values, others_changed = bodies.changed(i)
-        if others_changed:
+    in_values = in_values and edited.values
+    for thing in edited.things:
+        if thing in world.records:
+            old = world.records[thing]
+            if old is None or old.outside or thing.sensor:
+                return None
+            reshaped = thing in edited.reshaped
+            new = read(thing) if reshaped else read_surface(thing, old)
+            if (new.body, new.points) != (old.body, old.points):
+                return None
+            found[thing] = new, old
+            in_values = in_values and not reshaped and _is_kept(new, old, joints is not None)
+        elif thing in bodies.row:
+            values, others_changed = bodies.changed(bodies.row[thing])
+            if others_changed:
+                return None
+            in_values = in_values and joints is None
+            if values is not None:
+                masses[bodies.row[thing]] = values
+    moved = False
+    if not in_values:
+        if surfaces and (masses or any(new.numbers[0] != old.numbers[0] for new, old in found.values())):
             return None
-        if values is not None:
-            masses[i] = values
-    world.gather()
-    status = world.copy_start()
-    moved = status == MOVED_STATIC
-    if status == OTHER_BODIES or not (stale or moved) or (surfaces and (masses or moved)):
-        return None
-    if status != 0:
-        bodies.check_finite(world.state)
-    places = world.places
-    changes = [(MASS, int(world.IDS[BODY_ROW, i])) for i in masses]
-    for shape, new in records.items():
-        if (old := world.records[shape]) is not None:
-            changes += changes_of(places[shape], new, old)
+        world.gather()
+        status = world.copy_start()
+        moved = status == MOVED_STATIC
+        if status == OTHER_BODIES or not (edited.things or moved) or (surfaces and moved):
+            return None
+        if status != 0:
+            bodies.check_finite(world.state)
+    edits = Edits({}, {int(world.IDS[BODY_ROW, i]): masses_in(values)[2:] for i, values in masses.items()}, {})
+    changes: Changes = [(MASS, row) for row in edits.masses]
+    for shape, (new, old) in found.items():
+        s = world.places[shape]
+        changes += changes_of(s, new, old)
+        if new.filter != old.filter:  # 64 bits without sign become an integer with one
+            edits.filters[s] = tuple([word - (word >> 63 << 64) for word in new.filter])
+        if new.numbers != old.numbers:
+            edits.surfaces[s] = new.numbers[1:]
+    records = {shape: new for shape, (new, _) in found.items()}
     bodies.set_masses(masses)
     world.records.update(records)
     world.packed.write_edited(records)
-    if not world.packed.write_again(moved):
+    if not (in_values or world.packed.write_again(moved)):
         world.void = True
         return None
     world.read_at, world.objects_read = now, world.objects_read + len(records) + len(masses)
+    if in_values:
+        return edits
     if moved:
         world.accept_static()
-        changes += _moved_shapes(world)
+        # The rows before these have the shapes of other bodies.
+        flags, first = world.IDS[FLAGS].tolist(), world.packed.totals[CARRIED]
+        changes += [(OUTLINE, first + k) for k, i in enumerate(world.owner[first:].tolist()) if flags[i] == MOVED]
     if joints is not None:
         joints.refresh()
     return changes
-
-
-def _moved_shapes(world: World) -> Changes:
-    """The changes of the shapes of static bodies that were moved, after `accept_static`."""
-    flags, first = world.IDS[FLAGS].tolist(), world.packed.totals[CARRIED]  # the rows before have the shapes of others
-    return [(OUTLINE, first + k) for k, i in enumerate(world.owner[first:].tolist()) if flags[i] == MOVED]

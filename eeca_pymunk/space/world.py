@@ -22,7 +22,7 @@ from .edits import Counts, clock, counts, edited_since
 from .hooks import Hooks
 from .joints import JointRows
 from .packing import Packed, ShapeRecords, records_of, shape_counts
-from .patching import patch_rows, patch_values
+from .patching import patch
 from .private import spaces as private
 from .rehearsal import Rehearsal
 
@@ -183,31 +183,24 @@ class World(BodyStates):
             found.update((shape.body, record and record.body))
         return found
 
-    def patch_values(self) -> Edits | None:
-        """`patching.patch_values`, then the settings of the space if these have changed."""
-        edits = patch_values(self)
-        if edits is not None:
-            self._count_patch(bool(edits.filters))
-        return edits
-
-    def patch_rows(self, surfaces: bool) -> Changes | None:
-        """`patching.patch_rows`, then the settings of the space if these have changed, and the present states."""
-        changes = patch_rows(self, surfaces or self.joints is not None)
-        if changes is not None:
-            self._count_patch(True)
-            self.read_states(0.0, 0.0, 1.0)
-        return changes
-
-    def _count_patch(self, reshaped: bool) -> None:
+    def patch(self, in_values: bool, surfaces: bool) -> Edits | Changes | None:
+        """`patching.patch`, then the settings of the space if these have changed, and the present states if rows were
+        written."""
+        found = patch(self, in_values, surfaces or self.joints is not None)
+        if found is None:
+            return None
         self.patches += 1
         if "rehearsal" in self.__dict__:
-            self.rehearsal.forget(reshaped)  # whether sizes, filters or places have changed
+            self.rehearsal.forget(reshaped=not isinstance(found, Edits) or bool(found.filters))
         self._seen[0] = self._edits[0]
         if self.current():
             self._known = self._edits.in_place
             self.rules = NO_RULES
         else:
             self.read_settings()
+        if not isinstance(found, Edits):
+            self.read_states(0.0, 0.0, 1.0)
+        return found
 
     def show_joints(self, joints: JointRows) -> None:
         """Let the program read impulses and notches of the step. Also, where pymunk has rounded positions as it wrote
