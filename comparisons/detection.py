@@ -24,8 +24,9 @@ from comparisons.output import Output, Row
 from eeca_pymunk.arrays import FloatArray, IntArray
 from eeca_pymunk.compiled import table_of
 from eeca_pymunk.compiled.records import columns
+from eeca_pymunk.impacts.scene_memory import SceneMemory
 from eeca_pymunk.model.bodies import POSE
-from eeca_pymunk.model.scene import scene_with
+from eeca_pymunk.model.scene import scene_of
 from eeca_pymunk.pairs import grid, setup
 from eeca_pymunk.space.world import World
 from scenes.scene import add_disk, add_walls
@@ -93,8 +94,7 @@ class Lists:
 
     def __init__(self, world: World, moving: int) -> None:
         self.world, self.moving = world, moving
-        scene = scene_with(BODY=world.BODY, SHAPE=world.SHAPE, LINK=world.LINK, VERTEX=world.VERTEX)
-        self.near = setup.near_lists(scene, moving)
+        self.near = scene_of(SceneMemory().scene(world.laid, 0, False, 0))
         if np.isinf(self.near.MARK["margin"]).any():
             raise ValueError(f"{moving} shapes stand in all lists: there is nothing to detect")
 

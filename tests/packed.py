@@ -5,15 +5,29 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
+from eeca_pymunk.compiled.entries import table_fields
 from eeca_pymunk.compiled.records import rows
-from eeca_pymunk.geometry.corners import core_room
 from eeca_pymunk.model.bodies import Body
 from eeca_pymunk.model.parameters.events import STEP_LOOKS
-from eeca_pymunk.model.scene import scene_with
+from eeca_pymunk.model.scene import Scene
 from eeca_pymunk.model.shapes import Link, Shape
+
+
+def scene_with(**arrays: Any) -> Scene:
+    """A scene of these arrays; the others have no rows, and records are 0."""
+    for name, dtype, dimensions in table_fields("Scene"):
+        if name not in arrays:
+            arrays[name] = np.zeros((0,) * dimensions, dtype) if dimensions else np.zeros(1, dtype)[0]
+    return Scene(**arrays)
+
+
+def core_room(LINK: Any) -> np.ndarray:
+    """CORE: scratch for the vertices of two shapes."""
+    return np.zeros((2, max(2, int(LINK["vertices"].max(initial=2))), 4))
 
 
 @dataclass

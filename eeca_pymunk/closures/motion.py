@@ -15,14 +15,13 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..compiled import Table, table_of
 from ..compiled.records import columns, put
-from ..geometry.corners import core_room
 from ..geometry.gap import gaps
 from ..model.parameters.detection import GAP_ROUND_OFF
-from ..model.scene import Scene, scene_with
+from ..model.scene import scene_of
 from ..model.step import EVENTS
 from ..model.values import reading_of
 from ..pairs.candidates import candidates
-from ..pairs.setup import near_lists, with_more_room
+from ..pairs.setup import with_more_room
 from ..report import Contacts, Details, Outcome
 from ..transfer import read_states, write_states
 from .refusals import check_disks
@@ -148,6 +147,9 @@ class Disks:
     Args:
         world: just read, with the present poses in BODY.  mover: name of the closure or stepper, for messages.
         move: the motion over a step, from the disks and their start.
+
+    Attributes:
+        table: of the scene, which has the near lists of the shapes.
     """
 
     def __init__(self, world: World, mover: str, move: Callable[[Disks, Start], DiskMotion]) -> None:
@@ -156,28 +158,8 @@ class Disks:
         self.world, self.move = world, move
         self.rules: Mapping[tuple[int, int], tuple[float, float, float, float]] = {}
         self.motion = DiskMotion(np.zeros((0, 2)), np.zeros((0, 2)))  # of the last step
-        scene = scene_with(
-            BODY=world.BODY, SHAPE=world.SHAPE, LINK=world.LINK, VERTEX=world.VERTEX, CORE=core_room(world.LINK)
-        )
-        scene.COUNT.disks = world.disks
-        self.scene = near_lists(scene, moving)
+        self.table = world.memory.scene(world.laid, 0, False, 0)
         self._found, self._out = np.zeros((4 * moving + 16, 2), np.int64), np.zeros((4 * moving + 16, 6))
-
-    def __getstate__(self) -> dict[str, object]:
-        return {key: value for key, value in self.__dict__.items() if key != "table"}
-
-    def __setstate__(self, state: dict[str, object]) -> None:
-        self.__dict__.update(state)
-        self.scene = self._scene
-
-    @property
-    def scene(self) -> Scene:
-        """The world, and the near lists of its shapes."""
-        return self._scene
-
-    @scene.setter
-    def scene(self, scene: Scene) -> None:
-        self._scene, self.table = scene, table_of(scene)
 
     def step(self, reading: Table, dt: float, gx: float, gy: float, half_damping: float) -> int:
         """From the states read to those to be written, see `transfer.py`; contacts do not change spins. `half_damping`:
@@ -241,7 +223,7 @@ class Disks:
         while True:
             count = candidates(self.table, reach, self._found, self._out)
             if count < 0:
-                self.scene = with_more_room(self.scene, 0.0)
+                self.table = table_of(with_more_room(scene_of(self.table), 0.0))
             elif count > len(self._found):
                 self._found, self._out = np.zeros((2 * count, 2), np.int64), np.zeros((2 * count, 6))
             else:

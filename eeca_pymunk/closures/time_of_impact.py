@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..impacts.scene import EventLoop
-from ..impacts.scene_memory import Laid
 from ..joints.workspace import NO_LINKAGE
 
 if TYPE_CHECKING:
@@ -35,6 +34,5 @@ class TimeOfImpact:
 
 def event_loop(world: World, limit: int, together: bool = False) -> EventLoop:
     """The event loop of a world, see `EventLoop`."""
-    laid = Laid(world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, world.packed.measured())
     linkage = NO_LINKAGE if world.joints is None else world.joints.linkage
-    return EventLoop(laid, limit, linkage, together, world.memory)
+    return EventLoop(world.laid, limit, linkage, together, world.memory)

@@ -9,8 +9,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
@@ -18,11 +16,6 @@ from ..model.parameters.detection import CORNER_MEET, SLENDER
 from ..model.shapes import Corner, Link
 
 _SIDES, _MANY = 64, 1 << 16  # pairs whose sides are remembered: of each thin shape that may move; of all, at most
-
-
-def core_room(LINK: Rows[Link]) -> FloatArray:
-    """CORE: scratch for the vertices of two shapes."""
-    return np.zeros((2, max(2, int(LINK["vertices"].max(initial=2))), 4))
 
 
 def side_rows(few: int, shapes: int) -> int:

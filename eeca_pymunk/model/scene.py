@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-
-from ..arrays import AnyArray, FlagArray, FloatArray, IntArray, PoolArray
+from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
 from ..compiled import Opener
-from ..compiled.entries import table_fields
-from ..compiled.records import Record, Rows
+from ..compiled.records import Rows
 from .bodies import Body, Member, Next, Rest
 from .contacts import Force, Impulse, Pair, Pushed
 from .shapes import Cell, Corner, Grid, Link, List, Mark, Shape, Side
@@ -75,11 +72,3 @@ class Scene(NamedTuple):
 
 
 scene_of = Opener(Scene)
-
-
-def scene_with(**arrays: AnyArray | Record) -> Scene:
-    """A scene of these arrays; the others have no rows, and records are 0."""
-    for name, dtype, dimensions in table_fields("Scene"):
-        if name not in arrays:
-            arrays[name] = np.zeros((0,) * dimensions, dtype) if dimensions else np.zeros(1, dtype)[0]
-    return Scene(**arrays)  # type: ignore[arg-type]

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import IntArray, side_by_side
+from ..arrays import IntArray
 from ..compiled import Table, replaced, table_of
 from ..compiled.records import Rows
 from ..model.parameters.detection import NEIGHBOURS
 from ..model.scene import Scene, scene_of
-from ..model.shapes import Cell, Grid, List, Mark, Shape
+from ..model.shapes import Shape
 from .grid import build
 from .margins import LISTS_MADE, begin_lists, fill_lists
 
@@ -23,24 +23,14 @@ def pool_sizes(moving: int) -> tuple[int, int]:
     return 64 * moving + 1024, 1 << max(1, (2 * moving + 1).bit_length())
 
 
-def near_lists(scene: Scene, moving: int) -> Scene:
-    """The scene with lists of the shapes [0, moving), for the present poses in BODY."""
-    walls, (pool, heads) = len(scene.SHAPE) - moving, pool_sizes(moving)
-    MARK, CELL, LIST, POOL, FLAG, HEAD, GRID, BOX = side_by_side(
-        ((moving,), Mark.TYPE), ((moving,), Cell.TYPE), ((moving,), List.TYPE), ((pool,), np.int32),
-        ((pool,), np.uint8), ((heads,), np.int64), ((1,), Grid.TYPE), ((walls, 4), np.float64),
-    )  # fmt: skip
-    scene = scene._replace(**dict(zip(NEAR, (MARK, CELL, LIST, POOL, FLAG, HEAD, GRID[0], BOX, NO_GRID), strict=True)))
-    table = table_of(scene)
-    return scene_of(filled(table, scene.SHAPE, moving, begin_lists(table)))
-
-
 def refilled(table: Table) -> Table:
-    """The table of a scene with lists as `near_lists` makes them, in their place if they fit there."""
+    """The table of a scene with lists as of a new one, in their place if these fit there."""
     scene = scene_of(table)
-    moving, room = len(scene.LIST), (len(scene.POOL), len(scene.HEAD))
-    if room != pool_sizes(moving):
-        return table_of(near_lists(scene, moving))
+    moving = len(scene.LIST)
+    room, _ = pool_sizes(moving)
+    if len(scene.POOL) != room:
+        scene = scene._replace(POOL=np.zeros(room, np.int32), FLAG=np.zeros(room, np.uint8))
+        table = table_of(scene)
     for name in NEAR:
         if name != "CSR":
             array = np.asarray(getattr(scene, name))

@@ -11,7 +11,7 @@ import pymunk
 
 from ..arrays import BoolArray
 from ..impacts.edits import Changes, Edits
-from ..impacts.scene_memory import SceneMemory
+from ..impacts.scene_memory import Laid, SceneMemory
 from ..layout import BODY_ROW, KNOWN_ID
 from ..report import nothing
 from .bodies import Bodies
@@ -139,6 +139,11 @@ class World(BodyStates):
             if past is None or not past.renumber(rows, len(self.BODY), stale):
                 self.joints = past = JointRows(self.space, rows, len(self.BODY), past)
             self.objects_read += len(past.fresh)
+
+    @property
+    def laid(self) -> Laid:
+        """The rows for a scene."""
+        return Laid(self.BODY, self.SHAPE, self.LINK, self.VERTEX, self.disks, self.packed.measured())
 
     @cached_property
     def rehearsal(self) -> Rehearsal:

@@ -20,8 +20,9 @@ from eeca_pymunk.compiled.tables import replaced, table_of
 from eeca_pymunk.model.islands import Island, IslandContacts
 from eeca_pymunk.model.joints import Joints
 from eeca_pymunk.model.run import RunArrays
-from eeca_pymunk.model.scene import Scene, scene_with
+from eeca_pymunk.model.scene import Scene
 from eeca_pymunk.model.values import Reading, reading_of
+from tests.packed import scene_with
 
 PACKAGE = Path(eeca_pymunk.__file__).parent
 MODULES = [

@@ -7,11 +7,10 @@ import pymunk
 import pytest
 from pymunk import batch
 
-from eeca_pymunk.geometry.corners import core_room
 from eeca_pymunk.geometry.gap import gap
-from eeca_pymunk.model.scene import scene_with
 from eeca_pymunk.space.world import World
 from scenes.scene import add_disk
+from tests.packed import core_room, scene_with
 
 MARGIN = 2.0
 SQUARE = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]

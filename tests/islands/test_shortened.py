@@ -12,8 +12,8 @@ from eeca_pymunk.geometry.flight import move_to
 from eeca_pymunk.islands.shortened import losses, scale_impulses
 from eeca_pymunk.model.bodies import Body, Member, Next
 from eeca_pymunk.model.contacts import Pair, Pushed
-from eeca_pymunk.model.scene import scene_with
 from eeca_pymunk.model.shapes import Link
+from tests.packed import scene_with
 
 G, RISE, FALL, HIT, DT = 10.0, 0.2, -5.0, 0.02, 0.05  # m/s^2, m/s, m/s, s, s
 

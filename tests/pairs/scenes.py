@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from eeca_pymunk.compiled.records import columns, put
+from eeca_pymunk.impacts.scene_memory import Laid, SceneMemory
 from eeca_pymunk.model.bodies import POSE, VELOCITY
-from eeca_pymunk.model.scene import Scene
+from eeca_pymunk.model.scene import Scene, scene_of
 from eeca_pymunk.pairs import grid, setup
 from tests.packed import Thing, World, box, disk
 
@@ -26,7 +27,9 @@ class Crowd:
     @classmethod
     def of(cls, world: World) -> Crowd:
         """The lists as a step makes them first."""
-        return cls(world, setup.near_lists(world.scene, moving_of(world)))
+        measured = moving_of(world), int(world.link["vertices"].max(initial=2)), 0, 0
+        laid = Laid(world.body, world.shape, world.link, world.vertex, world.disks, measured)
+        return cls(world, scene_of(SceneMemory().scene(laid, 0, False, 0)))
 
     @property
     def moving(self) -> int:

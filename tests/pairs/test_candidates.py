@@ -9,7 +9,9 @@ import pytest
 import eeca_pymunk as ep
 import scenes
 from eeca_pymunk.closures.motion import DiskMotion, Disks, Start
+from eeca_pymunk.compiled import table_of
 from eeca_pymunk.compiled.records import columns, put
+from eeca_pymunk.model.scene import scene_of
 from eeca_pymunk.space.world import World
 from scenes.scene import add_disk, add_walls
 
@@ -69,7 +71,7 @@ def test_lists_last_for_some_steps(wind: float) -> None:
     assert isinstance(method, Disks)
     for _ in range(50):
         stepper.step(DT)
-    assert method.scene.GRID.renewals <= 100 * 50 * wind * 0.1
+    assert scene_of(method.table).GRID.renewals <= 100 * 50 * wind * 0.1
 
 
 @pytest.mark.parametrize("closure", [ep.Midstep(), ep.Dashpot(1e6, 1.0)], ids=["midstep", "dashpot"])
@@ -87,10 +89,10 @@ def test_a_pool_that_is_too_small_grows() -> None:
     stepper, energy = ep.EECA(scene.space, ep.Dashpot(1e6, 200.0)), ep.measure(scene.space).energy
     method = stepper._method
     assert isinstance(method, Disks)
-    near = method.scene
+    near = scene_of(method.table)
     room = int(near.GRID.pool_end)
-    method.scene = near._replace(POOL=near.POOL[:room].copy(), FLAG=near.FLAG[:room].copy())
+    method.table = table_of(near._replace(POOL=near.POOL[:room].copy(), FLAG=near.FLAG[:room].copy()))
     for _ in range(100):
         stepper.step(2e-3)
-    assert len(method.scene.POOL) > room
+    assert len(scene_of(method.table).POOL) > room
     assert ep.measure(scene.space).energy == pytest.approx(energy, rel=1e-12)

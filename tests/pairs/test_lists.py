@@ -16,7 +16,7 @@ from eeca_pymunk.pairs import cells, grid, setup
 from eeca_pymunk.pairs.rules import mark_pair
 from tests.packed import Thing, World, disk
 
-from .scenes import Crowd, crowd, moving_of
+from .scenes import Crowd, crowd
 
 Make = Callable[[np.random.Generator], World]
 
@@ -92,7 +92,7 @@ def test_one_that_flew_away_neither_breaks_the_grid_nor_fills_the_lists(speed: f
     near.renew(12, 1.0)
     if speed >= 1e9:
         assert near.listed()[12] == [11]
-    away = setup.near_lists(world.scene, near.moving)
+    away = Crowd.of(world).near
     assert away.LIST["number"].mean() <= 30
     Crowd(world, away).check()
 
@@ -115,7 +115,7 @@ def test_a_container_counts_as_one_neighbour() -> None:
     walls = [([p, q], 0.0) for p, q in zip(corners, corners[1:] + corners[:1], strict=True)]
     for world in (World(things, walls), World([*things, Thing(walls, moves=False)])):
         world.link["categories"] = world.link["mask"] = -1
-        near = setup.near_lists(world.scene, moving_of(world))
+        near = Crowd.of(world).near
         margins.append(float(np.median(near.MARK["margin"])))
         assert 3.0 < near.LIST["number"][:60].mean() <= 24.0
     assert margins[1] > 0.5 * margins[0]
@@ -149,7 +149,7 @@ def test_lists_made_in_their_place_are_those_of_a_new_scene(disks: int, walls: i
     for s in rng.integers(0, near.moving, 50 if walls < 300 else 0).tolist():
         near.renew(s, float(rng.uniform()))
     table, grown = table_of(near.near), len(near.near.POOL) > setup.pool_sizes(near.moving)[0]
-    again, made = setup.refilled(table), setup.near_lists(near.near, near.moving)
+    again, made = setup.refilled(table), Crowd.of(near.world).near
     assert (again is table) != grown
     for name in setup.NEAR:
         one, two = (np.asarray(getattr(scene, name)) for scene in (scene_of(again), made))

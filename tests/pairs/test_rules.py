@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from eeca_pymunk.compiled.records import put, rows
-from eeca_pymunk.model.scene import scene_with
 from eeca_pymunk.model.shapes import Shape
 from eeca_pymunk.pairs.rules import barred, law
 from eeca_pymunk.space.decisions import Rules
+from tests.packed import scene_with
 
 
 @pytest.mark.parametrize("count", [0, 1, 2, 7, 40])
