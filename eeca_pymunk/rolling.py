@@ -14,7 +14,7 @@ from .compiled import table_of
 from .energy.ledger import as_array
 from .errors import NotFiniteError
 from .events import Events
-from .impacts.run_buffers import RunBuffers
+from .impacts.run import RunBuffers
 from .impacts.scene import EventLoop
 from .layout import BODY_ROW
 from .model.values import reading_of

@@ -12,7 +12,7 @@ from tqdm import tqdm
 
 from .arrays import FloatArray, IntArray
 from .impacts.edits import FILTER, Changes, Edits, write_edits
-from .impacts.run_buffers import RunBuffers
+from .impacts.run import RunBuffers
 from .impacts.taking_over import kept_in_place
 from .layout import BODY_ROW, READ, WRITTEN
 from .model.run import BETWEEN

@@ -19,7 +19,7 @@ from ..prediction.sides import find_sides
 
 
 @nonallocating
-def total(A: Scene) -> float:
+def energy_of(A: Scene) -> float:
     """Kinetic energy of all bodies, and potential energy -m g.x in uniform gravity, without bodies that impulses do not
     move."""
     BODY, gx, gy, whole = A.BODY, A.PAR.gravity_x, A.PAR.gravity_y, 0.0
@@ -30,7 +30,7 @@ def total(A: Scene) -> float:
 
 
 @nonallocating
-def unsteered(A: Scene, IDS: IntArray) -> float:
+def kinetic_of_damped(A: Scene, IDS: IntArray) -> float:
     """Kinetic energy of the bodies that the space's damping acts on: those without a velocity function of the
     program."""
     whole = 0.0
@@ -69,11 +69,11 @@ def begin(A: Scene, IDS: IntArray) -> None:
         flag_pairs(A)
     PAR.restitution, PAR.frictional, PAR.external, PAR.damped = 0.0, 0.0, 0.0, 0.0
     PAR.lock, PAR.stored = 1.0, 0.0
-    PAR.before = total(A)
+    PAR.before = energy_of(A)
     half_damping = PAR.half_damping
     if half_damping != 1.0:
         # `read_states` has damped velocities by half a step already.
-        PAR.damped = unsteered(A, IDS) * (1.0 / (half_damping * half_damping) - 1.0)
+        PAR.damped = kinetic_of_damped(A, IDS) * (1.0 / (half_damping * half_damping) - 1.0)
         PAR.before += PAR.damped
     PAR.stamp += 1.0
     COUNT.waiting, COUNT.phase = 0, 0

@@ -13,7 +13,7 @@ from ..islands.at_rest import report_at_rest, store_rest
 from ..model.bodies import AT_REST
 from ..model.scene import Scene
 from ..rows.energy import offset_gain
-from .begin import total, unsteered
+from .begin import energy_of, kinetic_of_damped
 
 
 @nonallocating
@@ -46,10 +46,10 @@ def close(A: Scene, IDS: IntArray) -> None:
                 work += twist * (BODY[i].angle - BEGAN[i, 2]) / BODY[i].inv_inertia
             PAR.external += work
     PAR.restitution, PAR.frictional = offset_gain(PAR.restitution, PAR.frictional)
-    PAR.after = total(A) + PAR.stored
+    PAR.after = energy_of(A) + PAR.stored
     half_damping = PAR.half_damping
     if half_damping != 1.0:
-        lost = unsteered(A, IDS) * (1.0 - half_damping * half_damping)
+        lost = kinetic_of_damped(A, IDS) * (1.0 - half_damping * half_damping)
         PAR.damped += lost
         PAR.after -= lost
     PAR.last = end

@@ -26,8 +26,7 @@ from ..report import Details, of_events
 from . import step as stages
 from .edits import Changes, renew, words_of
 from .remembering import UNBOUND, Remembering
-from .run import run
-from .run_buffers import RunBuffers
+from .run import RunBuffers, run
 from .scene_memory import RULE_COLUMNS, Laid, SceneMemory
 from .taking_over import Kept, take_over
 

@@ -1,7 +1,9 @@
-"""The memory of an event loop's arrays, used again by the loop of the next reading of the space."""
+"""The memory of an event loop's arrays, used again by the loop of the next reading of the space: how much a scene
+needs, and what is in it before the first step."""
 
 from __future__ import annotations
 
+import math
 from array import array
 from collections.abc import Sequence
 from functools import cache
@@ -10,18 +12,20 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import Table
+from ..compiled import Table, kernel, nonallocating
 from ..compiled.layouts import COUNT, Layout, Plan
 from ..compiled.library import result_of
 from ..compiled.records import Rows
-from ..geometry.corners import side_rows
+from ..geometry import corners
 from ..joints.workspace import NO_LINKAGE, JointMemory
 from ..model.bodies import Body
-from ..model.scene import Scene
+from ..model.parameters.impulses import AUGMENTATION
+from ..model.scene import Scene, scene_of
 from ..model.shapes import Link, Shape
+from ..model.values import reading_of
+from ..pairs.margins import begin_lists
 from ..pairs.setup import NO_GRID, filled, pool_sizes
 from .memory import OF_SCENE
-from .new_scene import begin_scene
 
 RULE_COLUMNS = 6
 _MISSED = 32  # rows of MISSED: those reported of a step
@@ -30,6 +34,51 @@ _OF_A_BODY, _MANY = 32, 1 << 16  # rows for each body where contacts may persist
 _NO_RULE: FloatArray = np.zeros((0, RULE_COLUMNS))
 _ZEROS = (*OF_SCENE, "PULL", "BEGAN", "HEAP_TIME", "HEAP_BODY", "BLOCK", "BOX", "CORNER", "MISSED")
 _FILLED = "LOG", "KEYS", "FORCES", "PUSHED_BY", "PUSHED"  # before they are read
+
+
+@nonallocating
+def measure_scene(reading: Table) -> None:
+    """Write MEASURED."""
+    R = reading_of(reading)
+    M, LINK, ground = R.MEASURED, R.LINK, R.BODY.shape[0] - 1
+    M.moving, M.vertices, M.lossy, few, many = 0, 2, 0, 0, 0
+    for s in range(LINK.shape[0]):
+        M.moving += 1 if LINK[s].owner < ground else 0
+        if corners.thin(LINK[s], R.VERTEX):
+            # A scene remembers the sides of what sleeps, for when it wakes.
+            few += 1 if LINK[s].owner < ground or R.BODIES[R.SHAPES[R.ORDER[s]].owner].asleep > 0 else 0
+            many += 1
+        M.vertices = max(M.vertices, LINK[s].vertices)
+        if R.SHAPE[s].elasticity < 1.0:
+            M.lossy = 1
+    M.thin = few if many > 1 else 0
+
+
+@kernel
+def begin_scene(table: Table, limit: int, disks: int, together: int, budget: int, lossy: int) -> int:
+    """Write to the arrays of a new scene, which contain zeros, what is not 0 in it: of bodies, of CORNER, of KEYS, and
+    these fields of COUNT. Returns what `begin_lists` does."""
+    A = scene_of(table)
+    A.COUNT.limit, A.COUNT.disks, A.COUNT.together = limit, disks, together
+    A.COUNT.budget, A.COUNT.lossy = budget, lossy
+    A.PAR.share = 1.0
+    A.KEYS[:] = -1
+    ground = A.BODY.shape[0] - 1
+    for i in range(A.BODY.shape[0]):
+        A.PLACE[i] = -1
+        A.STATE[i].island = -1
+        A.MEMBER[i].tied, A.MEMBER[i].next_tied = -1, -1
+        A.RESTING[i].augmentation, A.RESTING[i].longest = AUGMENTATION, math.inf
+    for s in range(A.LINK.shape[0]):
+        if A.LINK[s].owner < ground:
+            A.STATE[A.LINK[s].owner].shapes += 1
+    first = 0
+    for i in range(A.BODY.shape[0]):
+        A.STATE[i].first_shape = first
+        first += A.STATE[i].shapes
+    if A.CORNER.shape[0] > 0:
+        corners.find_corners(A.LINK, A.VERTEX, A.CORNER)
+    return begin_lists(table)
 
 
 @cache
@@ -94,7 +143,7 @@ class SceneMemory:
             "HEAP_TIME": 8 * n + 64, "HEAP_BODY": 8 * n + 64, "LOG": max(4 * n + 64, self.log),
             "SHAPE": k, "LINK": k, "MARK": moving, "CELL": moving, "LIST": moving, "BOX": k - moving,
             "POOL": pool, "FLAG": pool, "HEAD": heads, "VERTEX": len(VERTEX), "CORE": vertices,
-            "SIDE": side_rows(self.thin, k), "CORNER": 4 * k if self.thin else 0,
+            "SIDE": corners.side_rows(self.thin, k), "CORNER": 4 * k if self.thin else 0,
             "KEYS": 4 * room, "FORCES": 4 * room, "PUSHED_BY": room, "PUSHED": room, "MISSED": _MISSED,
         }  # fmt: skip
         table = self._layout.lay(counts, BODY, SHAPE, LINK, VERTEX)

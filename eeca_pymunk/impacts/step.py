@@ -4,7 +4,7 @@ written to it."""
 from __future__ import annotations
 
 from ..compiled import Table, kernel
-from ..islands.support import settle
+from ..islands.support import renew_support
 from ..jointed.ledger import account_joints, load_welds, note_spent, start_joints
 from ..joints.pinned import put_pinned
 from ..model.joints import Joints, joints_of
@@ -46,7 +46,7 @@ def finish(A: Scene, J: Joints, R: Reading) -> int:
     if A.PAR.share < 1.0:
         note_spent(A, J)
     account_joints(A, J)
-    settle(A)
+    renew_support(A)
     close(A, R.IDS)
     if J.TALLY.pinned > 0:
         load_welds(A, J, R)

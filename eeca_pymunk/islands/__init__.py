@@ -1,8 +1,16 @@
 """Islands: bodies in persistent contact; over which interval each is solved, and which of them are at rest.
 
 In: the contacts that the last step has left, impacts after which contacts persist. Out: bodies on parabolas until the
-interval ends, contacts with their impulses, works in the ledger. Open `building.py` first: islands at the start of a
-step (`membership.py`: which bodies, which contacts persist; `hits.py`: impacts).
+interval ends, contacts with their impulses, works in the ledger.
+
+An *interval* leads from an instant to the end of the step, or ends earlier; the contacts of the island exert constant
+forces over it. A *hit* is an impact on an island within its interval, which it cuts. *Lossy* are shapes of elasticity
+below 1, and islands with such a shape. The *load* of a contact is its force without the part that stops an approach.
+A body is *busy* for some steps after its island was hit more often than a step allows: all that comes near then joins
+the island.
+
+Open `building.py` first: islands at the start of a step (`membership.py`: which bodies, which contacts persist;
+`hits.py`: how many hits a step allows).
 `intervals.py` solves one (`candidates.py`: pairs and length of the interval; `depths.py`: how deep contacts may close;
 `local.py`: its bodies in local numbering); `payment.py` says what pays for penetration corrections; `accounting.py`
 ends it, `shortened.py` replaces the forces of a shortened interval that have given energy.

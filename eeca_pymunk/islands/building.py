@@ -28,8 +28,8 @@ from .support import support
 
 @nonallocating
 def penetrates(A: Scene, s: int, o: int) -> tuple[bool, float, float]:
-    """Whether shapes s and o overlap deeply and are pushed apart: they are lossy, and no rule bars the pair. And the
-    gap (length) and its rate (length/time)."""
+    """Whether shapes s and o overlap deeply and may be pushed apart (of lossy shapes, not barred); their gap (length)
+    and its rate (length/time)."""
     if barred(A, s, o) or law(A, s, o)[0] >= 1.0 or far_apart(A, s, o, 0.0, 0.0):
         return False, 0.0, 0.0
     g, u, _, _, _ = approach(A, s, o, 0.0)

@@ -97,7 +97,7 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
 
 
 @nonallocating
-def in_haste(A: Scene) -> bool:
+def to_end_of_step(A: Scene) -> bool:
     """Whether intervals last to the end of the step: for `Midstep`, and to bound the work, after as many solves in the
     step as there are bodies, N; in small scenes after RESOLUTION - 2 N if that is more."""
     bodies = A.BODY.shape[0]
@@ -126,7 +126,7 @@ def interval_length(A: Scene, found: IntArray, t: float) -> float:
     Islands of more than EXACT_CONTACTS contacts have one interval, as each costs a solve."""
     BODY, LINK = A.BODY, A.LINK
     h = A.PAR.dt - t
-    if found.shape[0] > intervals.EXACT_CONTACTS or in_haste(A):
+    if found.shape[0] > intervals.EXACT_CONTACTS or to_end_of_step(A):
         return h
     rate = 0.0
     for c in range(found.shape[0]):

@@ -123,7 +123,7 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
         m = step_island(A, isle, contacts, n, h, sweeps, least, owed, rest_speed)
         # With losses nothing bounces for long: there only a single contact ends one interval of a step so.
         turns = COUNT.together == 0 and (not may_lose or (m == 1 and t == 0.0))
-        sticks, stuck = not candidates.in_haste(A), h
+        sticks, stuck = not candidates.to_end_of_step(A), h
         if (turns or sticks) and OUT[0].at_rest == 0:
             stuck = candidates.slip_time(ROWS, L, V + h * isle.ACC, VN, m, h, turns, sticks)
         if stuck < h:

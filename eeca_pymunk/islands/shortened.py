@@ -39,7 +39,7 @@ def losses(A: Scene, c: int, t: float) -> tuple[float, float]:
 
 
 @nonallocating
-def gives(A: Scene, first: int, end: int, t: float) -> bool:
+def gave_energy(A: Scene, first: int, end: int, t: float) -> bool:
     """Whether contacts [first, end) of an island have given energy up to instant t."""
     lost, size = 0.0, 0.0
     for c in range(first, end):
@@ -138,7 +138,7 @@ def repay(A: Scene, root: int, t: float) -> None:
     """Before the interval of an island ends at instant t: if its contacts have given energy up to t, solve them again
     for the time up to t; if they become more, or move too far for one interval, scale their impulses."""
     first, end = contact_range(A, root)
-    if not gives(A, first, end, t):
+    if not gave_energy(A, first, end, t):
         return
     found = pairs_of(A, first, end)
     start, s = A.PUSHED[first].start, t - A.PUSHED[first].start

@@ -194,7 +194,7 @@ def mark_under_moving(A: Scene, since: float) -> bool:
 
 
 @kernel
-def settle(A: Scene) -> None:
+def renew_support(A: Scene) -> None:
     """At the end of a step: islands at rest whose loads have changed within it, as intervals of what moves on them have
     ended early, get the impulses that balance the momenta of all loads; those of their contacts were for the loads at
     its start. Where there are no such impulses the next step wakes them. All that bear moving islands are tested again

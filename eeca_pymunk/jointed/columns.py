@@ -121,9 +121,9 @@ def is_movable(groups: Groups, row: Row, mobility: float) -> bool:
 
 @nonallocating
 def set_effective_masses(groups: Groups, C: Columns, ROWS: Rows[Row], m: int) -> None:
-    """Compute k, a and w of the rows from the columns, and LEFT_OUT: whether hardly any impulse moves a contact. At a
-    given normal rate impulses change the slip by a_tt - a_nt^2/a_nn; if that is the error of the response, bodies can
-    move in one direction only: it is set to 0, so that no stick is solved for."""
+    """Compute k, a and w of the rows from the columns, and LEFT_OUT: whether a contact is hardly moved by its own
+    impulse. At a given normal rate impulses change the slip by a_tt - a_nt^2/a_nn; where that is no more than the error
+    of the response, the bodies can move in one direction only, and it is set to 0: the contact then does not stick."""
     for i in range(m):
         nn, tt = column_rate(C, ROWS, i, C.N, False), column_rate(C, ROWS, i, C.T, True)
         nt = 0.5 * (column_rate(C, ROWS, i, C.N, True) + column_rate(C, ROWS, i, C.T, False))

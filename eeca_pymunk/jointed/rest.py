@@ -34,7 +34,7 @@ def reach_of(A: Scene, i: int) -> float:
 
 
 @nonallocating
-def balanced(A: Scene, J: Joints, i: int) -> float:
+def speed_of_forces(A: Scene, J: Joints, i: int) -> float:
     """Speed that the largest single force on body i (acceleration, or one joint) would give its points in this step."""
     reach, s = reach_of(A, i), J.OF[i]
     found = (math.hypot(A.PULL[i, 0], A.PULL[i, 1]) + abs(A.PULL[i, 2]) * reach) * A.PAR.dt
@@ -52,7 +52,7 @@ def is_still(A: Scene, J: Joints, root: int) -> bool:
     REST_SPEED, and none was hit."""
     i = root
     while i >= 0:
-        body, rest, reach, most = A.BODY[i], A.RESTING[i], reach_of(A, i), REST_SPEED * balanced(A, J, i)
+        body, rest, reach, most = A.BODY[i], A.RESTING[i], reach_of(A, i), REST_SPEED * speed_of_forces(A, J, i)
         if A.MEMBER[i].busy > 0 or point_speed(body.vx, body.vy, body.spin, reach) > most:
             return False
         if point_speed(rest.end_vx, rest.end_vy, rest.end_spin, reach) > most:

@@ -53,18 +53,18 @@ class Meeting(Record):
     b: int
     roots: Annotated[IntArray, 2]  # islands of their bodies, -1 for none
     t: float  # instant at which both intervals end at present
-    least: float  # the shapes meet no earlier, no later
+    least: float  # earliest and latest instant at which the shapes may meet
     latest: float
-    apart: float  # last instant at which they were apart
+    apart: float  # last instant at which they are known to be apart
     small: float  # extent of the smaller one
     level: float  # gap at which they meet: 0, or that of the start
     start: float  # gap and its rate at the start, negative if it closes
     rate: float
     gap: float  # gap at t, less `level`
-    touch: float  # the same that counts as none
+    touch: float  # largest |gap| with which the shapes count as touching
     loaded: int  # contacts of both intervals
-    crosses: int  # 1 if paths cross before t
-    crossed: int  # 1 if t was not found as that of a contact
+    crosses: int  # 1 if the paths of both cross before t: the shapes have passed through each other
+    crossed: int  # 1 if t was halved since paths crossed, or a body had moved too far: it may be no instant of contact
 
 
 MEETING = kind_of(Meeting)

@@ -32,7 +32,7 @@ class BodyStep(Record):
     slope: float  # derivative of the angle turned by chi
     lever: float  # levers over r_m
     turned: float  # angle turned
-    per: float  # turned/chi, its derivative by chi
+    per: float  # turned/chi
     per_slope: float  # derivative of `per` by chi
     impulse: Annotated[FloatArray, 3]  # of the joints
     lead: Annotated[FloatArray, 3]  # acceleration by joints that Newton's method begins with
@@ -133,7 +133,7 @@ class JointLedger(Record):
     motors: float  # work of motors, and of joints with a finite max_force where it is positive
     supports: float  # work of bodies that move without being moved
     carried: float  # the same by the balance of momentum (`..joints.frame`)
-    closed: float  # work of closing joints that were apart at the start, of elastic stand-ins, of linear steps
+    closed: float  # work of closing joints that were apart at the start, of elastic joints, of linear steps
     turned_work: float  # with contacts: work of torques beyond that along the angle
     lifted: float  # energy that separating overlapping bodies costs, paid from the losses of contacts
     apart: float  # how far joints are apart at the start, over their units, and how much farther at the end

@@ -128,7 +128,7 @@ class Coupling(Record):
     kind: int  # as `Joint.kind`
     body: Annotated[IntArray, 2]  # bodies a and b by their numbers in the component
     side: int  # as `Joint.side`, in the present step
-    let_go: int  # `side` of a limit at the start of the present part of the step, if it was let go since, else 0
+    let_go: int  # `side` of a limit at the start of the present part of the step, if it was released since, else 0
     bounded: int  # 0 for rows that hold exactly; BOUNDED or PRESCRIBED
     rows: int  # number of rows, and first unknown of their impulses
     first_row: int
@@ -166,8 +166,8 @@ class Tally(Record):
     order: int  # of steps without dissipation, drives and contacts: 4, or 2
     pinned: int  # rows of PINNED in use
     worst: int  # status of the step
-    answers: int  # linear system with which the component that is ready answers impulses, -1 for none
-    gives: int  # 1 if its joints give way in that
+    answers: int  # linear system of the response that was prepared last (`..jointed.component`), -1 for none
+    gives: int  # 1 if joints give way in that
     refined: int  # refinements of each answer, as rows may be redundant
 
 

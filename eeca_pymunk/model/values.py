@@ -53,7 +53,7 @@ class ShapeValues(Record):
 
 
 class Measures(Record):
-    """What memory the scene of these rows needs depends on this (`..impacts.new_scene`)."""
+    """What memory the scene of these rows needs depends on this (`..impacts.scene_memory`)."""
 
     moving: int  # shapes that move
     vertices: int  # the most of a shape, at least 2
@@ -68,7 +68,7 @@ class Reading(NamedTuple):
     of all shapes. STATES, IDS, EXTRA, ENDS, HOOKED: see `..layout`. Out: PLACED (v, 2), the vertices that differ from
     the one before, of static shapes in world coordinates, of others about the centre of mass; BODY (moving bodies +
     1,), SHAPE, LINK (k,), VERTEX (v, 4), whose rows in use come first; ORDER (k + N + 2,), the index in SHAPES of every
-    row of SHAPE, and scratch; TOTALS: counts of what was read. MEASURED: by `..impacts.new_scene.measure_scene`.
+    row of SHAPE, and scratch; TOTALS: counts of what was read. MEASURED: by `..impacts.scene_memory.measure_scene`.
     """
 
     TOTALS: IntArray

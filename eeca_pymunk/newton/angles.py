@@ -30,8 +30,8 @@ def angle_rows(
 ) -> int:  # fmt: skip
     """`joint_rows` of gears, rotary limits, ratchets, motors and rotary springs. `arm_a[0]` and `arm_b[0]` are the
     angles of both bodies at the start; `measure` is angle_b - angle_a at the end, of a spring its mean torque without
-    damping. The local `share` is 1/ratio of a gear; `factor` the common s of both bodies, if there is one, else each
-    has its own turned/chi."""
+    damping. share: 1/ratio of a gear, else 1.  factor: the common s of both bodies if both turn by 2 atan(chi/2); else
+    each has its own turned/chi."""
     find_turned(a)
     find_turned(b)
     for r in range(2):

@@ -109,7 +109,8 @@ def freeze_row(W: Workspace, k: int, r: int, slopes: bool) -> None:
 
 @inlined
 def put_row(W: Workspace, k: int, r: int, slopes: bool, system: int) -> None:
-    """Add row r of joint k, which acts, to a condensed or a whole system; arguments as of `freeze_row`."""
+    """Add row r of joint k, which acts, to a condensed or a whole system (of a dual one `dual.factor_dual` reads it);
+    arguments as of `freeze_row`."""
     if system == CONDENSED:
         freeze_row(W, k, r, slopes)
         put_condensed(W, k, r)

@@ -50,7 +50,8 @@ def turns_over(W: Workspace, k: int) -> bool:
 
 @nonallocating
 def bend_rows(W: Workspace, k: int, h: float) -> None:
-    """Give joint k the impulse of the whole step in `lam`, so that its rows turn with their force; 0 if it presses, and
+    """Give joint k the impulse of the whole step in `lam`, so that its rows turn with their force. A joint *pulls* if
+    its STIFF adds to the inertia of its bodies, and *presses* if it takes from it: lam is 0 if the joint presses and
     all joints that press on one of its bodies would take more than TAUT of that body's `inertia`.
 
     The part that a full STIFF takes is bounded by the sums of its rows (Gershgorin), so that the remaining inertia of

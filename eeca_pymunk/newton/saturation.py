@@ -16,7 +16,7 @@ from ..rows.bounded import pulls
 from .condensed import freeze_row, put_row
 from .entries import acting_rows, interval_of, put_free, put_rows
 
-INSIDE = 1.0 - 1e-12  # of a bound: from there on an impulse is at it, but for round-off
+INSIDE = 1.0 - 1e-12  # part of its bound from which on an impulse counts as at it
 
 
 @nonallocating

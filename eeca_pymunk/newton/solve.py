@@ -70,10 +70,10 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
     """Solve the implicit step h of a component of size `length` from the present `lam` and `lead`, for v1 and `lam`.
 
     At convergence g is within JOINT_TOLERANCE of that size (or at round-off) of its targets, or within PROGRESS.near if
-    that is more, and the balance of momentum holds to round-off. False if there is none after NEWTON_ITERATIONS,
-    beyond PROGRESS.limit, or after more than 6 that have stalled (`stalls`): the error has come to no smaller one than
-    before, or, below NEWTON_FLOOR, not to half of the last one. After two of these an error below NEWTON_FLOOR is
-    round-off, as bodies in line leave it; a small one is, if at the `pace` of the iteration before it would be less
+    that is more, and the balance of momentum holds to round-off. False without convergence after NEWTON_ITERATIONS, at
+    the work PROGRESS.limit, or after more than 6 `stalls`: iterations whose error is no smaller than the least so far,
+    or, below NEWTON_FLOOR, than half of the last one. After two stalls an error below NEWTON_FLOOR counts as round-off,
+    which is that large for bodies in line; a small one does if at the `pace` of the iteration before it would be less
     than JOINT_TOLERANCE. The factors of an iteration:
 
     | `factors` | are | of the next iteration |

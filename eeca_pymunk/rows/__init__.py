@@ -2,15 +2,21 @@
 
 In: the rows of m contacts (`..model.contacts.Row`), the bodies' velocities, and how impulses change these: inverse
 masses (`Problem`), or the response columns of jointed bodies (`JointedProblem`, `columns.py`, `bounded.py`). Out:
-impulses, velocities, losses. All but the innermost loops is one code for both; a `Choice` takes the loop for the type
-of the problem. Users: impacts at one instant (`blocks.py`, without friction to round-off), islands over an interval
-(`..contacts`, `..jointed`: bounded work, warm start). Both alternate projected Gauss-Seidel sweeps (`sweeps.py`, with
-the closed law of one contact in `coulomb.py`, accelerated by `conjugate.py`) with a direct solve on the active contacts
-(`direct.py`: `dense.py` for few contacts, else `polish.py` on the sparse factor of `cholesky.py`), or up to some dozen
-contacts with homotopies (`laws.py`, `homotopy.py`, `homotopy_start.py`, `pivots.py`); where neither has a sensible
-solution, without friction or by few sweeps (`gentle.py`). `equilibrium.py` finds contact forces that balance (on the
-edges of the cones, `cones.py`); `energy.py` computes losses, and scales impulses that would give energy; `lifting.py`
-moves bodies out of each other. Open `build.py` first.
+impulses, velocities, losses. Only the innermost loops differ between both: a `Choice` calls the one for the type of the
+problem. Users: impacts at one instant (`blocks.py`, solved to round-off unless there is friction), and islands over an
+interval (`..contacts`, `..jointed`), which begin with the impulses of the last one and have a budget.
+
+Open `build.py` first, the row of a contact. A solve alternates between
+
+* projected Gauss-Seidel sweeps (`sweeps.py`), accelerated by `conjugate.py`, with the law of one contact in closed form
+  (`coulomb.py`);
+* direct solves on the active contacts (`direct.py`: `dense.py` for few contacts, else `polish.py` with the sparse
+  factor of `cholesky.py`, in the order of `dissection.py`), or, of up to some dozen contacts, homotopies (`laws.py`,
+  `homotopy.py`, `homotopy_start.py`, `pivots.py`).
+
+Where there is no solution, or only one of excessive impulses, friction is left out, or sweeps are few (`gentle.py`).
+`equilibrium.py` finds contact forces that balance, on the edges of friction cones (`cones.py`); `energy.py` computes
+losses, and scales impulses that would give energy; `lifting.py` moves bodies out of each other.
 
 Symbols: u_n, u_t are the normal and tangential velocity of a contact, u- before its impulses and u+ after; e its
 elasticity, mu its friction, b its target; lam, beta its impulses along n and t; j, G, T rows of velocities along n and

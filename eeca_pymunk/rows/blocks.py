@@ -4,9 +4,9 @@ With b = -e u_n- where a contact approaches and -u_n- where it opens,
 
     0 <= lam  _|_  u_n+ - b >= 0,   friction as in `coulomb.py`,
 
-so that without friction sum D = (1/2) sum lam (1 - e)(-u_n-) >= 0, and 0 for e = 1. Without friction solved to
-round-off, as a truncated solve dissipates energy in large elastic islands; one scale of all impulses removes the
-remaining error of the energy (`energy.lock`).
+so that without friction sum D = (1/2) sum lam (1 - e)(-u_n-) >= 0, and 0 for e = 1. Blocks without friction are
+solved to round-off, as a truncated solve dissipates energy in large elastic islands; one scale of all impulses removes
+the remaining error of the energy (`energy.lock`).
 """
 
 from __future__ import annotations

@@ -2,9 +2,8 @@
 
 A row is bounded alone (low <= lambda <= high), or both rows of a pivot by a disc, x^2 + y^2 <= high^2; at the end of a
 groove by that half of it in which its second row pushes inwards. Inside the bounds the velocity along the row equals
-its target; at a bound its difference to the target has the opposite sign of the impulse (`on_interval`,
-`on_half_disc`, of one row and of two, all other impulses given). Two sweeps solve for all rows: `sweep_bounded` with
-velocities of bodies, beside contacts.
+its target; at a bound its difference to the target has the opposite sign of the impulse. `on_interval` and
+`on_half_disc` are that law of one row and of two, all other impulses given; `sweep_bounded` applies it row by row.
 """
 
 from __future__ import annotations

@@ -1,6 +1,8 @@
 """Nonlinear conjugate gradients on top of sweeps (Silcowitz, Niebe, Erleben 2009).
 
-The change in a sweep is the gradient; directions are those of Fletcher and Reeves, restarted where the change grows.
+The change of the impulses in a sweep, d = L - L0, counts as minus the gradient. With the direction p of Fletcher and
+Reeves, b = |d|^2 / |d of the sweep before|^2 and p <- d + b p, the next sweep begins at L + b p (p that before); where
+b > 1, and at first, it begins at L, with p = d. The velocities V, which are linear in L, are moved likewise.
 """
 
 from __future__ import annotations

@@ -2,10 +2,11 @@
 
     0 <= lam  _|_  u_n - b >= 0,   |beta| <= mu lam,   u_t = 0 or beta = -mu lam sign(u_t),
 
-its own 2 x 2 matrix ((A_nn, A_nt), (A_nt, A_tt)) included: sticking, else slipping one way or the other, else no
-friction; so it is where several contacts together have no solution (`slip_freely`). Newton's law with friction creates
-energy where the slip reverses; therefore each contact's loss D_n + D_t = -lam (u_n- + b)/2 - beta (u_t- + u_t+)/2 is
-kept non-negative, by less friction where it would be negative.
+with its 2 x 2 matrix ((A_nn, A_nt), (A_nt, A_tt)). Tried in turn are sticking, slipping one way, and the other; if
+none obeys the law, the contact has no friction. (Nor have several contacts that have no solution together:
+`slip_freely`.) Newton's law of restitution with friction creates energy where the slip reverses; therefore each
+contact's loss D_n + D_t = -lam (u_n- + b)/2 - beta (u_t- + u_t+)/2 is kept non-negative, by less friction where it
+would be negative: *friction limited by energy*.
 
 | function | of a contact whose | gives | for |
 |---|---|---|---|

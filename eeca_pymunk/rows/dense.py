@@ -175,7 +175,7 @@ def unknowns(
 def newton(
     problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, passes: int, tolerance: float, shared: bool
 ) -> tuple[float, int]:
-    """Solve on the active contacts of L, as `polish.polish_free`, with the same arguments and results. `shared` as in
+    """Solve on the active contacts of L; arguments and results as of `polish.polish_free`, `shared` as of
     `unknowns`."""
     ROWS, m = problem.ROWS, problem.m
     held, stuck, slip, rest = classify(ROWS, L, V, m)

@@ -29,7 +29,7 @@ def refine(
     problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, log_R: float, passes: int, tolerance: float,
     worst: float,
 ) -> tuple[float, float]:  # fmt: skip
-    """Move L and V towards the direct solution on L's active contacts, by the part that reduces the error.
+    """Move L and V towards the direct solution on L's active contacts, by the part of the way that reduces the error.
 
     Args:
         FREE: (k, 3) velocities without impulses.  passes: refinements of the sparse solve at most.

@@ -1,14 +1,14 @@
 """Contact impulses inside the friction cones that end all motion of an island, if there are any.
 
 In the edges g of the cones (`cones.py`), v + M^-1 (G^T lam + T^T beta) = 0 is a linear system B x = f in x >= 0, one x
-for each edge. Of all solutions the one nearest to a guess w is sought,
+for each edge: the columns of B are the edges, f = -M v. Of all solutions the one nearest to a guess w is sought,
 
     minimise (1/2) sum A_gg (x - w)^2,   B x = f,   x >= 0,
 
 by a primal-dual interior-point method with Mehrotra's predictor and corrector (1992). A step solves, for the
 multipliers y of B x = f, which are velocities,
 
-    (1/R + B Theta B^T) dy = r,   Theta = 1 / (A_gg + s / x),   s >= 0 those of x >= 0,
+    (M/R + B Theta B^T) dy = r,   Theta = 1 / (A_gg + s / x),   s >= 0 those of x >= 0,
 
 with the factor of `cholesky.py` and R = PROXIMAL_STATICS. Where many contacts share the loads, one or two steps
 suffice; active-set methods, whose set has to be right to the last contact, may need a hundred. The iteration ends with

@@ -1,7 +1,7 @@
 """The laws of few contacts to round-off: sweeps, and homotopies (`homotopy.py`) in turn.
 
-Friction is that of Coulomb's law alone: friction that energy limits (`coulomb.py`), by which each contact by itself
-loses energy, has no solution for several contacts more often, where slips reverse.
+Friction is that of Coulomb's law alone: with friction limited by energy (`coulomb.py`), which each contact applies by
+itself, several contacts whose slips reverse more often have no solution together.
 """
 
 from __future__ import annotations

@@ -15,7 +15,7 @@ import pymunk
 from ..arrays import FloatArray, IntArray
 from ..compiled.layouts import COUNT, Layout, Plan
 from ..compiled.records import Rows, packer
-from ..impacts.new_scene import measure_scene
+from ..impacts.scene_memory import measure_scene
 from ..layout import EXTRA_COLUMNS, HOOKED_TABLES, STATE_COLUMNS
 from ..model.bodies import Body
 from ..model.shapes import Link, Shape

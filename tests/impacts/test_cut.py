@@ -9,7 +9,7 @@ import pytest
 import eeca_pymunk as ep
 from eeca_pymunk.contacts.interval import step_island
 from eeca_pymunk.geometry.flight import move_to
-from eeca_pymunk.impacts.begin import begin, total
+from eeca_pymunk.impacts.begin import begin, energy_of
 from eeca_pymunk.impacts.intervals import cut_short, start_islands
 from eeca_pymunk.islands.accounting import end_interval
 from eeca_pymunk.islands.intervals import begin_interval
@@ -19,7 +19,7 @@ from eeca_pymunk.model.scene import Scene
 def open_energy(A: Scene) -> float:
     """What the ledger up to now does not explain, where all contacts are in it up to the instants of their bodies."""
     PAR = A.PAR
-    return float(total(A) - PAR.before - PAR.external + PAR.restitution + PAR.frictional + PAR.damped)
+    return float(energy_of(A) - PAR.before - PAR.external + PAR.restitution + PAR.frictional + PAR.damped)
 
 
 @pytest.mark.parametrize("begun", [False, True])
