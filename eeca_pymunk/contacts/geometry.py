@@ -48,8 +48,6 @@ def gather_contacts(
     m, half = 0, 0.5 * h
     for c in range(len(PAIRS)):
         s, r, a, b = PAIRS[c, 0], PAIRS[c, 1], PAIRS[c, 2], PAIRS[c, 3]
-        if isle.IM[a] == 0.0 and isle.IM[b] == 0.0:
-            continue
         small = min(SHAPE[s].extent, SHAPE[r].extent)
         reach = REACH[a] + REACH[b]
         count = manifold(A, s, r, POSE, a, b, reach, MANIFOLD_ROUND_OFF * small, NOW)

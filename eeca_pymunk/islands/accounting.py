@@ -130,10 +130,10 @@ def end_interval(A: Scene, root: int, t: float) -> None:
 
 @nonallocating
 def close_interval(A: Scene, root: int, t: float) -> None:
-    """End the interval of one island at instant t: account its contacts, and move its bodies to their poses at t."""
-    free, excess = A.MEMBER[root].jointed == 0, 0.0
-    if free:
-        repay(A, root, t)
+    """End the interval of one island without joints at instant t: account its contacts, and move its bodies to their
+    poses at t."""
+    free, excess = True, 0.0
+    repay(A, root, t)
     for c in range(A.COUNT.pushes):
         if A.PUSHED_BY[c].root == root:
             for shape in (A.PUSHED_BY[c].a, A.PUSHED_BY[c].b):

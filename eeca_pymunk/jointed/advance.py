@@ -167,13 +167,10 @@ def join_points(row: Row, along: float, across: float) -> None:
 
 @nonallocating
 def points_apart(interval: Interval, i: int) -> tuple[float, float, float]:
-    """How far the two points of contact i are `apart` at the mean places of its bodies, along n and along -t, and over
-    the size of bodies and places. 0 if a body does not move, or if they are farther apart than the smaller body is
-    large."""
+    """How far the two points of contact i of a free island are `apart` at the mean places of its bodies, along n and
+    along -t, and over the size of bodies and places. 0 if they are farther apart than the smaller body is large."""
     isle, row, MID = interval.isle, interval.ROWS[i], interval.motion.MID
     a, b = row.a, row.b
-    if isle.IM[a] == 0.0 or isle.IM[b] == 0.0:
-        return 0.0, 0.0, 0.0
     along, across = apart(row, MID)
     off, size = abs(along) + abs(across), min(isle.EXTENT[a], isle.EXTENT[b])
     if not off <= size:
@@ -183,8 +180,8 @@ def points_apart(interval: Interval, i: int) -> tuple[float, float, float]:
 
 @nonallocating
 def align(interval: Interval) -> float:
-    """Join the two points of each contact between moving bodies at their mean places. Returns how far they were apart
-    at most (`points_apart`).
+    """Join the two points of each contact of a free island at the mean places of its bodies. Returns how far they were
+    apart at most (`points_apart`).
 
     An impulse p spread over a step changes the angular momentum of a body by (x + r) x p, with x its mean place: the
     two changes only cancel if both points are one.

@@ -18,16 +18,14 @@ from .lengths import excess_alone
 
 @nonallocating
 def is_component(A: Scene, J: Joints, root: int) -> bool:
-    """Whether an island is one component."""
+    """Whether an island is one component: then it has as many bodies. All bodies of a component are in one island
+    (`..islands.building.build_islands`)."""
     s = J.OF[root]
     if s < 0:
         return False
     count = 0
     for i in range(J.COMPONENT[s].first_body, J.COMPONENT[s].end_body):
-        if J.JOINED[i].freedoms > 0:
-            if A.STATE[J.JOINED[i].body].island != root:
-                return False
-            count += 1
+        count += 1 if J.JOINED[i].freedoms > 0 else 0
     return bool(count == A.MEMBER[root].bodies)
 
 

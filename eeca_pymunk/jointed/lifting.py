@@ -65,10 +65,9 @@ def lift_island(
     isle, groups, ROWS, motion, _, m, n, _, _ = interval
     budget, payable = payment(A, isle, ROWS, L, motion.V, n, m, lost, A.RESTING[root].lost, False, True)
     spent = correct_overlaps(A, J, interval, end, budget)
-    if len(groups.JOINTED) > 0:
-        paid, one = min(spent, payable), J.STEPPED[groups.JOINTED[0]]
-        one.lifted += paid
-        one.supports += spent - paid
+    paid, one = min(spent, payable), J.STEPPED[groups.JOINTED[0]]
+    one.lifted += paid
+    one.supports += spent - paid
 
 
 @nonallocating

@@ -53,8 +53,7 @@ def fit_columns(
     for i in range(n):
         change = B.ROWS[i].now - NOW[i]
         push_row(B, i, -change, ERROR)
-        if B.AT[i + 1] > B.AT[i]:
-            SQUARE[groups.GROUP[B.BODY[B.AT[i]]] + 1] += change**2
+        SQUARE[groups.GROUP[B.BODY[B.AT[i]]] + 1] += change**2
     clear_round_off(interval, ERROR)
     for i in range(m):
         for w in range(C.AT[i], C.AT[i + 1]):

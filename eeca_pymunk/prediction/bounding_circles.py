@@ -14,7 +14,7 @@ from .roots import falling_root
 
 @nonallocating
 def circles_meet(A: Scene, a: int, b: int, start: float, duration: float, tolerance: float) -> tuple[float, bool]:
-    """Time after `start` until which shapes a and b are certainly apart, and whether they never meet.
+    """Time after `start` until which shapes a < b are certainly apart, and whether they never meet.
 
     Circles about the centres of mass, of radius `extent`, which do not rotate, are compared; a static shape counts with
     its outline. 0 if they overlap. `tolerance` and `duration` as in `circles.circle_circle`.
@@ -22,8 +22,6 @@ def circles_meet(A: Scene, a: int, b: int, start: float, duration: float, tolera
     BODY, SHAPE, LINK = A.BODY, A.SHAPE, A.LINK
     ground = BODY.shape[0] - 1
     i, j = LINK[a].owner, LINK[b].owner
-    if i == ground:
-        a, b, i, j = b, a, j, i
     x_a, y_a, _ = pose(BODY, i, start)
     ux_a, uy_a, _ = rate(BODY, i, start)
     if j == ground:

@@ -6,7 +6,9 @@ import numpy as np
 import pymunk
 import pytest
 
+import eeca_pymunk as ep
 from eeca_pymunk.model.joint_steps import EXACT, LINEAR
+from eeca_pymunk.model.joints import CONDENSED
 from scenes.linkages import body, empty
 
 from ..jointed.measures import energy
@@ -69,3 +71,39 @@ def test_ledger_of_a_mixture(seed: int) -> None:
     assert all(np.isfinite((*b.position, b.angle, *b.velocity, b.angular_velocity)).all() for b in stepper.space.bodies)
     assert lowest >= -1e-12 * scale
     assert abs(stepper.unexplained()) < (1e-11 if worst < LINEAR else 1e-9) * scale
+
+
+def test_pins_of_a_cloth_give_way_at_their_bounds() -> None:
+    """The component is wide, so that its system has no unknowns of rows: a row at its bound acts on the right side. The
+    others hold, and the energy that slipping takes is that of the ledger."""
+    space, bodies = pymunk.Space(), {}
+    space.gravity = 0.0, -10.0
+    for i, j in np.ndindex(8, 8):
+        one = bodies[i, j] = pymunk.Body(1.0, 0.05) if j else pymunk.Body(body_type=pymunk.Body.STATIC)
+        one.position = 0.5 * i, -0.5 * j
+        if j:
+            one.velocity = 3.0 * np.sin(0.5 * j), 2.0 * np.cos(1.5 * i)
+        space.add(one)
+    for i, j in np.ndindex(8, 8):
+        for other in (bodies.get((i + 1, j)), bodies.get((i, j + 1))):
+            if other is not None and (j or other.body_type == pymunk.Body.DYNAMIC):
+                pin = pymunk.PinJoint(bodies[i, j], other)
+                pin.max_force = 10.0 if (i + 2 * j) % 3 == 0 else np.inf
+                space.add(pin)
+    stepper, dt, slipped = ep.EECA(space, sync=False), 1 / 120, 0
+    for _ in range(60):
+        report = stepper.step(dt)
+        assert report.converged
+        ledger, scale = report.ledger, abs(ep.measure(space).energy)
+        assert abs(ledger.residual) <= 1e-13 * scale
+        assert ledger.friction >= 0.0
+        for pin in space.constraints:
+            assert pin.impulse <= pin.max_force * dt * (1.0 + 1e-12)
+            slipped += pin.impulse >= pin.max_force * dt * (1.0 - 1e-12)
+            if pin.max_force == np.inf:
+                far = (pin.a.position - pin.b.position).length
+                assert far == pytest.approx(pin.distance, abs=1e-11)
+    assert slipped > 500
+    loop = stepper.event_loop
+    assert loop is not None
+    assert (loop.joints.COMPONENT["system"][0], loop.joints.TALLY.components) == (CONDENSED, 1)
