@@ -91,7 +91,7 @@ def test_pins_of_a_cloth_give_way_at_their_bounds() -> None:
                 pin.max_force = 10.0 if (i + 2 * j) % 3 == 0 else np.inf
                 space.add(pin)
     stepper, dt, slipped = ep.EECA(space, sync=False), 1 / 120, 0
-    for _ in range(60):
+    for _ in range(10):
         report = stepper.step(dt)
         assert report.converged
         ledger, scale = report.ledger, abs(ep.measure(space).energy)
@@ -103,7 +103,7 @@ def test_pins_of_a_cloth_give_way_at_their_bounds() -> None:
             if pin.max_force == np.inf:
                 far = (pin.a.position - pin.b.position).length
                 assert far == pytest.approx(pin.distance, abs=1e-11)
-    assert slipped > 500
+    assert slipped > 100
     loop = stepper.event_loop
     assert loop is not None
     assert (loop.joints.COMPONENT["system"][0], loop.joints.TALLY.components) == (CONDENSED, 1)
