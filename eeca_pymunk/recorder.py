@@ -29,15 +29,11 @@ MEMORY = 2.0**30  # bytes that a recording may take by default
 
 
 @functools.cache
-def _versions() -> dict[str, str]:
+def versions() -> dict[str, str]:
+    """Versions of the software on which a result depends; to be copied, not changed."""
     from importlib.metadata import version
 
     return {"python": sys.version.split()[0], **{name: version(name) for name in ("eeca-pymunk", "pymunk", "numpy")}}
-
-
-def versions() -> dict[str, str]:
-    """Versions of the software on which a result depends."""
-    return dict(_versions())
 
 
 def step_count(duration: float, dt: float) -> int:

@@ -75,15 +75,10 @@ class StepReport:
     __slots__ = ("_book", "_converged", "_details", "_iterations", "_lock", "_time", "_unmet")
 
     def __init__(
-        self,
-        time: float,
-        details: Details | Callable[[], Details],
-        iterations: int = 0,
-        lock: float = 1.0,
-        converged: bool = True,
-        book: list[float] | None = None,
+        self, time: float, details: Details | Callable[[], Details], iterations: int = 0, lock: float = 1.0,
+        converged: bool = True, book: list[float] | None = None,
         unmet: tuple[Unmet, ...] | Callable[[], tuple[Unmet, ...]] = (),
-    ) -> None:
+    ) -> None:  # fmt: skip
         self._time = time
         self._details = details
         self._iterations = iterations

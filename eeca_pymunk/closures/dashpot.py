@@ -89,14 +89,9 @@ def constant_term(A: Delassus, problem: ActiveContacts) -> FloatArray:
 
 
 def locked_motion(
-    A: Delassus,
-    geometry: Geometry,
-    problem: ActiveContacts,
-    lam: FloatArray,
-    weights: balance.Weights,
-    iterations: int,
-    converged: bool,
-) -> Solution:
+    A: Delassus, geometry: Geometry, problem: ActiveContacts, lam: FloatArray, weights: balance.Weights,
+    iterations: int, converged: bool,
+) -> Solution:  # fmt: skip
     """Scale the impulses by the energy lock, and move: Eq. 10 with v_np1 and p_c of the scaled impulses."""
     dt, psi1, psi2, increment = problem.dt, weights.psi1, weights.psi2, weights.gap_increment
     q = constant_term(A, problem)

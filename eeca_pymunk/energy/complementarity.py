@@ -29,13 +29,9 @@ _SINGULAR = 1e8  # size of the solution for a generic right-hand side above whic
 
 
 def solve(
-    A: Delassus,
-    q: FloatArray,
-    compliance: FloatArray | float = 0.0,
-    start: FloatArray | None = None,
-    tolerance: float = 1e-12,
-    max_iterations: int = 2000,
-) -> Impulses:
+    A: Delassus, q: FloatArray, compliance: FloatArray | float = 0.0, start: FloatArray | None = None,
+    tolerance: float = 1e-12, max_iterations: int = 2000,
+) -> Impulses:  # fmt: skip
     """Solve 0 <= lam _|_ (A + diag(compliance)) lam + q >= 0.
 
     Contacts that share no moving body with another are solved in closed form, few coupled ones directly by pivoting;
@@ -111,13 +107,9 @@ def pivot(A: FloatArray, q: FloatArray) -> Impulses | None:
 
 
 def project(
-    multiply: Callable[[FloatArray], FloatArray],
-    D: FloatArray,
-    q: FloatArray,
-    start: FloatArray,
-    limit: float,
+    multiply: Callable[[FloatArray], FloatArray], D: FloatArray, q: FloatArray, start: FloatArray, limit: float,
     max_iterations: int,
-) -> Impulses:
+) -> Impulses:  # fmt: skip
     """Accelerated projected gradients (Nesterov 1983) with the gradient restart of O'Donoghue and Candes (2015).
 
     The metric is diagonal, D >= A, so that a step without acceleration descends. `multiply` is the product with A;

@@ -46,12 +46,3 @@ def traces(
     linear = np.stack((np.sum(px, axis=-1), np.sum(py, axis=-1)), axis=-1)
     angular = np.sum(x * py - y * px, axis=-1) + np.sum(turning, axis=-1)
     return kinetic, potential, linear, angular
-
-
-def sums(
-    mass: FloatArray, moment: FloatArray, center: FloatArray, velocity: FloatArray, spin: FloatArray,
-    gravity: tuple[float, float],
-) -> Invariants:  # fmt: skip
-    """Of one moment: centres of mass and velocities (n, 2), spins (n,)."""
-    kinetic, potential, linear, angular = traces(mass, moment, center[None], velocity[None], spin[None], gravity)
-    return Invariants(float(kinetic[0]), float(potential[0]), linear[0], float(angular[0]))

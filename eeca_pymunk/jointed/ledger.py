@@ -10,16 +10,7 @@ from ..contacts.counts import note_unmet
 from ..joints.ledger import clear_interval
 from ..joints.pinned import mass_of
 from ..joints.welds import pass_on, pinned_row, push_weld
-from ..layout import (
-    ACCELERATION_X,
-    ACCELERATION_Y,
-    ANGULAR_ACCELERATION,
-    BODY_ROW,
-    FLAGS,
-    READ,
-    STEERED,
-    WRITTEN,
-)
+from ..layout import ACCELERATION_X, ACCELERATION_Y, ANGULAR_ACCELERATION, BODY_ROW, FLAGS, READ, STEERED, WRITTEN
 from ..model.joint_steps import ELASTIC
 from ..model.joints import EDITED, TAKEN_OVER, WELDED, Joints
 from ..model.parameters.joints import STEP_WORK, STEP_WORK_BODY

@@ -34,18 +34,10 @@ _TRAILED = 5  # number of bodies up to which paths are drawn
 
 
 def animate(
-    recordings: Recording | Sequence[Recording],
-    path: str | Path,
-    fps: float = 30,
-    *,
-    titles: Sequence[str] | None = None,
-    exact: Exact | None = None,
-    view: View | None = None,
-    frames: int | None = None,
-    arrow: str | None = None,
-    dpi: float = 100,
-    progress: bool = False,
-) -> Path:
+    recordings: Recording | Sequence[Recording], path: str | Path, fps: float = 30, *,
+    titles: Sequence[str] | None = None, exact: Exact | None = None, view: View | None = None,
+    frames: int | None = None, arrow: str | None = None, dpi: float = 100, progress: bool = False,
+) -> Path:  # fmt: skip
     """Write a film of one to three recordings side by side, or four in two rows; `.gif`, `.mp4` or `.html` by suffix.
 
     All panels have the same scale; a frame shows the moment of each recording that is nearest to its time. Below each
@@ -90,16 +82,10 @@ class Film:
     """The frames of a film; `images` yields them. Artists are made once and moved."""
 
     def __init__(
-        self,
-        recordings: Recording | Sequence[Recording],
-        *,
-        titles: Sequence[str] | None = None,
-        exact: Exact | None = None,
-        view: View | None = None,
-        frames: int | None = None,
-        arrow: str | None = None,
+        self, recordings: Recording | Sequence[Recording], *, titles: Sequence[str] | None = None,
+        exact: Exact | None = None, view: View | None = None, frames: int | None = None, arrow: str | None = None,
         dpi: float = 100,
-    ) -> None:
+    ) -> None:  # fmt: skip
         shown = [recordings] if isinstance(recordings, Recording) else list(recordings)
         if not 1 <= len(shown) <= _MOST:
             raise ValueError(f"{len(shown)} recordings: give one to {_MOST}")

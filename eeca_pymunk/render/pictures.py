@@ -39,17 +39,10 @@ def figure(width: float, height: float, dpi: float = 110) -> Figure:
 
 
 def snapshot(
-    subject: pymunk.Space | Recording,
-    ax: Axes | None = None,
-    *,
-    time: float = 0.0,
-    path: str | Path | None = None,
-    title: str = "",
-    velocity: bool = False,
-    momentum: bool = False,
-    report: StepReport | None = None,
+    subject: pymunk.Space | Recording, ax: Axes | None = None, *, time: float = 0.0, path: str | Path | None = None,
+    title: str = "", velocity: bool = False, momentum: bool = False, report: StepReport | None = None,
     view: View | None = None,
-) -> Axes:
+) -> Axes:  # fmt: skip
     """Draw the shapes of a space now, or of a recording at its moment nearest to `time`; disks to scale.
 
     Args:
@@ -84,15 +77,9 @@ def snapshot(
 
 
 def strip(
-    recording: Recording,
-    times: Sequence[float],
-    *,
-    path: str | Path | None = None,
-    title: str = "",
-    velocity: bool = False,
-    momentum: bool = False,
-    view: View | None = None,
-) -> Figure:
+    recording: Recording, times: Sequence[float], *, path: str | Path | None = None, title: str = "",
+    velocity: bool = False, momentum: bool = False, view: View | None = None,
+) -> Figure:  # fmt: skip
     """Several moments of a recording in a row, as in the paper's Fig. 12, with one scale; see `snapshot`."""
     if len(times) == 0:
         raise ValueError("times is empty: give one or more times to show")

@@ -13,7 +13,7 @@ from pymunk import batch
 
 from ..arrays import BoolArray, FloatArray, IntArray, rotated
 from ..compiled.records import Rows, columns, from_bytes, put
-from ..energy.invariants import Invariants, sums
+from ..energy.invariants import Invariants, traces
 from ..errors import NotFiniteError
 from ..layout import STATE_COLUMNS
 from ..model.values import DYNAMIC, STATIC, BodyValues
@@ -94,11 +94,8 @@ class Bodies:
         if sleeps:
             self.asleep[:] = private_sleep.sleeping(self.items)
             self.VALUES["kind"][self.asleep], self.VALUES["asleep"] = STATIC, self.asleep
-            put(
-                self.VALUES,
-                np.where(self.asleep[:, None], body_values.FIXED, columns(self.VALUES, *_OF_MASS)),
-                *_OF_MASS,
-            )
+            masses = np.where(self.asleep[:, None], body_values.FIXED, columns(self.VALUES, *_OF_MASS))
+            put(self.VALUES, masses, *_OF_MASS)
             # Functions of sleeping bodies are not called, as under pymunk.
             self.VALUES["steered"][self.asleep] = self.VALUES["moved"][self.asleep] = 0
         if not self.arranged:
@@ -206,7 +203,7 @@ class Bodies:
         return state if np.array_equal(ids, self.ids) else None
 
     def check_finite(self, state: FloatArray, remedy: str = "set a finite value before stepping") -> None:
-        """Raise NotFiniteError naming the body and the value if anything in the state is NaN or infinite."""
+        """Raise NotFiniteError, which names body and value, if any number of a state is NaN or infinite."""
         if np.count_nonzero(np.isfinite(state)) < state.size:  # `all` takes five times as long for few bodies
             i, j = np.argwhere(~np.isfinite(state))[0]
             raise NotFiniteError(f"{COLUMN_NAMES[j]} of {self.items[i]} is {state[i, j]}: {remedy}")
@@ -221,8 +218,9 @@ class Bodies:
     def invariants(self, state: FloatArray, gravity: tuple[float, float]) -> Invariants:
         """Energy and momenta in an (N, 9) state."""
         d = self.dynamic
-        velocity, spin = state[d, VELOCITY], state[d, ANGULAR_VELOCITY]
-        return sums(self.mass[d], self.moment[d], self.centers(state)[d], velocity, spin, gravity)
+        motion = self.centers(state)[d][None], state[d, VELOCITY][None], state[d, ANGULAR_VELOCITY][None]
+        kinetic, potential, linear, angular = traces(self.mass[d], self.moment[d], *motion, gravity)
+        return Invariants(float(kinetic[0]), float(potential[0]), linear[0], float(angular[0]))
 
     def scatter(self, state: FloatArray, *, unchanged: bool = False) -> None:
         """Write the whole (N, 9) state to the bodies of these rows that are still in the space.
