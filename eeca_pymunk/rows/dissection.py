@@ -77,7 +77,9 @@ def dissect(POSE: FloatArray, n: int, start: IntArray, other: IntArray, place: I
                 place[ids[k]] = end
             continue
         axis = 0 if x1 - x0 > y1 - y0 else 1
-        mean = (x if axis == 0 else y) / (high - low)
+        first, last, mean = (x0, x1, x / (high - low)) if axis == 0 else (y0, y1, y / (high - low))
+        if not first <= mean < last:  # by round-off, where all are at nearly one place: both parts need a body
+            mean = first
         stamp += 2
         for k in range(low, high):
             side[ids[k]] = stamp if POSE[ids[k], axis] <= mean else stamp + 1
@@ -103,9 +105,8 @@ def dissect(POSE: FloatArray, n: int, start: IntArray, other: IntArray, place: I
         if left > low:
             stack[top, 0], stack[top, 1] = low, left
             top += 1
-        if rights > 0:
-            stack[top, 0], stack[top, 1] = left, left + rights
-            top += 1
+        stack[top, 0], stack[top, 1] = left, left + rights
+        top += 1
 
 
 @kernel

@@ -10,6 +10,7 @@ from eeca_pymunk.rows.build import normal_rate, rates, tangent_rate
 from eeca_pymunk.rows.cholesky import assemble_blocks, factor_blocks, make_factor, solve_blocks
 from eeca_pymunk.rows.coulomb import coulomb
 from eeca_pymunk.rows.dense import newton
+from eeca_pymunk.rows.dissection import dissect, neighbours
 from eeca_pymunk.rows.polish import divide_friction, polish_free
 from eeca_pymunk.rows.sweeps import sweep, velocities
 
@@ -54,6 +55,18 @@ def crowd(seed: int, count: int) -> Block:
     rng = np.random.default_rng(seed)
     points = np.array([(2.0 * i, 2.0 * j) for i in range(count) for j in range(count)])
     return Block.disks(points, rng.normal(size=(count**2, 3)), np.exp(rng.normal(size=count**2)), np.ones(count**2))
+
+
+def test_bodies_at_nearly_one_place_are_all_eliminated_once() -> None:
+    """Where they differ by one unit of round-off, their mean may be no smaller than the greatest."""
+    n, rng = 12, np.random.default_rng(0)
+    start, other = neighbours(np.array([(i, i + 1) for i in range(n - 1)]), n - 1, n)
+    for x in np.array([0.1, 1e3, 1e5, 1e9]) / 7.0:
+        for _ in range(20):
+            poses, place = np.zeros((n, 3)), np.empty(n, np.int64)
+            poses[:, 0] = np.where(rng.random(n) < 0.3, np.nextafter(x, np.inf), x)
+            dissect(poses, n, start, other, place)
+            assert sorted(place) == list(range(n))
 
 
 @pytest.mark.parametrize("count", [2, 5, 9])
