@@ -25,6 +25,7 @@ import pymunk
 from ..impacts.edits import FILTER, MASS, OUTLINE, SURFACE, Changes, Edits
 from ..impacts.taking_over import Kept
 from ..layout import BODY_ROW, FLAGS, MOVED, READ, WRITTEN
+from ..model.parameters.intervals import INTERVAL_DEPTH_LEAST
 from ..model.step import MOVED_STATIC, OTHER_BODIES
 from ..model.values import CARRIED
 from .body_values import masses as masses_in
@@ -68,8 +69,12 @@ def kept_rows(world: World, past: World) -> Kept:
     now, then, place_of = world.STATES[READ], past.STATES[WRITTEN], world.bodies.row
     for j, body in enumerate(past.bodies.items):
         if not there[j] and (i := place_of.get(body, -1)) >= 0:
-            there[j] = row[i] >= 0 or now[i, :3].tolist() == then[j, :3].tolist()
+            way = [abs(x - x0) for x, x0 in zip(now[i, :3].tolist(), then[j, :3].tolist(), strict=True)]
+            there[j] = row[i] >= 0 or not any(way)
             alike[j] = there[j] and row[i] < 0 and old_row[j] < 0
+            if not there[j] and old_row[j] >= 0:  # asleep, where its function has placed it: see `forget_sides`
+                extent = past.BODY[old_row[j]].extent
+                there[j] = way[0] + way[1] + way[2] * extent <= INTERVAL_DEPTH_LEAST * extent
     new, old = list(map(world.records.get, past.shapes)), list(map(past.records.get, past.shapes))
     places, owner = map(world.places.get, past.shapes, repeat(-1)), past.owner.tolist()
     outlines = [place if there[j] else -1 for place, j in zip(places, owner, strict=True)]
