@@ -382,6 +382,8 @@ MUTATIONS = (
              "[431]"),
     Mutation("blocks: wedged contacts keep their friction", "rows/blocks.py", "slip_freely(ROWS, m)", "pass",
              "rows/test_blocks.py", "wedges"),
+    Mutation("blocks: of wedged contacts only the second solve counts", "rows/blocks.py", "OUT[0].sweeps += sweeps",
+             "pass", "rows/test_blocks.py", "wedges"),
     Mutation("joints: momenta are off by the round-off of a projection", "joints/correct.py",
              "restore_momenta(W, 0.0, 1.0, 0.0)", "pass", "joints/test_pairs.py", "[834]"),
     Mutation("joints: pivots that stay apart act at two points", "newton/rows.py",

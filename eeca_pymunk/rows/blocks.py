@@ -200,7 +200,8 @@ def solve_freely(
 ) -> int:  # fmt: skip
     """`solve_block` again, without friction, where `solve_block` has left contacts with friction wedged (WEDGED):
     sweeps may end between two states without impulses, so that what approaches would meet again at the same instant,
-    without end. FREE (k, 3): velocities without impulses. Returns the status; L, V and OUT are those of the solution.
+    without end. FREE (k, 3): velocities without impulses. Returns the status; L, V and OUT are those of the solution,
+    OUT with the sweeps and direct solves of both.
     """
     ROWS, m = problem.ROWS, problem.m
     if status == CONVERGED or not (OUT[0].residual > impulses.WEDGED * aim(ROWS, m) and rubs(ROWS, m)):
@@ -208,4 +209,8 @@ def solve_freely(
     slip_freely(ROWS, m)
     L[:] = 0.0
     velocities(problem, L, FREE, V)
-    return solve_block(problem, L, V, owed, False, OUT)
+    sweeps, direct = OUT[0].sweeps, OUT[0].direct
+    status = solve_block(problem, L, V, owed, False, OUT)
+    OUT[0].sweeps += sweeps
+    OUT[0].direct += direct
+    return status
