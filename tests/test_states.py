@@ -255,6 +255,25 @@ def test_copies_go_on_through_what_handlers_have_rejected(phase: str, refreshed:
     assert body.position.x == pytest.approx(0.6)
 
 
+@pytest.mark.parametrize("phase", ["begin", "pre_solve"])
+def test_what_was_rejected_goes_on_in_the_step_in_which_pymunk_forgets_it(phase: str) -> None:
+    """In that step they overlap at its start, and, as they are fast, neither before nor at its end. Copies go on in the
+    same way."""
+    space, body, stepper = passing(phase)
+    body.position = -0.8, 0.0
+    stepper.step(1 / 60)
+    body.position = -5.0, 0.0
+    for _ in range(space.collision_persistence - 1):
+        stepper.step(1 / 60)
+    body.position, body.velocity = (-0.8, 0.0), (600.0, 0.0)
+    space.reindex_shapes_for_body(body)
+    copied, other = pickle.loads(pickle.dumps((space, stepper)))
+    stepper.step(1 / 60)
+    other.step(1 / 60)
+    assert [b.position for b in copied.bodies] == [b.position for b in space.bodies]
+    assert [b.position.x for b in space.bodies] == pytest.approx([9.2, 0.0])
+
+
 def test_copies_go_on_after_bodies_have_gone() -> None:
     """pymunk fills the place of a body that goes with the last one; its copies have the order in which bodies came."""
     space = pymunk.Space()

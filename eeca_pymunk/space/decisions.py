@@ -103,15 +103,17 @@ class Decisions:
     Attributes:
         since: number of pymunk's step; arbiters whose shapes last touched up to then do not count.
         laws: of shapes (a, b) the law, and the number of pymunk's step in which they last touched.
+        rejected: that number of the shapes that arbiters say do not collide, in the last step that has read these.
     """
 
     def __init__(self) -> None:
         self.since = -1
         self.laws: dict[tuple[pymunk.Shape, pymunk.Shape], tuple[Law, int]] = {}
+        self.rejected: dict[frozenset[pymunk.Shape], int] = {}
 
     def forget(self, space: pymunk.Space) -> None:
         """Forget earlier steps."""
-        self.since, self.laws = private.timestamp(space)(), {}
+        self.since, self.laws, self.rejected = private.timestamp(space)(), {}, {}
 
     def rules(self, world: World) -> Rules:
         """The decisions that apply in a step, after pymunk's step has called the handlers: those of its arbiters, then
@@ -128,7 +130,7 @@ class Decisions:
         self.laws = {
             pair: (law, step)
             for pair, (law, step) in self.laws.items()
-            if now - step < space.collision_persistence and stamps.get(frozenset(pair), -1) <= step
+            if now - step < space.collision_persistence and stamps.get(frozenset(pair), -1) < step
         }
         earlier: dict[ShapePair, Law] = {}
         for (one, two), (law, _) in self.laws.items():
@@ -144,15 +146,17 @@ class Decisions:
         at its start: pymunk sees what overlaps at the end of free flight, which may be far away, as of a ball that
         bounces fast within a shape that lets it pass."""
         places, rows = world.places, world.bodies.row
-        rejected: list[tuple[Any, ...]] = [
-            arbiter.shapes for arbiter in newest if not processed(arbiter) and private_arbiters.stamp(arbiter) < now
-        ]
-        rejected += [pair for pair, (law, step) in self.laws.items() if law[0] < 0.0 and step < now]
-        for pair in rejected:
-            at = [rows.get(shape.body, -1) if shape in places else -1 for shape in pair]  # sensors have no place
-            if min(at) >= 0 and overlap(pair, [world.state[row].tolist() for row in at]):
+        rejected = {frozenset(one.shapes): private_arbiters.stamp(one) for one in newest if not processed(one)}
+        earlier = {frozenset(pair): step for pair, (law, step) in self.laws.items() if law[0] < 0.0}
+        # Also those of the last step whose arbiters pymunk has removed in this one.
+        known: dict[frozenset[Any], int] = self.rejected | earlier | rejected
+        self.rejected = rejected
+        for pair, step in known.items():
+            if step < now and pair <= places.keys():  # sensors have no place
                 one, two = sorted(pair, key=places.__getitem__)
-                self.laws[one, two] = _NONE, now
+                at = [rows.get(shape.body, -1) for shape in (one, two)]
+                if min(at) >= 0 and overlap((one, two), [world.state[row].tolist() for row in at]):
+                    self.laws[one, two] = _NONE, now
 
     def state(self, world: World) -> FloatArray:
         """(n, DECISION_COLUMNS) all decisions that apply, sorted; also rejections that are forgotten here, but which
