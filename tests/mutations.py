@@ -336,6 +336,8 @@ MUTATIONS = (
     Mutation("correction: walls have no last word", "rows/lifting.py",
              "met = meet_gap(problem, GAPS[i] - LEAST[i], MU, D, i) == 0.0 and met", "pass",
              "rows/test_lifting.py", "without_room"),
+    Mutation("intervals: past a corner is through", "islands/depths.py", "after = max(told, -known_depth(A, a, b))",
+             "after = -known_depth(A, a, b)", "islands/test_depths.py", "corner_of_a_triangle"),
     Mutation("correction: none within a step", "islands/depths.py", "return 0.5 * intervals.CORRECTION_STEP",
              "return math.inf", "contacts/test_turning.py", "drum and True and 1.6"),
     Mutation("rest: what moves ends only its own contacts", "islands/accounting.py",

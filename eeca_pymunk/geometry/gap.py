@@ -72,6 +72,20 @@ def gap_at(
 
 
 @nonallocating
+def gap_along(
+    A: Scene, a: int, x_a: float, y_a: float, angle_a: float, b: int, x_b: float, y_b: float, angle_b: float,
+    nx: float, ny: float,
+) -> float:  # fmt: skip
+    """How far (length) shape b is beyond shape a along n, their bodies at the given poses: no more than their gap."""
+    P, Q, beyond = A.CORE[0], A.CORE[1], math.inf
+    p, q = place_vertices(A, a, x_a, y_a, angle_a, P), place_vertices(A, b, x_b, y_b, angle_b, Q)
+    for i in range(p):
+        for j in range(q):
+            beyond = min(beyond, nx * (Q[j, 0] - P[i, 0]) + ny * (Q[j, 1] - P[i, 1]))
+    return beyond - A.SHAPE[a].rounding - A.SHAPE[b].rounding
+
+
+@nonallocating
 def gap(A: Scene, a: int, b: int, t: float) -> tuple[float, float, float, float, float]:
     """`gap_at` of shapes a and b at instant t of their bodies' paths."""
     x_a, y_a, angle_a = pose(A.BODY, A.LINK[a].owner, t)

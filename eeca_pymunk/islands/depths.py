@@ -11,7 +11,7 @@ from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..contacts.memory import shapes_of
 from ..contacts.turning import gap_rate
-from ..geometry.gap import gap_at
+from ..geometry.gap import gap_along, gap_at
 from ..geometry.sides import held_side, remembers
 from ..geometry.widths import depth_limit, half_width, smaller
 from ..model.contacts import Row
@@ -113,7 +113,8 @@ def deep_at_end(A: Scene, isle: Island, END: FloatArray, ROWS: Rows[Row], m: int
 
     The pair closes by u s + c s^2 in a time s, with its velocity u at the start, and c from the way u h + c h^2 to END:
     by its room r after s = 2 r / (u + sqrt(u^2 + 4 c r)), and the interval is h/s times too long. Where the normal at
-    END is against that of the row, the way has led to the other side, as deep as the row's normal tells.
+    END is against that of the row, the way may have led to the other side: the pair is as deep as the row's normal
+    tells. That need not be deep: at a corner the shortest way out changes.
     """
     pair, p, q = ROWS[z].key >> 1, ROWS[z].a, ROWS[z].b
     a, b = shapes_of(A, ROWS[z])
@@ -125,9 +126,13 @@ def deep_at_end(A: Scene, isle: Island, END: FloatArray, ROWS: Rows[Row], m: int
         if 0 <= other < m and ROWS[other].key >> 1 == pair:
             gap = min(gap, ROWS[other].gap)
     after, nx, ny, _, _ = gap_at(A, a, END[p, 0], END[p, 1], END[p, 2], b, END[q, 0], END[q, 1], END[q, 2])
-    along = sign * (nx * ROWS[z].nx + ny * ROWS[z].ny)
-    if along < 0.0:
-        after = after * along if after > 0.0 else -known_depth(A, a, b)
+    mx, my = sign * ROWS[z].nx, sign * ROWS[z].ny
+    along = nx * mx + ny * my
+    if along < 0.0 and after > 0.0:
+        after *= along
+    elif along < 0.0:
+        told = gap_along(A, a, END[p, 0], END[p, 1], END[p, 2], b, END[q, 0], END[q, 1], END[q, 2], mx, my)
+        after = max(told, -known_depth(A, a, b))
     closing = gap - after
     if too_deep(A, a, b, gap, closing) == 0.0:
         return 0.0

@@ -8,6 +8,7 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk.compiled.records import zeros
+from eeca_pymunk.geometry.gap import gap_at
 from eeca_pymunk.geometry.sides import note_side
 from eeca_pymunk.geometry.widths import depth_limit
 from eeca_pymunk.islands.depths import closes_too_far, deep_at_end
@@ -93,3 +94,36 @@ def test_an_interval_in_which_a_rod_goes_through_a_wall_is_too_long(way: float, 
     rows[0].b, rows[0].key, rows[0].ny = 1, 2, -1.0
     far = closes_too_far(loop.scene, isle, rows, after, 1, h)
     assert far > INTERVAL_RETRY
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+@pytest.mark.parametrize(("deep", "is_through"), [(0.0, False), (0.01, False), (0.5, True)])
+def test_a_rod_in_the_corner_of_a_triangle_is_as_deep_as_the_normal_tells(
+    deep: float, is_through: bool, unit: float
+) -> None:
+    """Its end is .02 below the upper corner, at the start 1e-4 left of it, so that the way out is to the left. At the
+    end it is right of it, and lower by `deep`: the way out is to the right, by a normal 120 degrees from the other."""
+    space = pymunk.Space()
+    rod = pymunk.Body(1.0, 1.0)
+    space.add(rod, pymunk.Segment(rod, (0.0, 0.0), (0.0, unit), 0.0))
+    corners = [(unit * np.sin(k * np.pi / 1.5), unit * np.cos(k * np.pi / 1.5)) for k in range(3)]
+    space.add(pymunk.Poly(space.static_body, corners))
+    rod.position = -1e-4 * unit, 0.98 * unit
+    stepper = ep.EECA(space)
+    stepper.step(1e-9)
+    loop = stepper.event_loop
+    assert loop is not None
+    start = np.array([[-1e-4 * unit, 0.98 * unit, 0.0], [0.0, 0.0, 0.0]])
+    isle = Island(
+        WHO=np.array([0, 1]), IM=np.zeros(2), II=np.zeros(2), POSE=start, V=np.zeros((2, 3)),
+        ACC=np.zeros((2, 3)), EXTENT=np.zeros(2), FELT=np.zeros(2), PAIRS=np.zeros((1, 4), np.int64),
+    )  # fmt: skip
+    gap, nx, ny, _, _ = gap_at(loop.scene, 0, *start[0], 1, *start[1])
+    assert gap < 0.0
+    assert nx > 0.5
+    end = start + np.array([[2e-4 * unit, -deep * unit, 0.0], [0.0, 0.0, 0.0]])
+    _, mx, my, _, _ = gap_at(loop.scene, 0, *end[0], 1, *end[1])
+    assert nx * mx + ny * my == pytest.approx(-0.5)
+    rows = zeros(1, ROW)
+    rows[0].b, rows[0].key, rows[0].nx, rows[0].ny, rows[0].gap = 1, 2, nx, ny, gap
+    assert (deep_at_end(loop.scene, isle, end, rows, 1, 0.5, 0) > INTERVAL_RETRY) == is_through
