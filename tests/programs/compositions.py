@@ -30,7 +30,7 @@ import pymunk
 import eeca_pymunk as ep
 
 from .joined import BOUND, HOLDS, OFF, apart, join, may_contradict, overdone, reach
-from .led import led_out
+from .led import kept_out, led_out
 from .outside import Outside
 
 LENGTHS = (1e-3, 3e-2, 1.0, 10.0, 50.0)
@@ -356,7 +356,10 @@ class Composition:
             out = max(abs(x), abs(y)) - self.half - self.rounding
             if out <= BEYOND * size:
                 self.led.discard(body)
-            elif body not in self.led and led_out(self.space, self.box, body, self.length):
+            elif body not in self.led and (
+                led_out(self.space, self.box, body, self.length)
+                or kept_out(self.space, self.box, body, self.length, self.half + self.rounding + BEYOND * size)
+            ):
                 self.led.add(body)
             if out > OUT * size and body not in self.led:
                 raise Broken(f"step {k}: {next(iter(body.shapes))} is {out / size:.2g} of its size outside")

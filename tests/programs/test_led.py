@@ -9,7 +9,7 @@ import pytest
 
 import eeca_pymunk as ep
 
-from .led import led_out
+from .led import kept_out, led_out
 
 DT, HALF, SIZE = 1 / 60, 1.0, 0.1
 
@@ -47,3 +47,24 @@ def test_a_body_without_freedom_is_led_through_a_wall_and_one_that_turns_is_not(
         unmet = unmet or any(one.name == "contacts" for one in report.unmet)
     print(led, unmet, deep, out)
     assert led == unmet == math.isinf(moment)
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 50.0])
+@pytest.mark.parametrize(("short", "kept"), [(0.05, True), (-0.05, False)])
+def test_a_linkage_before_its_dead_centre_keeps_a_body_out_though_it_may_move_inward(
+    short: float, kept: bool, unit: float
+) -> None:
+    """A rod turns about a point of the box, and leads a body that cannot turn: its other end is on an arm of length 1,
+    and .2 at the least, but for `short`, below the place where the body would be at the wall."""
+    space, half = pymunk.Space(), 5.0 * unit
+    box, body = pymunk.Body(body_type=pymunk.Body.KINEMATIC), pymunk.Body(1.0, math.inf)
+    rod = pymunk.Body(1.0, unit * unit)
+    middle = pymunk.Vec2d(0.0, 4.2 + short) * unit
+    rod.position, rod.angle = middle, -0.5 * math.pi + 0.1
+    body.position = rod.local_to_world((0.2 * unit, 0.0)) + pymunk.Vec2d(0.0, unit)
+    loose = pymunk.SlideJoint(box, body, (0.0, 0.0), (0.0, 0.0), 0.0, 99.0 * unit)
+    space.add(box, body, rod, pymunk.PivotJoint(box, rod, middle), loose)
+    space.add(pymunk.PivotJoint(rod, body, (0.2 * unit, 0.0), (0.0, -unit)))
+    assert not led_out(space, box, body, unit)
+    assert kept_out(space, box, body, unit, half) == kept
+    assert not kept_out(space, box, rod, unit, half)
