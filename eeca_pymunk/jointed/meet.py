@@ -123,7 +123,7 @@ def find_contact(A: Scene, J: Joints, S: Meeting) -> None:
             S.crossed, before = 1, -1.0
             S.t = through if S.apart < through < t else 0.5 * (S.apart + t)
             continue
-        if S.gap > 0.0 and not (left_apart(A, J, S.roots[0]) or left_apart(A, J, S.roots[1])):
+        if S.gap > 0.0 and too_late(A, J, S) == math.inf:
             S.apart = t
         if not slope < 0.0 or last:  # the last attempt stays
             break
