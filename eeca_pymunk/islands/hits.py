@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ..compiled import kernel, nonallocating
 from ..geometry.flight import norm
+from ..geometry.gap import gap
 from ..geometry.widths import half_width
 from ..model.parameters.events import BUSY_STEPS, RESOLUTION, WORK_JOINTED
 from ..model.parameters.intervals import INTERVAL_DEPTH_WIDTH
@@ -34,9 +35,9 @@ def most_hits(A: Scene, a: int, b: int) -> int:
 
 
 @nonallocating
-def stays_shallow(A: Scene, a: int, b: int, h: float) -> bool:
-    """Whether shapes a and b, which touch, get no deeper in a time h than INTERVAL_DEPTH_WIDTH allows, without impulses
-    on each other."""
+def stays_shallow(A: Scene, a: int, b: int, t: float, h: float) -> bool:
+    """Whether shapes a and b, which touch at instant t, get no deeper in a time h than INTERVAL_DEPTH_WIDTH allows,
+    without impulses on each other. Without losses no depth is corrected: there the present one adds to it."""
     one, two = A.BODY[A.LINK[a].owner], A.BODY[A.LINK[b].owner]
     speed = norm(one.vx - two.vx, one.vy - two.vy)
     speed += abs(one.spin) * one.extent + abs(two.spin) * two.extent
@@ -44,6 +45,8 @@ def stays_shallow(A: Scene, a: int, b: int, h: float) -> bool:
     pulled = norm(one.ax - two.ax, one.ay - two.ay)
     pulled += abs(one.angular) * one.extent + abs(two.angular) * two.extent
     deepest = (speed + max(A.PAR.pulled, pulled) * h) * h
+    if law(A, a, b)[0] >= 1.0:
+        deepest += max(-gap(A, a, b, t)[0], 0.0)
     return bool(deepest <= INTERVAL_DEPTH_WIDTH * (half_width(A, a) + half_width(A, b)))
 
 
@@ -68,7 +71,7 @@ def passed_over(A: Scene, a: int, b: int, t: float) -> bool:
         return False
     if not lossy and not jointed(A, i) and not jointed(A, j) and persists_from(A, a, b, t):
         return False
-    if not stays_shallow(A, a, b, A.PAR.dt - t):
+    if not stays_shallow(A, a, b, t, A.PAR.dt - t):
         return False
     if lossy:
         make_busy(A, i)
