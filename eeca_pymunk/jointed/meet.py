@@ -12,6 +12,7 @@ from ..islands.rest import speed
 from ..model.islands import MEETING, Meeting
 from ..model.joint_steps import LINEAR
 from ..model.joints import Joints
+from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import TOUCH
 from ..model.parameters.joints import (
     CLOSES,
@@ -123,7 +124,7 @@ def find_contact(A: Scene, J: Joints, S: Meeting) -> None:
             S.crossed, before = 1, -1.0
             S.t = through if S.apart < through < t else 0.5 * (S.apart + t)
             continue
-        if S.gap > 0.0 and too_late(A, J, S) == math.inf:
+        if S.gap > 0.0 and not (left_apart(A, J, S.roots[0]) or left_apart(A, J, S.roots[1])):
             S.apart = t
         if not slope < 0.0 or last:  # the last attempt stays
             break
@@ -142,14 +143,15 @@ def find_contact(A: Scene, J: Joints, S: Meeting) -> None:
 
 @kernel
 def find_apart_before(A: Scene, J: Joints, S: Meeting) -> bool:
-    """Halve the instant towards S.apart while paths cross before it or it is `too_late`; once the work of the step is
-    spent, it is S.apart. Returns whether it is known to be neither."""
+    """Halve the instant towards S.apart while paths cross before it or it is `too_late`, and towards the start if it is
+    so near S.apart that this is too late, too; once the work of the step is spent, it is S.apart. Returns whether it is
+    known to be neither."""
     for _ in range(MEET_HALVINGS):
         late = math.inf if S.crosses > 0 else too_late(A, J, S)
         if not (S.crosses > 0 or late < math.inf):
             return True
-        if late <= S.apart:  # shapes were too far at `apart` already
-            S.apart = S.least
+        if late <= S.apart or (S.crosses == 0 and RESOLUTION * (S.t - S.apart) <= S.t - S.least):
+            S.apart = S.least  # where the shapes are apart, something is too far already
         spent = work_left(A, J) < 0.0
         S.crossed = 1
         end_both(A, J, S, S.apart if spent else 0.5 * (S.apart + S.t))
