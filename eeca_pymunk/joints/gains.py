@@ -92,7 +92,8 @@ def keeps_gain(W: Workspace, h: float, length: float, own: bool) -> bool:
 @nonallocating
 def gain_taken(W: Workspace, h: float, length: float) -> bool:
     """Close the ledger of a step whose joints did not hold exactly, and take its gain from the motion; returns whether
-    what is left of it is round-off of the kinetic energies before and after.
+    what is left of it is round-off of the kinetic energies before and after, and of the work of forces over the size
+    `length`: what hangs at rest cannot pay for that.
 
     Joints that close within a short h make bodies fast, and the lock then takes most of this, and leaves its round-off,
     of momenta too: both are put right once more.
@@ -104,7 +105,8 @@ def gain_taken(W: Workspace, h: float, length: float) -> bool:
         if part.closed > 0.0:
             lock_energy(W, part.closed, part)
             close_ledger(W)
-    return not part.closed > JOINT_GAIN * (kinetic_of(W, SAVED) + kinetic_of(W, NOW))
+    least = JOINT_GAIN * (kinetic_of(W, SAVED) + kinetic_of(W, NOW) + load_of(W, h, length))
+    return not part.closed > least
 
 
 @nonallocating

@@ -373,3 +373,33 @@ def test_a_limit_that_a_program_has_left_apart_lets_bodies_come_back_by_themselv
     assert work == pytest.approx(0.5 * (after**2 - begins**2), abs=1e-12)
     # What comes back in one step is not left to be closed in the next.
     assert closed + 0.8 * (begins + 0.5 * force * time) * time < way <= closed + (begins + 0.5 * force * time) * time
+
+
+def test_what_rests_on_a_limit_goes_on_though_it_cannot_pay_for_round_off() -> None:
+    """A body on a pin stands at the end of a groove, against which a motor drives it, while a heavy one hangs on its
+    groove: joints that are elastic, by 1e-9 of the component, give round-off of forces times distances, which is more
+    than all kinetic energy. Steps had ended after 1e-7 s and less (random scene 63505455)."""
+    space = empty()
+    ground = space.static_body
+    mount = body(space, 3030.658338911529, 520662.08613777126, (-50.0, -50.0), angle=-0.7440298733862001)
+    slider = body(space, 182174.80044039781, 57396558.01326257, (-150.0, 150.0), angle=-1.625005820949963)
+    rail = body(space, 8603.690651922285, 417309.59806091967, (-50.0, 150.0), angle=2.2720510289475646)
+    weight = body(space, 11441518.08651775, 3623728360.4385686, (50.0, -50.0), angle=1.6011107208184727)
+    slider.angular_velocity = 0.6210069390491064
+    pin = pymunk.PinJoint(
+        mount, slider, (12.666492581198874, 7.905376067477469), (2.0566195136100873, 10.81612741771957)
+    )
+    groove = pymunk.GrooveJoint(
+        slider, rail, (-2.1982131164319583, 71.12880461951256), (-26.41434534297545, 114.87327787027374),
+        (11.167993992216907, -1.1058580807522915),
+    )  # fmt: skip
+    motor = pymunk.SimpleMotor(slider, rail, -0.44735334329024923)
+    motor.max_force = 455437001.10099477
+    space.add(pin, groove, motor)
+    for a, b in ((ground, mount), (ground, rail), (rail, weight)):
+        space.add(pymunk.PivotJoint(a, b, tuple(b.position)), pymunk.GearJoint(a, b, b.angle - a.angle, 1.0))
+    stepper = ep.EECA(space)
+    for _ in range(60):
+        assert stepper.step(0.1).converged
+    assert slider.velocity.length < 1e-6
+    assert slider.position == pytest.approx((-172.056857, 136.709072), abs=1e-6)
