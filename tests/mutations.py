@@ -336,6 +336,8 @@ MUTATIONS = (
     Mutation("correction: walls have no last word", "rows/lifting.py",
              "met = meet_gap(problem, GAPS[i] - LEAST[i], MU, D, i) == 0.0 and met", "pass",
              "rows/test_lifting.py", "without_room"),
+    Mutation("rest: what rested beside others stays so as they move", "islands/partial_rest.py", "set_awake(A, other)",
+             "pass", "islands/test_at_rest.py", "awake_again"),
     Mutation("intervals: past a corner is through", "islands/depths.py", "after = max(told, -known_depth(A, a, b))",
              "after = -known_depth(A, a, b)", "islands/test_depths.py", "corner_of_a_triangle"),
     Mutation("correction: none within a step", "islands/depths.py", "return 0.5 * intervals.CORRECTION_STEP",

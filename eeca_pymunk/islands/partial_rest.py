@@ -23,7 +23,7 @@ from ..model.parameters.intervals import IMPACT_SPEED, LARGE_ISLAND
 from ..model.parameters.rest import MOVING_SHARE, PARTIAL_REST_FACTORS_STEP, REST_RETRY
 from ..model.scene import Scene
 from .accounting import close_interval
-from .at_rest import put_to_rest, stop
+from .at_rest import put_to_rest, set_awake, stop
 from .candidates import pairs_within
 from .intervals import begin_interval, set_lifts
 from .local import bodies_of, clear_places, local_island, open_interval, set_places
@@ -162,9 +162,12 @@ def rests_in_part(A: Scene, root: int) -> bool:
     one = STAND[0]
     for q in range(n - stand):
         i = MOVE[q]
-        if STATE[i].island >= 0:
-            if MEMBER[STATE[i].island].open > 0:
-                close_interval(A, STATE[i].island, 0.0)
+        other = STATE[i].island
+        if other >= 0:
+            if MEMBER[other].rest == AT_REST:  # static forces hold it on the others, but not these
+                set_awake(A, other)
+            if MEMBER[other].open > 0:
+                close_interval(A, other, 0.0)
             one = unite(A, one, i)
     begin_interval(A, STATE[one].island, 0.0)
     return True

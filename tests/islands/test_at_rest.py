@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from random import Random
 
 import pymunk
 import pytest
@@ -261,3 +262,39 @@ def test_a_crowd_is_solved_a_few_times_a_step_however_often_it_is_hit() -> None:
         solved.append(int(stepper._method.scene.COUNT.solved))  # type: ignore[attr-defined]
     assert sum(solved) < 1.2 * len(solved) * len(space.bodies)
     assert max(solved) < 10 * len(space.bodies)
+
+
+@pytest.mark.parametrize("seed", [230, 266, 330])
+def test_what_rests_beside_others_that_do_not_is_awake_again(seed: int) -> None:
+    """A rod leans on a disk, with friction, but not enough to stand. The program stops both now and then: the disk,
+    beside the rod that is held, is put to rest; the rod is not, so that both are solved as one island. That counted as
+    at rest, and the ledger had no losses for its motion (random scene 63008752)."""
+    chance = Random(seed)
+    space = pymunk.Space()
+    space.gravity = 0.0, -10.0
+    floor = pymunk.Segment(space.static_body, (-50.0, 0.0), (50.0, 0.0), 0.0)
+    radius, mass = chance.uniform(0.3, 0.6), 10.0 ** chance.uniform(-1.0, 1.0)
+    disk = pymunk.Body(mass, 0.4 * mass * radius * radius)
+    disk.position = 0.0, radius
+    slope = chance.uniform(0.3, 1.2)
+    foot = radius / math.tan(0.5 * slope)
+    half, mass = chance.uniform(0.6, 1.2) * foot, 10.0 ** chance.uniform(-1.0, 1.0)
+    rod = pymunk.Body(mass, 0.4 * mass * half * half)
+    rod.position, rod.angle = (foot - half * math.cos(slope), half * math.sin(slope)), math.pi - slope
+    shapes = floor, pymunk.Circle(disk, radius), pymunk.Segment(rod, (-half, 0.0), (half, 0.0), 0.0)
+    for shape in shapes:
+        shape.friction = 1.0
+    shapes[2].friction, shapes[2].elasticity = chance.choice((0.3, 1.0)), chance.choice((0.0, 1.0))
+    space.add(disk, rod, *shapes)
+    stepper, chance, scale = ep.EECA(space), Random(seed + 0.5), 10.0 * (disk.mass + rod.mass)
+    for _ in range(40):
+        act = chance.random()
+        if act < 0.5:
+            rod.velocity, rod.angular_velocity = (0.0, 0.0), 0.0
+        if act < 0.4:
+            disk.velocity, disk.angular_velocity = (0.0, 0.0), 0.0
+        elif 0.5 <= act < 0.6:
+            disk.velocity = 1e-6, 0.0
+        report = stepper.step(chance.choice((1 / 240, 1 / 60)))
+        assert report.ledger is not None
+        assert abs(report.ledger.residual) < 1e-14 * scale
