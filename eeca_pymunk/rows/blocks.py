@@ -20,7 +20,7 @@ from ..model.contacts import AnyProblem, Solved
 from ..model.parameters import impulses
 from ..model.parameters.impulses import DRIFT_SLIPS, DRIFT_STEADY
 from ..model.parameters.intervals import DIRECT_MOVING, INTERVAL_RESIDUAL_SPEED, SMALL_SWEEPS
-from .build import aim, conserves, largest_terms, rates, rubs
+from .build import aim, conserves, largest_terms, normal_rate, rates, rubs
 from .conjugate import sweep_conjugate
 from .coulomb import slip_freely
 from .direct import refine, refine_and_sweep
@@ -199,12 +199,17 @@ def solve_freely(
     problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, owed: float, status: int, OUT: Rows[Solved]
 ) -> int:  # fmt: skip
     """`solve_block` again, without friction, where `solve_block` has left contacts with friction wedged (WEDGED):
-    sweeps may end between two states without impulses, so that what approaches would meet again at the same instant,
-    without end. FREE (k, 3): velocities without impulses. Returns the status; L, V and OUT are those of the solution,
-    OUT with the sweeps and direct solves of both.
+    sweeps may end between two states without impulses, or the energy lock may leave none, so that what approaches would
+    meet again at the same instant, without end. FREE (k, 3): velocities without impulses. Returns the status; L, V and
+    OUT are those of the solution, OUT with the sweeps and direct solves of both.
     """
     ROWS, m = problem.ROWS, problem.m
-    if status == CONVERGED or not (OUT[0].residual > impulses.WEDGED * aim(ROWS, m) and rubs(ROWS, m)):
+    if status == CONVERGED or not rubs(ROWS, m):
+        return status
+    worst = OUT[0].residual
+    for i in range(m):
+        worst = max(worst, ROWS[i].target - normal_rate(ROWS[i], V))
+    if not worst > impulses.WEDGED * aim(ROWS, m):
         return status
     slip_freely(ROWS, m)
     L[:] = 0.0
