@@ -308,6 +308,12 @@ MUTATIONS = (
     Mutation("paper: psi1 + psi2 = 2 xi / Omega", "energy/balance.py", "return 4.0 * damping_ratio / reduced_frequency",
              "return 2.0 * damping_ratio / reduced_frequency", "energy/test_equations.py", "signorini_closed"),
     # One place each: sides, manifolds, lists, the lock, the correction, rest, the driver, rows over an operator.
+    Mutation("corners: those that come near while the nearest closes do not count", "prediction/axes.py",
+             "return bottom - reach, top + reach", "return bottom, top",
+             "prediction/test_many_corners.py", "left_out"),
+    Mutation("cycles: rows count as dependent", "joints/redundancy.py",
+             "return not (factor_dual(W, False, 0.0) and are_independent(W))", "return True",
+             "joints/test_redundancy.py", "which_rows"),
     Mutation("sides: a remembered normal is not used", "geometry/sides.py",
              "if near.distance > reach or near.nx * mx + near.ny * my >= 0.0:", "if True:",
              "islands/test_large_steps.py", "rod"),

@@ -23,6 +23,7 @@ from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..geometry.flight import pose, rate
 from ..model.bodies import Body
+from ..model.parameters.detection import MANY_CORNERS
 from ..model.scene import Scene
 from .roots import falling_root
 
@@ -74,16 +75,49 @@ def first_close(best: float, near: float, closing: bool, g: float, w: float, of:
 
 
 @nonallocating
+def near_ones(
+    P: FloatArray, p: int, Q: FloatArray, q: int, nx: float, ny: float, a: MotionState, b: MotionState, of: Closing
+) -> tuple[float, float]:
+    """Heights along n from which on vertices P, and up to which vertices Q, may decide `fixed_axis`: no others can be
+    as near as the nearest pair before that one may close, even if they approach as fast as any."""
+    top, bottom, fastest, slowest, i, j = -math.inf, math.inf, -math.inf, math.inf, 0, 0
+    for k in range(p):
+        height = P[k, 0] * nx + P[k, 1] * ny
+        fastest = max(fastest, (a.vx - a.spin * (P[k, 1] - a.y)) * nx + (a.vy + a.spin * (P[k, 0] - a.x)) * ny)
+        if height > top:
+            top, i = height, k
+    for k in range(q):
+        height = Q[k, 0] * nx + Q[k, 1] * ny
+        slowest = min(slowest, (b.vx - b.spin * (Q[k, 1] - b.y)) * nx + (b.vy + b.spin * (Q[k, 0] - b.x)) * ny)
+        if height < bottom:
+            bottom, j = height, k
+    w = (b.vx - b.spin * (Q[j, 1] - b.y) - a.vx + a.spin * (P[i, 1] - a.y)) * nx
+    w += (b.vy + b.spin * (Q[j, 0] - b.x) - a.vy - a.spin * (P[i, 0] - a.x)) * ny
+    best, _, _ = first_close(math.inf, math.inf, False, bottom - top - of.extent, w, of)
+    if best == math.inf:
+        return -math.inf, math.inf
+    reach = of.extent + of.tolerance + max(of.tolerance, (0.5 * of.bend * best - (slowest - fastest)) * best)
+    return bottom - reach, top + reach
+
+
+@nonallocating
 def fixed_axis(
     P: FloatArray, p: int, Q: FloatArray, q: int, nx: float, ny: float, a: MotionState, b: MotionState, of: Closing
 ) -> tuple[float, float, bool]:
     """`first_close` of all vertices P of a against all vertices Q of b, p and q of them, along the present normal n
     from a to b, fixed in space. P, Q: columns 0 and 1 are the vertices in space, 2 and 3 the normals of the edges."""
     best, near, closing = math.inf, math.inf, False
+    low, high = -math.inf, math.inf
+    if min(p, q) >= MANY_CORNERS:
+        low, high = near_ones(P, p, Q, q, nx, ny, a, b, of)
     for i in range(p):
         x, y = P[i, 0], P[i, 1]
+        if x * nx + y * ny < low:
+            continue
         vx, vy = a.vx - a.spin * (y - a.y), a.vy + a.spin * (x - a.x)
         for j in range(q):
+            if Q[j, 0] * nx + Q[j, 1] * ny > high:
+                continue
             g = (Q[j, 0] - x) * nx + (Q[j, 1] - y) * ny - of.extent
             w = (b.vx - b.spin * (Q[j, 1] - b.y) - vx) * nx + (b.vy + b.spin * (Q[j, 0] - b.x) - vy) * ny
             best, near, closing = first_close(best, near, closing, g, w, of)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..compiled import inlined
+from ..model.parameters.detection import MANY_CORNERS
 from ..model.parameters.events import BUDGET_TIME, VERTICES_LOOK
 from ..model.scene import Scene
 
@@ -15,9 +16,10 @@ def growth(A: Scene, dt: float) -> float:
 
 @inlined
 def look_work(A: Scene, a: int, b: int) -> float:
-    """Work of a look at shapes a and b, in looks: those at shapes of many vertices, of which each pair counts, take
-    longer."""
-    return float(1.0 + A.LINK[a].vertices * A.LINK[b].vertices / VERTICES_LOOK)
+    """Work of a look at shapes a and b, in looks: those at shapes of many vertices take longer, by all pairs of these,
+    or from MANY_CORNERS on by three for each."""
+    p, q = A.LINK[a].vertices, A.LINK[b].vertices
+    return float(1.0 + (p * q if min(p, q) < MANY_CORNERS else 3.0 * (p + q)) / VERTICES_LOOK)
 
 
 @inlined
