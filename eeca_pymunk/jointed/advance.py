@@ -12,7 +12,7 @@ from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Bounded, Columns, Row
 from ..model.islands import Island
-from ..model.joints import Joints
+from ..model.joints import INDEPENDENT, Joints
 from ..model.parameters.joints import ARM_ERROR, ARM_ITERATIONS, COLUMN_CONTACTS
 from ..model.scene import Scene
 from ..rows.build import push_contact
@@ -85,7 +85,8 @@ def find_hit(groups: Groups, ROWS: Rows[Row], m: int) -> IntArray:
 def stays(J: Joints, groups: Groups, g: int, PUSHED: FloatArray, ACC: FloatArray) -> bool:
     """Whether the component of group g need not be stepped: its motion was computed under the accelerations ACC. False
     if rows are redundant, since their impulses depend on those with which the solve begins."""
-    same = J.COMPONENT[groups.COMPONENT[g]].loops == 0
+    component = J.COMPONENT[groups.COMPONENT[g]]
+    same = component.loops == 0 or component.dependence == INDEPENDENT
     for w in range(groups.FIRST[g], groups.FIRST[g + 1]):
         for c in range(3):
             same = same and PUSHED[groups.BODY[w], c] == ACC[groups.BODY[w], c]

@@ -3,7 +3,8 @@
 Order 2 (midpoint with discrete gradients), or 4 by Suzuki's composition (s, s, 1 - 4s, s, s) h, s = 1/(4 - 4^(1/3)), if
 nothing in the component dissipates, drives or meets a limit. The rungs are tried in turn: ORDER_4, WHOLE_STEP, three
 of more parts, then those of elastic joints, from ELASTIC_RUNG on. PARTS_ON and COMPLIANCE_ON have their numbers of
-parts, and the compliances of the joints over (h/7)^2.
+parts, and the compliances of the joints over (h/7)^2. Where joints close cycles the whole step is tried again without
+the impulses of the last one, as for redundant rows, and then with a smaller term for these.
 
 Joints that contradict one another (`contradicts`) become elastic at once: all rungs before would fail alike. Where a
 shorter interval is tried instead, exact joints take the step as a whole or not at all if the interval is long
