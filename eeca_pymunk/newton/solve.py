@@ -107,7 +107,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
         at_floor = iteration > since + 1 and 0.5 * best < worst < floor
         # Next to the solution errors cannot fall by much.
         slow = not worst <= NEWTON_PROGRESS * last and (iteration > 2 or not worst <= JOINT_ROUND_OFF)
-        at_floor = at_floor or (slow and worst < JOINT_ROUND_OFF and last * pace <= JOINT_TOLERANCE)
+        at_floor = at_floor or (slow and worst < floor and last * pace <= JOINT_TOLERANCE)
         if give > 0.0 and iteration > 1:
             left = round_off_of_impulses(W, h, length)
             if worst <= left and left > ELASTIC_ROUND_OFF:
