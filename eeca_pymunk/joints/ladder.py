@@ -3,8 +3,7 @@
 Order 2 (midpoint with discrete gradients), or 4 by Suzuki's composition (s, s, 1 - 4s, s, s) h, s = 1/(4 - 4^(1/3)), if
 nothing in the component dissipates, drives or meets a limit. The rungs are tried in turn: ORDER_4, WHOLE_STEP, three
 of more parts, then those of elastic joints, from ELASTIC_RUNG on. PARTS_ON and COMPLIANCE_ON have their numbers of
-parts, and the compliances of the joints over (h/7)^2. Where joints close cycles the whole step is tried again without
-the impulses of the last one, as for redundant rows, and then with a smaller term for these.
+parts, and the compliances of the joints over (h/7)^2.
 
 Joints that contradict one another (`contradicts`) become elastic at once: all rungs before would fail alike. Where a
 shorter interval is tried instead, exact joints take the step as a whole or not at all if the interval is long
@@ -22,7 +21,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import nonallocating
 from ..model.joint_steps import ELASTIC, EXACT, FINAL, HALVED, LINEAR, LONG
-from ..model.joints import GIVES_WAY, ROTARY_SPRING, SPRING, Workspace
+from ..model.joints import DEPENDENT, GIVES_WAY, INDEPENDENT, ROTARY_SPRING, SPRING, Workspace
 from ..model.parameters import joints
 from ..model.parameters.events import RESOLUTION
 from ..model.parameters.joints import BALANCED, JOINT_APART
@@ -162,8 +161,9 @@ def take_parts(W: Workspace, h: float, length: float, rung: int, parts: int, giv
         if rung == ORDER_4 and recalls(W, h):
             predict_part(W, p, piece, cold)
         if not step_with_limits(W, False, piece, length, cold, give, rung == ORDER_4):
+            redundant = standing(W) or W.J.COMPONENT[W.s].dependence == DEPENDENT
             exact = p == 0 and rung < ELASTIC_RUNG
-            return CONTRADICTED if exact and (cold or standing(W)) and contradicts(W, piece) else FAILED
+            return CONTRADICTED if exact and redundant and contradicts(W, piece) else FAILED
         if rung == ORDER_4:
             remember_part(W, piece)
     return TAKEN
@@ -178,8 +178,8 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
         touched: whether joints were edited.  own: whether only steps have left them apart, see `repaid`.
     """
     first, progress = W.J.JOINT[W.link[0].joint], W.J.PROGRESS
-    loops = W.J.COMPONENT[W.s].loops > 0
-    cold, yields = W.J.COMPONENT[W.s].cold > 0, has_elastic_joint(W)
+    component, loops = W.J.COMPONENT[W.s], W.J.COMPONENT[W.s].loops > 0
+    cold, yields = component.dependence == DEPENDENT and component.taut == 0, has_elastic_joint(W)
     rung = ELASTIC_RUNG if yields else ORDER_4 if order == 4 and smooth(W) else WHOLE_STEP
     if rung != ORDER_4 or touched:
         forget_parts(W)
@@ -195,12 +195,14 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
             first.compliance = compliance
             return EXACT if rung <= WHOLE_STEP else HALVED if rung < ELASTIC_RUNG else ELASTIC
         # A rung that began with predicted values, or with impulses of redundant rows, is tried again without these.
-        again = recalls(W, h) if rung == ORDER_4 else rung == WHOLE_STEP and cold != loops
+        sure = component.dependence == INDEPENDENT
+        again = (cold != loops and not (sure and rung == ORDER_4)) or (rung == ORDER_4 and recalls(W, h))
+        if sure:  # rows may become dependent within the step, as where it passes a dead centre
+            component.dependence = DEPENDENT
         restore_start(W)
         forget_parts(W)
         tight = loops and rung == WHOLE_STEP and not again and progress.most_epsilon == joints.REDUNDANT_MOST
-        rung = ELASTIC_RUNG if outcome == CONTRADICTED else rung if again or tight else rung + 1
-        cold = loops if again or tight or rung >= ELASTIC_RUNG else W.J.COMPONENT[W.s].cold > 0
+        rung, cold = ELASTIC_RUNG if outcome == CONTRADICTED else rung if again or tight else rung + 1, loops
         # Compliance makes rows independent by itself.
         progress.most_epsilon = joints.REDUNDANT_EPSILON if tight or rung >= ELASTIC_RUNG else joints.REDUNDANT_MOST
     return LINEAR

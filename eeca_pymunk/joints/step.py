@@ -36,7 +36,7 @@ from .correct import fitting_loss, project
 from .gains import take_gain
 from .ladder import climb, limit_work
 from .ledger import add_part, clear_ledger
-from .redundancy import rows_depend
+from .redundancy import affords_try, rows_depend
 from .start import bounded_targets, compute_rows, read_joints
 from .unheld import step_linearly
 
@@ -116,9 +116,8 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
     # Redundant rows begin without impulses, unless their pull holds bodies.
     component.taut = 1 if component.loops > 0 and is_taut(W, h) else 0
     if component.loops > 0 and component.dependence == UNTESTED:
-        component.dependence = DEPENDENT if rows_depend(W) else INDEPENDENT
-    component.cold = 1 if component.dependence == DEPENDENT and component.taut == 0 else 0
-    if component.cold > 0:
+        component.dependence = INDEPENDENT if affords_try(W) and not rows_depend(W) else DEPENDENT
+    if component.dependence == DEPENDENT and component.taut == 0:
         drop_impulses(W)
     for i in range(W.bodies):
         for c in range(3):

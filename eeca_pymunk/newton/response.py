@@ -14,7 +14,6 @@ from ..compiled import nonallocating
 from ..model.joint_steps import STEP, STIFF_ALL, STIFF_NONE
 from ..model.joints import CONDENSED, DUAL, GEAR, GROOVE, INDEPENDENT, Workspace
 from ..model.parameters.joints import CONDENSED_PASSES, REDUNDANT_EPSILON, RESPONSE_PASSES, TAUT
-from .dual import are_independent
 from .entries import acts
 from .motion import go_back, move
 from .rows import joint_rows, start_joint
@@ -101,16 +100,14 @@ def prepare_response(W: Workspace, what: int, h: float) -> int:
         first_iterate(W, what, h)
     system = first_system(component, what)
     give = W.J.JOINT[link[0].joint].compliance / h**2 if what == STEP else 0.0
-    # Rows in cycles may be redundant. Factors at an instant tell it; of a step it is known.
     loops = component.loops > 0 and give == 0.0 and (what != STEP or component.dependence != INDEPENDENT)
-    tells = loops and what != STEP and system == DUAL
-    epsilon = REDUNDANT_EPSILON if loops and not tells else 0.0
+    epsilon = REDUNDANT_EPSILON if loops else 0.0
     while True:
         for i in range(component.unknowns + component.impulses):
             W.J.RIGHT[i] = 0.0
         assemble(W, what, h, give, True, system, True)
-        if decompose(W, what, system, epsilon, give) and (epsilon > 0.0 or not tells or are_independent(W)):
-            W.J.TALLY.refined = RESPONSE_PASSES if loops and epsilon > 0.0 and system != CONDENSED else 0
+        if decompose(W, what, system, epsilon, give):
+            W.J.TALLY.refined = RESPONSE_PASSES if loops and system != CONDENSED else 0
             return int(system)
         if epsilon == 0.0:
             epsilon = REDUNDANT_EPSILON

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from ..compiled import nonallocating
 from ..model.joint_steps import LINEAR_STEP, STEP
-from ..model.joints import CONDENSED, DUAL, OTHERWISE, Workspace
+from ..model.joints import CONDENSED, DEPENDENT, DUAL, OTHERWISE, Workspace
 from ..model.parameters.joints import (
     BOUNDED_SOLVES,
     CONDENSED_PASSES,
@@ -99,6 +99,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
     # since: iteration in which the solve has begun again, with FULL.  renewed: whether the last iteration was NEW.
     # pace: by which factor the last iteration has made the error smaller.
     best, last, pace, stalls, since, renewed = 1e300, 1e300, 1.0, 0, 0, False
+    sure = component.dependence != DEPENDENT  # impulses of redundant rows leave more round-off
     for iteration in range(NEWTON_ITERATIONS + 1):
         built = factors != KEPT
         worst = linearise(W, STEP, h, length, give, False, system, built)
@@ -107,7 +108,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
         at_floor = iteration > since + 1 and 0.5 * best < worst < floor
         # Next to the solution errors cannot fall by much.
         slow = not worst <= NEWTON_PROGRESS * last and (iteration > 2 or not worst <= JOINT_ROUND_OFF)
-        at_floor = at_floor or (slow and worst < floor and last * pace <= JOINT_TOLERANCE)
+        at_floor = at_floor or (slow and sure and worst < floor and last * pace <= JOINT_TOLERANCE)
         if give > 0.0 and iteration > 1:
             left = round_off_of_impulses(W, h, length)
             if worst <= left and left > ELASTIC_ROUND_OFF:

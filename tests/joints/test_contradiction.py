@@ -107,13 +107,12 @@ def test_elastic_joints_that_contradict_one_another_are_solved_to_round_off(
     assert J.LOCAL[0].v0[0] + J.LOCAL[1].v0[0] == pytest.approx(momentum, rel=1e-12)
 
 
-@pytest.mark.parametrize(("spins", "h", "last"), [((20.0, -30.0), 0.1, 1), ((10.0, 20.0), 0.05, 2)])
+@pytest.mark.parametrize(("spins", "h", "last"), [((10.0, 20.0), 0.03, 1), ((10.0, 20.0), 0.05, 2)])
 def test_a_step_too_long_for_its_motion_is_divided(
     monkeypatch: pytest.MonkeyPatch, spins: tuple[float, float], h: float, last: int
 ) -> None:
     """A linkage of four bars does not turn as far as its velocities would in the step: no iterate fits its joints, but
-    they contradict nothing. The whole step is tried with the impulses before, without, and with a smaller term for
-    redundant rows."""
+    they contradict nothing."""
     ground = pymunk.Body(body_type=pymunk.Body.STATIC)
     A, J = two_bodies(
         lambda a, b: pymunk.PivotJoint(ground, a, (-0.5, 1.0)),
@@ -124,7 +123,7 @@ def test_a_step_too_long_for_its_motion_is_divided(
     A.BODY[0].vy, A.BODY[1].vy = 0.5 * spins[0], spins[0] + 0.5 * spins[1]
     tried, status = rungs_of(monkeypatch, A, J, h)
     assert status == HALVED
-    assert tried == [ORDER_4, *3 * [WHOLE_STEP], WHOLE_STEP + 1, WHOLE_STEP + 2][: 4 + last]
+    assert tried == [ORDER_4, WHOLE_STEP, WHOLE_STEP, WHOLE_STEP + 1, WHOLE_STEP + 2][: 3 + last]
 
 
 @pytest.mark.parametrize(
