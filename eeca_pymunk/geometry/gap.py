@@ -77,12 +77,15 @@ def gap_along(
     nx: float, ny: float,
 ) -> float:  # fmt: skip
     """How far (length) shape b is beyond shape a along n, their bodies at the given poses: no more than their gap."""
-    P, Q, beyond = A.CORE[0], A.CORE[1], math.inf
+    P, Q = A.CORE[0], A.CORE[1]
     p, q = place_vertices(A, a, x_a, y_a, angle_a, P), place_vertices(A, b, x_b, y_b, angle_b, Q)
-    for i in range(p):
-        for j in range(q):
-            beyond = min(beyond, nx * (Q[j, 0] - P[i, 0]) + ny * (Q[j, 1] - P[i, 1]))
-    return beyond - A.SHAPE[a].rounding - A.SHAPE[b].rounding
+    x, y = P[0, 0], P[0, 1]
+    top, bottom = 0.0, math.inf  # of a, and the bottom of b, as heights above its first vertex
+    for i in range(1, p):
+        top = max(top, nx * (P[i, 0] - x) + ny * (P[i, 1] - y))
+    for j in range(q):
+        bottom = min(bottom, nx * (Q[j, 0] - x) + ny * (Q[j, 1] - y))
+    return bottom - top - A.SHAPE[a].rounding - A.SHAPE[b].rounding
 
 
 @nonallocating
