@@ -16,12 +16,15 @@ from ..contacts.single import note
 from ..contacts.works import external_work
 from ..geometry.sides import pair_of
 from ..islands.building import join_reachable
+from ..islands.hits import make_busy, most_hits
 from ..islands.local import clear_places, set_places
 from ..islands.membership import jointed, members, unite
 from ..model.bodies import AT_REST
 from ..model.contacts import SOLVED, Problem, Solved
+from ..model.parameters.events import BUSY_STEPS
 from ..model.scene import Scene
 from ..model.step import IMPACT
+from ..pairs.rules import law
 from ..rows.blocks import CONVERGED, solve_block, solve_freely
 from ..rows.laws import solved_exactly
 from .simultaneous import Block, gather_block, make_block, take_owed_energy
@@ -144,6 +147,8 @@ def unite_block(A: Scene, a: int, b: int, t: float, n: int, lasts: bool, lost: f
     root = STATE[root].island
     A.RESTING[root].lost += lost
     A.MEMBER[root].hits += 1
+    if jointed(A, root) and law(A, a, b)[0] < 1.0 and A.MEMBER[root].hits >= most_hits(A, a, b):
+        make_busy(A, root, BUSY_STEPS)  # further ones are contacts of the interval that now begins
     # Bodies of the block that are in no island are predicted too.
     free = 0
     for q in range(n):

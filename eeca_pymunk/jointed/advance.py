@@ -13,7 +13,7 @@ from ..compiled.records import Rows
 from ..model.contacts import Bounded, Columns, Row
 from ..model.islands import Island
 from ..model.joints import INDEPENDENT, Joints
-from ..model.parameters.joints import ARM_ERROR, ARM_ITERATIONS, COLUMN_CONTACTS
+from ..model.parameters.joints import ARM_ERROR, ARM_ITERATIONS
 from ..model.scene import Scene
 from ..rows.build import push_contact
 from ..rows.inplace import copy
@@ -45,7 +45,8 @@ class Motion(NamedTuple):
 
 class Interval(NamedTuple):
     """An island over an interval of length h from instant t: its k bodies, of which impulses move the first n; their
-    groups; m contacts ROWS with columns C; and, out, the motion of the bodies."""
+    groups; m contacts ROWS with columns C; and, out, the motion of the bodies. few: whether so few contacts may act
+    (`press_laws.few_act`) that they are solved exactly."""
 
     isle: Island
     groups: Groups
@@ -56,6 +57,7 @@ class Interval(NamedTuple):
     n: int
     t: float
     h: float
+    few: bool
 
 
 @kernel
@@ -99,7 +101,7 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
     (k, 3): predicted velocities at the end, with which Newton's method begins; (0, 3) for none. `fill`: also compute
     the columns C and the bounded rows B about this step, bounded impulses being given. Else C is kept, B gets the new
     impulses and bounds of its rows, and a component that `stays` is not stepped."""
-    isle, groups, ROWS, motion, C, m, _, t, h = interval
+    isle, groups, ROWS, motion, C, m, _, t, h, few = interval
     k = len(isle.IM)
     ACC = isle.ACC.copy()
     for i in range(m):
@@ -125,7 +127,7 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
             note_rows(A, J, B, s, h, motion.MEAN)
         elif HIT[g] > 0:
             size = find_places(A, J, s, INDEX)
-            let_slip(J, s, True, m <= COLUMN_CONTACTS)
+            let_slip(J, s, True, few)
             first = list_rows(A, J, B, s, h, motion.MEAN)
             if ready_in_step(J, s, h):
                 PUSH = np.empty((size, 3))

@@ -11,7 +11,7 @@ from ..joints.correct import fitting_loss
 from ..joints.workspace import workspace
 from ..model.contacts import JointedProblem
 from ..model.joints import Joints
-from ..model.parameters.joints import COLUMN_CONTACTS, FIT_CLOSING, FIT_ENERGY, FIT_RESIDUAL
+from ..model.parameters.joints import FIT_CLOSING, FIT_ENERGY, FIT_RESIDUAL
 from ..model.scene import Scene
 from ..rows.bounded import room_for_rows
 from ..rows.build import normal_rate
@@ -58,7 +58,7 @@ def project_velocities(A: Scene, J: Joints, interval: Interval, L: FloatArray, e
             q = number_of(A, J, s, w)
             for c in range(3 if q >= 0 else 0):
                 motion.V[q, c] = J.LOCAL[w].v0[c]
-    if payer < 0 or m > COLUMN_CONTACTS:
+    if payer < 0 or not interval.few:
         return np.zeros(m)
     PUSHING, pushing, fastest = np.empty(m, np.int64), 0, 0.0
     for i in range(m):
@@ -79,7 +79,7 @@ def stop_closing(
     """Normal impulses mu (m,), 0 <= mu _|_ u + G S G^T mu >= 0, on the contacts PUSHING, whose rates are u, with S the
     response of components at one instant: velocities that fit the joints still do, and contacts do not close. Energy
     changes by mu.(u + G S G^T mu / 2) <= 0, also if sweeps end early. Component `payer` has the loss in its ledger."""
-    isle, groups, ROWS, motion, _, m, n, _, _ = interval
+    isle, groups, ROWS, motion, _, m, n, _, _, _ = interval
     pushing, KEEP = len(PUSHING), ROWS[: len(PUSHING)].copy()
     for i in range(pushing):
         KEEP[i] = ROWS[PUSHING[i]]

@@ -122,7 +122,7 @@ def points_part(interval: Interval, L: FloatArray) -> float:
 def excess(A: Scene, interval: Interval, L: FloatArray) -> float:
     """How many times too long an interval is for the motion of its bodies under impulses L (m, 2) of its contacts,
     if more than INTERVAL_RETRY."""
-    isle, _, ROWS, motion, _, m, n, t, h = interval
+    isle, _, ROWS, motion, _, m, n, t, h, _ = interval
     far, KEY = 0.0, np.empty(m, np.int64)
     for z in range(m):
         KEY[z] = ROWS[z].key
@@ -137,7 +137,7 @@ def excess(A: Scene, interval: Interval, L: FloatArray) -> float:
 def too_deep_on_way(A: Scene, interval: Interval) -> float:
     """How many times too long an interval is because one of m contacts is deeper at its end, or in its middle, than the
     linear rows predict: a body that slides along a rotating wall may be past the wall's end by then."""
-    isle, _, ROWS, motion, _, m, _, _, h = interval
+    isle, _, ROWS, motion, _, m, _, _, h, _ = interval
     MIDDLE = isle.POSE + 0.25 * (h * isle.V + motion.WAY)
     half = too_deep_at_end(A, isle, MIDDLE, ROWS, m, 0.5 * h, True)
     return max(2.0 * half, too_deep_at_end(A, isle, motion.END, ROWS, m, h, True))

@@ -62,7 +62,7 @@ def lift_island(
 ) -> None:  # fmt: skip
     """Correct penetration at the end of an island's motion under impulses L (m, 2) of its contacts, which have `lost`
     energy in it."""
-    isle, groups, ROWS, motion, _, m, n, _, _ = interval
+    isle, groups, ROWS, motion, _, m, n, _, _, _ = interval
     budget, payable = payment(A, isle, ROWS, L, motion.V, n, m, lost, A.RESTING[root].lost, False, True)
     spent = correct_overlaps(A, J, interval, end, budget)
     paid, one = min(spent, payable), J.STEPPED[groups.JOINTED[0]]
@@ -91,7 +91,7 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget
     errors of second order are then closed. A free island keeps its centre of mass and its angular momentum: velocities
     at the end rotate by what the displacements have changed of it.
     """
-    isle, groups, ROWS, motion, C, m, n, _, h = interval
+    isle, groups, ROWS, motion, C, m, n, _, h, _ = interval
     V, WAY, END = motion.V, motion.WAY, motion.END
     GAPS, deepest = np.empty(m), 0.0
     for i in range(m):

@@ -46,23 +46,30 @@ def work_error(interval: Interval, L: FloatArray, slow: float, pull: float, know
 
 
 @kernel
+def scale_of_loss(interval: Interval, L: FloatArray, B: Bounded, more: float) -> float:
+    """Factor s of impulses L with which contacts lose `more` energy than with s = 1, from the slope p - 2 q of their
+    loss there; 0 if that does not grow with less impulses."""
+    FREE = interval.motion.MEAN.copy()
+    push_columns(interval.C, L, interval.m, -1.0, FREE)
+    settle_bounded(B, FREE)
+    p, q = loss_of_scaled(interval.ROWS, L, interval.motion.MEAN, FREE, interval.m)
+    slope = p - 2.0 * q
+    return 1.0 + more / slope if slope < 0.0 else 0.0
+
+
+@kernel
 def lock_jointed(
     A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, free: bool, elastic: bool, owed: float,
     error: float,
 ) -> None:  # fmt: skip
     """Scale the impulses L of contacts by s until these lose at least `owed`, or if `elastic` exactly that, up to
     `error`. s follows from the slope p - 2 q at s = 1, again for each new motion."""
-    motion, C, m = interval.motion, interval.C, interval.m
+    m = interval.m
     for tries in range(PRESS_LOCKS + 1):
         loss = lost(interval, L)
         if loss >= owed - error and (not elastic or loss <= owed + error):
             break
-        FREE = motion.MEAN.copy()
-        push_columns(C, L, m, -1.0, FREE)
-        settle_bounded(B, FREE)
-        p, q = loss_of_scaled(interval.ROWS, L, motion.MEAN, FREE, m)
-        slope = p - 2.0 * q
-        s = 1.0 + (owed - loss) / slope if slope < 0.0 else 0.0
+        s = scale_of_loss(interval, L, B, owed - loss)
         if tries == PRESS_LOCKS or J.PROGRESS.effort > J.PROGRESS.share or (elastic and not 0.0 < s < 2.0):
             s = 0.0
         elif not 0.1 < s < 2.0:

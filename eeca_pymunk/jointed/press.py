@@ -32,7 +32,7 @@ from .bounded_rows import make_bounded, settle_bounded, with_bounded
 from .columns import count_operations, fill_free, set_effective_masses
 from .gathered import some_give, some_refused, some_taut
 from .groups import is_free
-from .losses import lock_jointed, lost, work_error
+from .losses import lock_jointed, lost, scale_of_loss, work_error
 from .press_laws import aims, manner_of, solve_laws
 from .secant import fit_columns
 
@@ -45,7 +45,7 @@ def solve_gently(
 ) -> None:  # fmt: skip
     """Impulses L (m, 2) by sweeps that begin at 0, about the motion without impulses; none if these are excessive for
     bodies of the speed `quick`; and the motion under them."""
-    isle, groups, ROWS, _, C, m, n, _, _ = interval
+    isle, groups, ROWS, _, C, m, n, _, _, _ = interval
     L[:m] = 0.0
     advance(A, J, interval, L, B, True, np.empty((0, 3)))
     if free:
@@ -105,7 +105,7 @@ def solve_contacts(
         slow, fast, pull: see `..contacts.interval.speeds`.  owed: energy >= 0 that the island has to lose at least.
         interval: out, the columns of the contacts in their last solution.
     """
-    isle, groups, ROWS, motion, C, m, n, _, h = interval
+    isle, groups, ROWS, motion, C, m, n, _, h, few = interval
     fill_free(groups, C, ROWS, isle.IM, isle.II, m)
     rates(ROWS, isle.V, m)
     SLIP, limited, quick, manner = take_slips(ROWS, m), False, fast + pull * h, manner_of(A, interval)
@@ -119,7 +119,7 @@ def solve_contacts(
     VELOCITIES, k = np.empty((2 * len(isle.IM), 3)), len(isle.IM)
     PREVIOUS, FORESEEN, UNKNOWN = VELOCITIES[:k], VELOCITIES[k:], VELOCITIES[:0]
     converged, best, worst, LEAST, USED, agreed = False, np.inf, 0.0, L.copy(), L.copy(), False
-    better, bent, rough, reached, B = 0, 0.0, False, np.inf, make_bounded(J, groups, manner.few)
+    better, bent, rough, reached, B = 0, 0.0, False, np.inf, make_bounded(J, groups, few)
     NOW = np.empty(len(B.OF))
     problem = JointedProblem(ROWS, C, B, m)
     free, begun = is_free(isle, groups, n, J), J.PROGRESS.effort
@@ -139,9 +139,11 @@ def solve_contacts(
             reached = min(reached, off)
             stalls = off > joints.OUTER_PROGRESS * best
             if (off <= agree and not (rough and worst > fine)) or (off <= joints.OUTER_FLOOR * scale and stalls):
-                # Velocities agree, but not well enough as long as contacts gain energy by them.
+                # Velocities agree, but not well enough as long as contacts gain more energy by them than the lock may
+                # take at the end without changing them again.
                 error = work_error(interval, L, slow, pull, joints.PRESS_WORK_ROUND_OFF)
-                pays = elastic or lost(interval, L) >= owed - error
+                more = owed - lost(interval, L)
+                pays = elastic or more <= error or abs(scale_of_loss(interval, L, B, more) - 1.0) <= joints.AGREE
                 if pays or (stalls and limited):
                     converged, agreed = True, True
                     break
@@ -201,7 +203,7 @@ def solve_contacts(
         converged = (converged and off <= agree) or (best <= joints.AGREE * scale and some_give(J, groups))
     # Impulses that are no solution may let walls do any work.
     quick = fast + pull * h
-    if excessive(L, m, isle.IM, n, quick) or (not converged and manner.few):
+    if excessive(L, m, isle.IM, n, quick) or (not converged and few):
         solve_gently(A, J, interval, L, B, free, quick)
         converged, bent = False, np.inf if free else 0.0
     if bent > joints.ARM_ERROR:

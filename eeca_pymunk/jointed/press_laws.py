@@ -7,15 +7,16 @@ from typing import NamedTuple
 
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
+from ..compiled.records import Rows
 from ..contacts.correction import stop_at_walls
 from ..islands.candidates import before_end, sweeps_of
-from ..model.contacts import JointedProblem
+from ..model.contacts import JointedProblem, Row
 from ..model.joints import Joints
 from ..model.parameters import joints
 from ..model.parameters.impulses import WEDGED
 from ..model.parameters.intervals import LARGE_ISLAND
 from ..model.scene import Scene
-from ..rows.build import conserves, rubs
+from ..rows.build import conserves, normal_rate, rubs
 from ..rows.columns import push_column
 from ..rows.conjugate import sweep_conjugate
 from ..rows.gentle import excessive
@@ -28,28 +29,38 @@ from .columns import count_operations
 
 
 class Manner(NamedTuple):
-    """How contacts are solved: `exactly`, to round-off, if they are `elastic`, as none of them loses energy, or `few`,
-    so that homotopies solve them; else roughly. rounds: steps of the components, at most. sweeps: of one solution of
-    the laws, at most."""
+    """How contacts are solved: `exactly`, to round-off, if they are `elastic`, as none of them loses energy, or few
+    (`few_act`), so that homotopies solve them; else roughly. rounds: steps of the components, at most. sweeps: of one
+    solution of the laws, at most."""
 
     elastic: bool
-    few: bool
     exactly: bool
     rounds: int
     sweeps: int
 
 
 @nonallocating
+def few_act(ROWS: Rows[Row], V: FloatArray, m: int, h: float, pull: float) -> bool:
+    """Whether at most COLUMN_CONTACTS of m contacts may act: gaps that would close in h, g + h (u_n - |a| h) <= 0, from
+    velocities V (k, 3) with an acceleration `pull`, |a|. Homotopies take no pivots for the others."""
+    number = 0
+    for i in range(m):
+        if ROWS[i].gap + h * (normal_rate(ROWS[i], V) - pull * h) <= 0.0:
+            number += 1
+    return number <= joints.COLUMN_CONTACTS
+
+
+@nonallocating
 def manner_of(A: Scene, interval: Interval) -> Manner:
     """How the contacts of an interval are solved."""
-    elastic, few = conserves(interval.ROWS, interval.m), interval.m <= joints.COLUMN_CONTACTS
+    elastic = conserves(interval.ROWS, interval.m)
     if elastic:
-        return Manner(True, few, True, joints.OUTER, joints.PRESS_SWEEPS_ELASTIC)
-    if few:
-        return Manner(False, True, True, joints.OUTER, joints.PRESS_SWEEPS_FEW)
+        return Manner(True, True, joints.OUTER, joints.PRESS_SWEEPS_ELASTIC)
+    if interval.few:
+        return Manner(False, True, joints.OUTER, joints.PRESS_SWEEPS_FEW)
     rounds = joints.OUTER_PART if before_end(A, interval.t + interval.h) else joints.OUTER_MANY
     most = sweeps_of(interval.n, interval.t) if interval.n >= LARGE_ISLAND else joints.PRESS_SWEEPS
-    return Manner(False, False, False, rounds, most)
+    return Manner(False, False, rounds, most)
 
 
 @nonallocating
@@ -98,9 +109,12 @@ def solve_laws(
     m, C, USED = interval.m, interval.C, L.copy()
     BOTH = begin_laws(interval, problem, L, FORESEEN)
     work = J.PROGRESS.share - J.PROGRESS.effort
-    worst = solve_columns(problem, BOTH, FORESEEN, fine, sweeps, manner.sweeps, work)
-    if worst > WEDGED * scale and manner.few and rubs(interval.ROWS, m):
-        worst = solve_wedged(problem, BOTH, FORESEEN, fine, manner.sweeps, work)
+    if interval.few:
+        worst = solve_columns(problem, BOTH, FORESEEN, fine, sweeps, manner.sweeps, work)
+        if worst > WEDGED * scale and rubs(interval.ROWS, m):
+            worst = solve_wedged(problem, BOTH, FORESEEN, fine, manner.sweeps, work)
+    else:
+        worst = sweep_conjugate(problem, BOTH, FORESEEN, fine, manner.sweeps)[1]
     rough = first and manner.exactly and excessive(BOTH, m, interval.isle.IM, interval.n, quick)
     if rough:
         # Far from the solution laws may contradict one another, by as much as the columns are wrong.

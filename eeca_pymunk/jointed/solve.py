@@ -19,7 +19,7 @@ from ..model.joint_steps import FINAL, LONG, SHORT
 from ..model.joints import Joints
 from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, REACH_ROUND_OFF, UNSOLVED_PART
-from ..model.parameters.joints import COLUMN_CONTACTS, INTERVAL_SHARE, INTERVAL_WORK, SPACING
+from ..model.parameters.joints import INTERVAL_SHARE, INTERVAL_WORK, SPACING
 from ..model.scene import Scene
 from ..model.step import AGAIN, CONTACTS, DONE, PUSHES_FULL, SPENT
 from ..rows.bounded import room_for_rows
@@ -37,6 +37,7 @@ from .lengths import excess, forced_deeper, too_deep_on_way, within_sagitta
 from .lifting import lift_island
 from .losses import lost, slip_of
 from .press import GIVEN_UP, SOLVED, solve_contacts
+from .press_laws import few_act
 from .rest import rest_if_still
 
 
@@ -128,7 +129,7 @@ def excess_length(
         return far
     # A motion that is no solution does not tell how long the interval may be. Contacts that are not solved in a long
     # interval may be in a short one, if the step has work for many of these.
-    hard = interval.m <= COLUMN_CONTACTS and RESOLUTION * effort <= J.PROGRESS.budget
+    hard = interval.few and RESOLUTION * effort <= J.PROGRESS.budget
     return UNSOLVED_PART if hard and J.PROGRESS.length == LONG else min(far, UNSOLVED_PART)
 
 
@@ -172,16 +173,17 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     m = 0
     if p > 0:
         m = gather_contacts(A, isle, contacts, isle.POSE + 0.5 * h * isle.V, REACH, h, k == n)
-    interval = Interval(isle, groups, ROWS, motion, make_columns(groups, ROWS, m), m, n, t, h)
+    few = few_act(ROWS, isle.V, m, h, pull)
+    interval = Interval(isle, groups, ROWS, motion, make_columns(groups, ROWS, m), m, n, t, h, few)
     outcome, before = SOLVED, J.PROGRESS.effort
     if not last:  # contacts of a short interval are solved more easily than those of components stepped in parts
         J.PROGRESS.length = LONG if m > 0 and h * UNSOLVED_PART**2 > A.PAR.dt / RESOLUTION else SHORT
     J.PROGRESS.share = before + INTERVAL_SHARE * max(work_left(A, J), 0.0)
     if m > 0:
-        recall(A, ROWS, m, h, m > COLUMN_CONTACTS, L, EXPECTED)
+        recall(A, ROWS, m, h, not interval.few, L, EXPECTED)
         owed = max(-A.RESTING[root].lost, 0.0)
         outcome = solve_contacts(A, J, interval, L, EXPECTED, slow, fast, pull, owed)
-        if outcome == SOLVED or m > COLUMN_CONTACTS:  # impulses of few contacts that are no solution are a bad guess
+        if outcome == SOLVED or not interval.few:  # impulses of few contacts that are no solution are a bad guess
             remember_loads(A, ROWS, L, m, h)
     if m == 0:
         advance(A, J, interval, L, room_for_rows(0, 0), False, np.empty((0, 3)))
@@ -221,5 +223,5 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     for q in range(n):
         set_path(A, MINE[q], h, WHERE[q], motion.END[q], motion.V[q])
     # Many contacts are solved roughly, so that the motion alone tells how long an interval may be.
-    grows = UNSOLVED_PART if m > COLUMN_CONTACTS and UNSOLVED_PART * far < INTERVAL_RETRY else INTERVAL_RETRY
+    grows = UNSOLVED_PART if not interval.few and UNSOLVED_PART * far < INTERVAL_RETRY else INTERVAL_RETRY
     return DONE, grows * h

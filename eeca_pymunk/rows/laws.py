@@ -33,18 +33,15 @@ def solve_columns(
     problem: JointedProblem, L: FloatArray, V: FloatArray, tolerance: float, sweeps: int, most: int, work: float
 ) -> float:
     """Impulses L (m contacts, then the bounded rows) and velocities V: by homotopies and sweeps in turn, of which the
-    best is kept, then by sweeps alone; of more than COLUMN_CONTACTS contacts by these at once.
+    best is kept, then by sweeps alone.
 
     Args:
         tolerance: velocity by which laws may be broken, or contacts change in a sweep.  sweeps: before a homotopy.
-        most: sweeps where there are too many contacts for a homotopy, or it fails.  work: `Columns.WORK` from which on
-            no homotopy begins.
+        most: sweeps where homotopies fail.  work: `Columns.WORK` from which on no homotopy begins.
 
     Returns:
         the largest velocity by which a law is broken, or of a change in the last sweep if that came last.
     """
-    if problem.m > COLUMN_CONTACTS:
-        return sweep_conjugate(problem, L, V, tolerance, most)[1]
     worst = sweep_conjugate(problem, L, V, tolerance, sweeps)[1] if sweeps > 0 else breach(problem, L, V)
     best, L0, V0, before, earlier = worst, L.copy(), V.copy(), np.inf, np.inf
     for _ in range(COLUMN_HOMOTOPIES):

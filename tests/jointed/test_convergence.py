@@ -11,14 +11,15 @@ import pytest
 
 import eeca_pymunk as ep
 from comparisons import program_joints
+from eeca_pymunk.compiled.records import zeros
 from eeca_pymunk.contacts.interval import make_contacts
 from eeca_pymunk.jointed import press, press_laws
 from eeca_pymunk.jointed.advance import Interval, Motion
 from eeca_pymunk.jointed.groups import Groups
 from eeca_pymunk.jointed.secant import fit_columns
-from eeca_pymunk.model.contacts import Columns
+from eeca_pymunk.model.contacts import ROW, Columns
 from eeca_pymunk.model.islands import Island
-from eeca_pymunk.model.parameters.joints import CHORD
+from eeca_pymunk.model.parameters.joints import CHORD, COLUMN_CONTACTS
 from eeca_pymunk.rows.bounded import room_for_rows
 from eeca_pymunk.rows.columns import push_columns
 
@@ -32,6 +33,7 @@ Spaces = Callable[[], pymunk.Space]
     [
         (lambda: program_joints.six_legs().space, (60,), 0.99),
         (lambda: program_joints.soft_rings().space, (60,), 0.99),
+        (lambda: program_joints.rings_of_planks().space, (60,), 0.99),
         (lambda: program_joints.car().space, (60,), 0.99),
         (lambda: program_joints.rag_dolls(5).space, (100, 120, 140), 0.95),
     ],
@@ -40,6 +42,23 @@ def test_steps_converge(make: Spaces, rates: tuple[int, ...], share: float) -> N
     """How often a pile of figures comes to a state that does not converge is chance in one run: in several."""
     steppers = [(ep.EECA(make()), 1 / rate) for rate in rates]
     assert np.mean([stepper.step(dt).converged for stepper, dt in steppers for _ in range(300)]) >= share
+
+
+@pytest.mark.parametrize("h", [1e-3, 1.0])
+def test_contacts_count_that_may_act(h: float) -> None:
+    """Of two disks that stand apart by g, and approach by u: those that meet within h are counted, others not."""
+    rows, still, pull = zeros(200, ROW), np.zeros((2, 3)), 10.0
+    rows["b"], rows["nx"], rows["gap"] = 1, 1.0, 1.01 * pull * h * h
+    assert press_laws.few_act(rows, still, 200, h, pull)
+    rows["gap"][:COLUMN_CONTACTS] = 0.99 * pull * h * h
+    assert press_laws.few_act(rows, still, 200, h, pull)
+    rows["gap"][COLUMN_CONTACTS] = 0.0
+    assert not press_laws.few_act(rows, still, 200, h, pull)
+    assert press_laws.few_act(rows, still, COLUMN_CONTACTS, h, pull)
+    closing = np.array([[1.02 * pull * h, 0.0, 0.0], [0.0, 0.0, 0.0]])
+    rows["gap"] = 2.01 * pull * h * h
+    assert press_laws.few_act(rows, still, 200, h, pull)
+    assert not press_laws.few_act(rows, closing, 200, h, pull)
 
 
 def test_a_rope_that_is_taut_at_rest_is_solved() -> None:
@@ -80,7 +99,7 @@ def test_columns_answer_as_the_last_motion_did(unit: float) -> None:
     motion = Motion(bodies, mean, bodies, bodies, bodies[:, :2], bodies)
     contacts.ROWS["a"][:2], contacts.ROWS["b"][:2] = (0, 1), (2, 2)
     isle = Island(*[bodies] * 6, np.ones(3), np.ones(3), np.empty((0, 4), np.int64))
-    interval = Interval(isle, groups, contacts.ROWS, motion, columns, 2, 3, 0.0, 1.0)
+    interval = Interval(isle, groups, contacts.ROWS, motion, columns, 2, 3, 0.0, 1.0, True)
     old, new = unit * rng.normal(size=(2, 2, 2))
     across = np.array([[new[0, 1] - old[0, 1], old[0, 0] - new[0, 0]], [0.0, 0.0]])
 

@@ -125,7 +125,8 @@ MEET_INSTANT = round_off(1e-9, "of the step",
     "Length below which an interval before an impact, or a part before a limit, is empty.")
 PART_ROUND_OFF = round_off(1e-13, "of the step", "Length of a part of a step that is not solved.")
 COLUMN_CONTACTS = work(40, "contacts",
-    "Number up to which islands are solved by homotopies, with joints always: exactly; others roughly.")
+    "Number up to which islands are solved by homotopies, with joints always: exactly; others roughly. With joints, "
+    "those count that may act.")
 COLUMN_SWEEPS = work(3, "sweeps", "Sweeps over components before the first homotopy.")
 COLUMN_SWEEPS_AFTER = work(4, "sweeps", "Sweeps over components after each homotopy, at most.")
 COLUMN_HOMOTOPIES = work(8, "homotopies", "Homotopies to the solution, at most.")
