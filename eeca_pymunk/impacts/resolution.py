@@ -21,7 +21,6 @@ from ..islands.local import clear_places, set_places
 from ..islands.membership import jointed, members, unite
 from ..model.bodies import AT_REST
 from ..model.contacts import SOLVED, Problem, Solved
-from ..model.parameters.events import BUSY_STEPS
 from ..model.scene import Scene
 from ..model.step import IMPACT
 from ..pairs.rules import law
@@ -147,8 +146,8 @@ def unite_block(A: Scene, a: int, b: int, t: float, n: int, lasts: bool, lost: f
     root = STATE[root].island
     A.RESTING[root].lost += lost
     A.MEMBER[root].hits += 1
-    if jointed(A, root) and law(A, a, b)[0] < 1.0 and A.MEMBER[root].hits >= most_hits(A, a, b):
-        make_busy(A, root, BUSY_STEPS)  # further ones are contacts of the interval that now begins
+    if jointed(A, root) and law(A, a, b)[0] == 0.0 and A.MEMBER[root].hits >= most_hits(A, a, b):
+        make_busy(A, root)  # further ones are contacts of the interval that now begins: without bounces, the same law
     # Bodies of the block that are in no island are predicted too.
     free = 0
     for q in range(n):

@@ -51,13 +51,13 @@ def stays_shallow(A: Scene, a: int, b: int, t: float, h: float) -> bool:
 
 
 @kernel
-def make_busy(A: Scene, i: int, steps: int) -> None:
-    """Let body i, and its island, be `busy` for so many steps, with this: all that comes near then joins the island."""
+def make_busy(A: Scene, i: int) -> None:
+    """Let body i, and its island, be `busy` for BUSY_STEPS steps: all that comes near then joins the island."""
     if A.BODY[i].inv_mass > 0.0:
-        A.MEMBER[i].busy = max(A.MEMBER[i].busy, steps)
+        A.MEMBER[i].busy = BUSY_STEPS
     if A.STATE[i].island >= 0:
         for member in members_of(A, A.STATE[i].island):
-            A.MEMBER[member].busy = max(A.MEMBER[member].busy, steps)
+            A.MEMBER[member].busy = BUSY_STEPS
 
 
 @kernel
@@ -74,6 +74,6 @@ def passed_over(A: Scene, a: int, b: int, t: float) -> bool:
     if not stays_shallow(A, a, b, t, A.PAR.dt - t):
         return False
     if lossy:
-        make_busy(A, i, BUSY_STEPS)
-        make_busy(A, j, BUSY_STEPS)
+        make_busy(A, i)
+        make_busy(A, j)
     return True

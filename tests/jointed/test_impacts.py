@@ -243,8 +243,7 @@ def test_answers_of_joints_to_impacts_are_the_same_on_a_partner_that_moves(drift
     assert pin.impulse == pytest.approx(1.5 * mass * speed, abs=2.0 * speed**2 * dt)
 
 
-@pytest.mark.parametrize("elasticity", [0.0, 0.3])
-def test_what_is_hit_as_often_as_a_step_allows_lands_on_all_else(elasticity: float) -> None:
+def test_what_is_hit_as_often_as_a_step_allows_lands_on_all_else() -> None:
     """A chain of fifty planks falls on six humps of different heights, each an impact on all of it: two are, in a
     step; it lands on the others without, and none is passed over."""
     space = pymunk.Space()
@@ -260,7 +259,7 @@ def test_what_is_hit_as_often_as_a_step_allows_lands_on_all_else(elasticity: flo
     for k, (one, two) in enumerate(itertools.pairwise(planks)):
         space.add(pymunk.PivotJoint(one, two, (0.8 * k + 0.4, 0.3)))
     for shape in space.shapes:
-        shape.elasticity, shape.friction = elasticity, 0.5
+        shape.elasticity, shape.friction = 0.0, 0.5
     stepper = ep.EECA(space)
     before, touched = energy(space), set[int]()
     for _ in range(6):
