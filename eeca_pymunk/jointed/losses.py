@@ -11,7 +11,7 @@ from ..model.scene import Scene
 from ..rows.build import normal_rate, slip_rate
 from ..rows.columns import push_columns
 from ..rows.energy import loss_of_scaled
-from .advance import Interval, advance_aligned
+from .advance import Interval, advance_aligned, farthest_apart
 from .bounded_rows import settle_bounded
 
 
@@ -46,15 +46,16 @@ def work_error(interval: Interval, L: FloatArray, slow: float, pull: float, know
 
 
 @kernel
-def scale_of_loss(interval: Interval, L: FloatArray, B: Bounded, more: float) -> float:
+def scale_of_loss(interval: Interval, L: FloatArray, B: Bounded, more: float) -> tuple[float, float]:
     """Factor s of impulses L with which contacts lose `more` energy than with s = 1, from the slope p - 2 q of their
-    loss there; 0 if that does not grow with less impulses."""
+    loss there, 0 if that does not grow with less impulses; and by how much velocities then change."""
     FREE = interval.motion.MEAN.copy()
     push_columns(interval.C, L, interval.m, -1.0, FREE)
     settle_bounded(B, FREE)
     p, q = loss_of_scaled(interval.ROWS, L, interval.motion.MEAN, FREE, interval.m)
     slope = p - 2.0 * q
-    return 1.0 + more / slope if slope < 0.0 else 0.0
+    s = 1.0 + more / slope if slope < 0.0 else 0.0
+    return s, abs(1.0 - s) * farthest_apart(interval.motion.MEAN, FREE, interval.isle.EXTENT, interval.n)
 
 
 @kernel
@@ -69,7 +70,7 @@ def lock_jointed(
         loss = lost(interval, L)
         if loss >= owed - error and (not elastic or loss <= owed + error):
             break
-        s = scale_of_loss(interval, L, B, owed - loss)
+        s, _ = scale_of_loss(interval, L, B, owed - loss)
         if tries == PRESS_LOCKS or J.PROGRESS.effort > J.PROGRESS.share or (elastic and not 0.0 < s < 2.0):
             s = 0.0
         elif not 0.1 < s < 2.0:

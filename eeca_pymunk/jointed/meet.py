@@ -98,20 +98,19 @@ def find_contact(A: Scene, J: Joints, S: Meeting) -> None:
     """Search the instant at which the gap is S.level by secants on the gap at the end of shortened intervals. It is no
     continuous function of their length: stiff springs swing more than once in a coarse interval. If shapes are on the
     far side of each other, or their paths cross before the end, the instant is halved towards S.apart."""
-    spent, before, gap_before = J.PROGRESS.effort > J.PROGRESS.budget, -1.0, 0.0
-    most = 1 if spent or in_large_island(A, S.a, S.b) else MEET_SECANTS_LOADED
+    most, before, gap_before = 1 if in_large_island(A, S.a, S.b) else MEET_SECANTS_LOADED, -1.0, 0.0
     crosses = False
     for tries in range(MEET_SECANTS):
         t, last = S.t, tries + 1 == MEET_SECANTS
         end_both(A, J, S, t)
-        S.gap = gap(A, S.a, S.b, t)[0] - S.level
+        S.gap, spent = gap(A, S.a, S.b, t)[0] - S.level, J.PROGRESS.effort > J.PROGRESS.budget
         S.touch = S.small * (MEET if S.loaded == 0 else MEET_LOADED if S.loaded <= COLUMN_CONTACTS else MEET_MANY)
         crosses, through = False, t
         if S.gap + S.level > S.touch:
             through, crosses = crossing_of_paths(A, S.a, S.b, t)
         # Depths add up from impact to impact.
         deep = not spent and S.gap < -MEET_MANY * S.small
-        if ((S.loaded > 0 or spent) and tries + 1 >= most and not deep) or abs(S.gap) <= S.touch:
+        if (S.loaded > 0 and tries + 1 >= most and not deep) or spent or abs(S.gap) <= S.touch:
             break
         secant = before >= 0.0 and t != before
         slope = (S.gap - gap_before) / (t - before) if secant else gap_and_rate(A, J, S.a, S.b, t, False)[1]

@@ -139,11 +139,12 @@ def solve_contacts(
             reached = min(reached, off)
             stalls = off > joints.OUTER_PROGRESS * best
             if (off <= agree and not (rough and worst > fine)) or (off <= joints.OUTER_FLOOR * scale and stalls):
-                # Velocities agree, but not well enough as long as contacts gain more energy by them than the lock may
-                # take at the end without changing them again.
+                # Velocities agree, but contacts may gain energy by them: no more than the lock may take at the end.
                 error = work_error(interval, L, slow, pull, joints.PRESS_WORK_ROUND_OFF)
                 more = owed - lost(interval, L)
-                pays = elastic or more <= error or abs(scale_of_loss(interval, L, B, more) - 1.0) <= joints.AGREE
+                pays = elastic or more <= error
+                if exactly and not pays:
+                    pays = scale_of_loss(interval, L, B, more)[1] <= joints.LOCK_SHIFT * scale
                 if pays or (stalls and limited):
                     converged, agreed = True, True
                     break
@@ -217,5 +218,5 @@ def solve_contacts(
     copy(FORESEEN, motion.MEAN)
     lock_jointed(A, J, interval, L, B, free, elastic, owed, work_error(interval, L, slow, pull, known))
     J.PROGRESS.tolerance = max(agree, joints.AGREE * scale)
-    agreed = farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n) <= J.PROGRESS.tolerance
+    agreed = farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n) <= max(agree, joints.LOCK_SHIFT * scale)
     return SOLVED if converged and agreed and bent <= joints.ARM_LEFT else UNSOLVED

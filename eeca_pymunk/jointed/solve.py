@@ -19,7 +19,7 @@ from ..model.joint_steps import FINAL, LONG, SHORT
 from ..model.joints import Joints
 from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, REACH_ROUND_OFF, UNSOLVED_PART
-from ..model.parameters.joints import INTERVAL_SHARE, INTERVAL_WORK, SPACING
+from ..model.parameters.joints import COLUMN_CONTACTS, INTERVAL_SHARE, INTERVAL_WORK, SPACING
 from ..model.scene import Scene
 from ..model.step import AGAIN, CONTACTS, DONE, PUSHES_FULL, SPENT
 from ..rows.bounded import room_for_rows
@@ -173,7 +173,8 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     m = 0
     if p > 0:
         m = gather_contacts(A, isle, contacts, isle.POSE + 0.5 * h * isle.V, REACH, h, k == n)
-    few = few_act(ROWS, isle.V, m, h, pull)
+    # Many near contacts of which few act are dear: roughly, once the work of the step is spent.
+    few = m <= COLUMN_CONTACTS or (work_left(A, J) >= 0.0 and few_act(ROWS, isle.V, m, h, pull))
     interval = Interval(isle, groups, ROWS, motion, make_columns(groups, ROWS, m), m, n, t, h, few)
     outcome, before = SOLVED, J.PROGRESS.effort
     if not last:  # contacts of a short interval are solved more easily than those of components stepped in parts

@@ -33,7 +33,7 @@ Spaces = Callable[[], pymunk.Space]
     [
         (lambda: program_joints.six_legs().space, (60,), 0.99),
         (lambda: program_joints.soft_rings().space, (60,), 0.99),
-        (lambda: program_joints.rings_of_planks().space, (60,), 0.99),
+        (lambda: program_joints.rings_of_planks().space, (50, 60, 120), 0.99),
         (lambda: program_joints.car().space, (60,), 0.99),
         (lambda: program_joints.rag_dolls(5).space, (100, 120, 140), 0.95),
     ],

@@ -138,6 +138,8 @@ OUTER_PART = work(1, "steps of the components",
     "These iterations in an interval of many contacts that ends within the step.")
 AGREE = accuracy(1e-06, "of |a| h and the speed",
     "Difference of the velocities of contacts and components at which their iterations end.")
+LOCK_SHIFT = accuracy(1e-05, "of |a| h and the speed",
+    "Change of velocities by which the energy lock may break the laws of contacts.")
 AGREE_REST = accuracy(1e-11, "of |a| h and the speed", "This difference near rest.")
 AGREE_ELASTIC = accuracy(1e-13, "of |a| h and the speed", "This difference in elastic islands.")
 PRESS_SWEEPS = work(40, "sweeps", "Sweeps over contacts of components.")
