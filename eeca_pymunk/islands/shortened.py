@@ -134,12 +134,9 @@ def group_of(A: Scene, GROUP: IntArray, c: int) -> int:
 
 
 @kernel
-def repay(A: Scene, root: int, t: float) -> None:
-    """Before the interval of an island ends at instant t: if its contacts have given energy up to t, solve them again
-    for the time up to t; if they become more, or move too far for one interval, scale their impulses."""
-    first, end = contact_range(A, root)
-    if not gave_energy(A, first, end, t):
-        return
+def solve_again(A: Scene, root: int, t: float, first: int, end: int) -> None:
+    """Solve contacts [first, end) of an island again, for the time up to instant t, or scale their impulses, see
+    `repay`."""
     found = pairs_of(A, first, end)
     start, s = A.PUSHED[first].start, t - A.PUSHED[first].start
     MINE = number_bodies(A, root)
@@ -165,3 +162,20 @@ def repay(A: Scene, root: int, t: float) -> None:
     for q in range(n):
         body = A.BODY[MINE[q]]
         body.ax, body.ay, body.angular = (VN[q, 0] - body.vx) / s, (VN[q, 1] - body.vy) / s, (VN[q, 2] - body.spin) / s
+
+
+@kernel
+def repay(A: Scene, root: int, t: float) -> None:
+    """Before the interval of an island ends at instant t: if its contacts have given energy up to t, solve them again
+    for the time up to t; if they become more, or move too far for one interval, scale their impulses.
+
+    A.PLACE stays as it is: an impact gathers its bodies there, and ends the intervals of their islands meanwhile.
+    """
+    first, end = contact_range(A, root)
+    if not gave_energy(A, first, end, t):
+        return
+    GATHERED = A.PLACE.copy()
+    A.PLACE[:] = -1
+    solve_again(A, root, t, first, end)
+    for i in range(len(GATHERED)):
+        A.PLACE[i] = GATHERED[i]

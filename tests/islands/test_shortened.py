@@ -9,7 +9,8 @@ import pytest
 import eeca_pymunk as ep
 from eeca_pymunk.compiled.records import rows
 from eeca_pymunk.geometry.flight import move_to
-from eeca_pymunk.islands.shortened import losses, scale_impulses
+from eeca_pymunk.islands import shortened
+from eeca_pymunk.islands.shortened import losses, repay, scale_impulses
 from eeca_pymunk.model.bodies import Body, Member, Next
 from eeca_pymunk.model.contacts import Pair, Pushed
 from eeca_pymunk.model.shapes import Link
@@ -94,3 +95,21 @@ def test_scaled_impulses_give_no_energy(size: float, t: float) -> None:
         assert pushed[0].normal == 0.0
     else:
         assert pushed[0].normal > 0.0
+
+
+def test_places_of_an_impact_stay_as_intervals_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An impact gathers its bodies, the first body here at place 5, while it ends their intervals, which may have to be
+    solved again: that had taken the place away, and put bodies twice, beyond the end of the list."""
+    body, pushed, by, link, member = rows(Body, 2), rows(Pushed, 1), rows(Pair, 1), rows(Link, 2), rows(Member, 2)
+    body[0].inv_mass, body[0].vy, body[0].ay = 1.0, 2.0, -2.0
+    pushed[0].normal, pushed[0].un_before, pushed[0].length, pushed[0].ny = 8.0, 2.0, 1.0, 1.0
+    by[0].a, by[0].b, link[1].owner, member[0].following, member[0].bodies = 1, 0, 1, -1, 1
+    scene = scene_with(
+        BODY=body, PUSHED=pushed, PUSHED_BY=by, LINK=link, MEMBER=member, STATE=rows(Next, 2),
+        PULL=np.array([[0.0, -10.0, 0.0], [0.0, 0.0, 0.0]]), PLACE=np.array([5, -1]),
+    )  # fmt: skip
+    scene.COUNT.pushes = 1
+    monkeypatch.setattr(shortened, "solve_again", lambda A, root, t, first, end: scale_impulses(A, root, t))
+    repay(scene, 0, 0.1)
+    assert pushed[0].normal == 0.0
+    assert list(scene.PLACE) == [5, -1]
