@@ -8,6 +8,7 @@ from ..arrays import FloatArray
 from ..compiled import Choice, kernel
 from ..model.contacts import AnyProblem, JointedProblem
 from ..model.parameters import impulses
+from ..model.parameters.joints import COLUMN_CONTACTS
 from .dense import newton
 from .polish import polish_free, segment
 from .sweeps import restore_impulses, sweep
@@ -17,7 +18,10 @@ from .sweeps import restore_impulses, sweep
 def polish_jointed(
     problem: JointedProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, R: float, passes: int, tolerance: float
 ) -> tuple[float, int]:
-    """As `polish_free`: with response columns nothing is sparse, so the dense solve is used."""
+    """As `polish_free`: with response columns nothing is sparse, so the dense solve is used, whose work is that of the
+    cube of the number of contacts: more than COLUMN_CONTACTS are left to sweeps, as in intervals."""
+    if problem.m > COLUMN_CONTACTS:
+        return np.inf, 0
     return newton(problem, L, V, FREE, passes, tolerance, False)
 
 

@@ -6,10 +6,13 @@ import numpy as np
 import pytest
 
 from eeca_pymunk.model.contacts import Problem
+from eeca_pymunk.model.parameters.joints import COLUMN_CONTACTS
 from eeca_pymunk.rows.build import normal_rate, rates, tangent_rate
 from eeca_pymunk.rows.cholesky import assemble_blocks, factor_blocks, make_factor, solve_blocks
+from eeca_pymunk.rows.columns import as_columns
 from eeca_pymunk.rows.coulomb import coulomb
 from eeca_pymunk.rows.dense import newton
+from eeca_pymunk.rows.direct import polish_jointed
 from eeca_pymunk.rows.dissection import dissect, neighbours
 from eeca_pymunk.rows.polish import divide_friction, polish_free
 from eeca_pymunk.rows.sweeps import sweep, velocities
@@ -159,3 +162,31 @@ def test_points_of_a_face_share_their_friction_as_their_loads() -> None:
     assert reached <= 1e-15
     assert clamped == 0
     assert np.abs(V[0]).max() <= 1e-15
+
+
+@pytest.mark.parametrize(("count", "solved"), [(5, True), (6, False)])
+def test_contacts_that_a_dense_solution_is_too_expensive_for_are_left_to_sweeps(count: int, solved: bool) -> None:
+    """Columns of disks that fall on the ground as one: 25 contacts are solved at once. The factor of 300, of a wall of
+    boxes that a ball on a chain hits, had taken four times a whole step."""
+    block = crowd(0, count)
+    block.contacts, n = [], count * count
+    for k in range(n):
+        block.contacts.append((k, n, 0.0, -1.0, block.pose[k, 0], block.pose[k, 1] - 1.0))
+    block.contacts += [(k, k + 1, 1.0, 0.0, *block.pose[k, :2]) for k in range(n - 1)] if count == 6 else []
+    block.solve(0.0, 0.0)
+    m = len(block.contacts)
+    block.rows["target"][:] = 0.0
+    free = np.zeros_like(block.velocity)
+    free[:n, 1] = -1.0
+    L, V = np.full((m, 2), 0.1) * (1.0, 0.0), free.copy()
+    problem = as_columns(Problem(block.rows, block.im, block.ii, block.pose, n, m))
+    velocities(problem, L, free, V)
+    before = L.copy()
+    reached, _ = polish_jointed(problem, L, V, free, 0.0, 4, 1e-15)
+    if solved:
+        assert reached <= 1e-12
+        assert np.abs(V[:n, 1]).max() <= 1e-12
+    else:
+        assert m > COLUMN_CONTACTS
+        assert reached == np.inf
+        assert np.array_equal(L, before)
