@@ -128,8 +128,9 @@ def excess_length(
     if solved:
         return far
     # A motion that is no solution does not tell how long the interval may be. Contacts that are not solved in a long
-    # interval may be in a short one, if the step has work for many of these.
-    hard = interval.few and RESOLUTION * effort <= J.PROGRESS.budget
+    # interval may be in a short one, if the step has work for all of these.
+    left = UNSOLVED_PART * (A.PAR.dt - interval.t) / interval.h
+    hard = interval.few and left * effort <= work_left(A, J)
     return UNSOLVED_PART if hard and J.PROGRESS.length == LONG else min(far, UNSOLVED_PART)
 
 
