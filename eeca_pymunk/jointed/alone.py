@@ -12,7 +12,7 @@ from ..model.scene import Scene
 from ..model.step import AGAIN, DONE
 from ..pairs.rules import barred
 from .component import step_in_scratch
-from .gathered import gather_alone, gave_way, restore_joints, save_joints
+from .gathered import gather_alone, restore_joints, save_joints, takes_shorter
 from .lengths import excess_alone
 
 
@@ -45,11 +45,12 @@ def meets_no_other(A: Scene, root: int) -> bool:
 @nonallocating
 def begin_alone(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) -> tuple[int, float]:
     """`solve.try_jointed` for an island that `is_component` and meets nothing."""
-    s = J.OF[root]
+    s, before = J.OF[root], J.PROGRESS.effort
     save_joints(J, s)
     clear_interval(J.STEPPED[s])
     step_in_scratch(J, s, h, gather_alone(A, J, s, t, h), True)
-    far = 0.0 if last else 2.0 if gave_way(J, s) else excess_alone(A, J, s, t, h)
+    shorter = takes_shorter(A, J, s, t, h, J.PROGRESS.effort - before)
+    far = 0.0 if last else 2.0 if shorter else excess_alone(A, J, s, t, h)
     if far > INTERVAL_RETRY:
         restore_joints(J, s)
         return AGAIN, h / far

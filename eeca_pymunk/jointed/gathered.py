@@ -13,6 +13,7 @@ from ..model.parameters.joints import NEARLY_HELD
 from ..model.scene import Scene
 from ..newton.motion import seat, size_up
 from .groups import Groups
+from .ledger import has_work_for, work_left
 
 
 @nonallocating
@@ -48,6 +49,18 @@ def gave_way(J: Joints, s: int) -> bool:
         if touched == LEFT_APART or (touched == GIVES_WAY and B.status == ELASTIC and not worse):
             return False
     return True
+
+
+@nonallocating
+def takes_shorter(A: Scene, J: Joints, s: int, t: float, h: float, effort: float) -> bool:
+    """Whether an interval h from instant t is to be shorter, as joints of component s `gave_way` in it: if they are
+    apart by more than NEARLY_HELD, if the step has work for shorter ones, of the effort that this one took, or none at
+    all. Joints that hold in an interval of no length, as of a chain that is straight up to round-off, would stop the
+    step."""
+    if not gave_way(J, s):
+        return False
+    left = work_left(A, J) >= 0.0
+    return bool(J.STEPPED[s].gave > NEARLY_HELD) or not left or has_work_for(A, J, t, h, 2.0, effort)
 
 
 @nonallocating

@@ -74,6 +74,13 @@ def work_left(A: Scene, J: Joints) -> float:
 
 
 @nonallocating
+def has_work_for(A: Scene, J: Joints, t: float, h: float, parts: float, effort: float) -> bool:
+    """Whether the step has work for intervals of length h / `parts` from instant t to its end, if each takes as much
+    effort as one of length h has taken."""
+    return bool(parts * (A.PAR.dt - t) * effort <= h * work_left(A, J))
+
+
+@nonallocating
 def most_looks(A: Scene, J: Joints) -> float:
     """Largest work of the events of this step, in looks: `most_work`, less the part of their budget that joints have
     used."""

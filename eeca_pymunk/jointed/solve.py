@@ -30,9 +30,9 @@ from .advance import Interval, advance, motion_at_start
 from .alone import account_turning, begin_alone, is_component, meets_no_other, set_path
 from .columns import make_columns
 from .fitting import project_velocities
-from .gathered import gave_way, restore_joints, save_joints
+from .gathered import restore_joints, save_joints, takes_shorter
 from .groups import find_groups
-from .ledger import work_left
+from .ledger import has_work_for, work_left
 from .lengths import excess, forced_deeper, too_deep_on_way, within_sagitta
 from .lifting import lift_island
 from .losses import lost, slip_of
@@ -118,7 +118,7 @@ def excess_length(
     """
     far = 2.0 if not solved and J.PROGRESS.length == LONG and J.PROGRESS.effort > J.PROGRESS.share else 0.0
     for s in interval.groups.JOINTED:
-        if gave_way(J, s):
+        if takes_shorter(A, J, s, interval.t, interval.h, effort):
             far = 2.0
     if last and solved:
         A.RESTING[root].strays = too_deep_on_way(A, interval)
@@ -129,8 +129,7 @@ def excess_length(
         return far
     # A motion that is no solution does not tell how long the interval may be. Contacts that are not solved in a long
     # interval may be in a short one, if the step has work for all of these.
-    left = UNSOLVED_PART * (A.PAR.dt - interval.t) / interval.h
-    hard = interval.few and left * effort <= work_left(A, J)
+    hard = interval.few and has_work_for(A, J, interval.t, interval.h, UNSOLVED_PART, effort)
     return UNSOLVED_PART if hard and J.PROGRESS.length == LONG else min(far, UNSOLVED_PART)
 
 

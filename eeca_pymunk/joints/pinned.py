@@ -9,7 +9,7 @@ from ..arrays import IntArray
 from ..compiled import Table, kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.bodies import Body
-from ..model.joints import CENTRE, FREE, GEAR, PIN, PIVOT, SLIDE, Joints, joints_of
+from ..model.joints import CENTRE, FREE, GEAR, PIN, PIVOT, SLIDE, WHOLLY, Joints, joints_of
 from ..model.scene import scene_of
 from .plan import find_turning, together
 from .straight import hold_chains
@@ -45,27 +45,27 @@ def note_pinned(J: Joints, k: int, body: Body, row: int, kind: int, weld: IntArr
 @kernel
 def hold(table: Table, joints: Table) -> bool:
     """Find the bodies that joints hold where they are, at their present poses, which lose their mobilities; returns
-    whether PINNED differs from the last one. Contacts turn bodies, unless these have no friction. What was held before
-    is released first (`release_held`)."""
+    whether PINNED differs from the last one. A body that is held at its centre spins on if it has no friction; else it
+    is held wholly. What was held before is released first (`release_held`)."""
     A, J = scene_of(table), joints_of(joints)
     BODY, SHAPE, LINK = A.BODY, A.SHAPE, A.LINK
     before, found, changed = J.TALLY.pinned, 0, False
     if may_hold(J, len(BODY)):
         bodies = together(BODY, J.PARTNER)
         still, spins = np.zeros(len(bodies), np.int64), np.zeros(len(bodies), np.int64)
-        spins[: len(BODY)] = 1
+        spins[: len(BODY)] = CENTRE
         for i in range(len(BODY)):
             still[i] = 0 if BODY[i].inv_mass > 0.0 else -1  # joints hold no body whose motion they cannot change
         for i in range(len(J.PARTNER)):
             still[len(BODY) + i] = 1 if J.STILL[i] > 0 else -1
         for s in range(len(LINK)):
             if SHAPE[s].friction > 0.0:
-                spins[LINK[s].owner] = 0
+                spins[LINK[s].owner] = WHOLLY
         turns, cayley = np.zeros(len(bodies), np.int64), np.zeros(len(bodies), np.int64)
         find_turning(bodies, J.JOINT, len(J.JOINT), turns, cayley)
         kinds, welds = np.zeros(len(bodies), np.int64), np.full((len(bodies), 3), -1, np.int64)
         for i in range(len(bodies)):
-            spins[i] = spins[i] if turns[i] == 0 else 0
+            spins[i] = spins[i] if turns[i] == 0 else FREE
         held = hold_chains(bodies, J.JOINT, still, spins, kinds) + weld(bodies, J.JOINT, still, kinds, welds)
         for i in range(len(BODY) if held > 0 else 0):
             if kinds[i] != FREE:

@@ -22,7 +22,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.bodies import Body
-from ..model.joints import CENTRE, FREE, PIN, PIVOT, SLIDE, WHOLLY, Joint
+from ..model.joints import FREE, PIN, PIVOT, SLIDE, WHOLLY, Joint
 from ..model.parameters.joints import STRAIGHT_CHAIN
 
 
@@ -79,7 +79,7 @@ def fix_chain(
     joint: Rows[Joint], X: FloatArray, FROM: IntArray, p: int, first: int, spins: IntArray, pinned: IntArray
 ) -> int:
     """Hold the bodies of the straight chain from `first` that ends in p, on a fixed body; how many there are: none if a
-    body of it has all its points on the chain in one place and might turn about that, unless it only spins (`spins`).
+    body of it has all its points on the chain in one place and joints may turn it about that (`spins`).
 
     FROM (2 j,): the point from which the chain has come to a point.
     """
@@ -90,10 +90,10 @@ def fix_chain(
             i = joint[q // 2].body[q % 2]
             far = abs(X[out, 0] - X[q, 0]) + abs(X[out, 1] - X[q, 1])
             wholly = far > STRAIGHT_CHAIN * (abs(X[q, 0]) + abs(X[q, 1]))
-            if not wholly and spins[i] == 0:
+            if not wholly and spins[i] == FREE:
                 return 0
             if pass_ == 1:
-                pinned[i] = WHOLLY if wholly else CENTRE
+                pinned[i] = WHOLLY if wholly else spins[i]
             count += 1
     return count
 
@@ -105,7 +105,8 @@ def hold_chains(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, spins: 
     Args:
         bodies (n,): at their present poses.  joint (j,).
         still (n,): 1 for bodies that never move, 0 for those that may be held, -1 for others.
-        spins (n,): 1 for bodies that neither joints nor contacts turn if their centre is held.
+        spins (n,): how a body is held whose points on the chain are in one place: CENTRE, WHOLLY if contacts may turn
+            it, FREE, which is not at all, if joints may.
         pinned (n,): in and out, FREE, WHOLLY or CENTRE.
     """
     points, n = 2 * len(joint), len(bodies)
