@@ -73,8 +73,8 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
     that is more, and the balance of momentum holds to round-off. False without convergence after NEWTON_ITERATIONS, at
     the work PROGRESS.limit, or after more than 6 `stalls`: iterations whose error is no smaller than the least so far,
     or, below NEWTON_FLOOR, than half of the last one. After two stalls an error below NEWTON_FLOOR counts as round-off,
-    which is that large for bodies in line; a small one does if at the `pace` of the iteration before it would be less
-    than JOINT_TOLERANCE. The factors of an iteration:
+    which is that large for bodies in line; one below JOINT_ROUND_OFF does if at the `pace` of the iteration before it
+    would be less than JOINT_TOLERANCE: round-off of stiff springs is larger. The factors of an iteration:
 
     | `factors` | are | of the next iteration |
     |---|---|---|
@@ -106,9 +106,9 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
         fit = factors == KEPT and component.factored != OTHERWISE
         floor = JOINT_ROUND_OFF_KEPT if factors != FULL else NEWTON_FLOOR if stalls > 1 else JOINT_ROUND_OFF
         at_floor = iteration > since + 1 and 0.5 * best < worst < floor
+        at_floor = at_floor or (sure and worst < JOINT_ROUND_OFF and last * pace <= JOINT_TOLERANCE)
         # Next to the solution errors cannot fall by much.
         slow = not worst <= NEWTON_PROGRESS * last and (iteration > 2 or not worst <= JOINT_ROUND_OFF)
-        at_floor = at_floor or (slow and sure and worst < floor and last * pace <= JOINT_TOLERANCE)
         if give > 0.0 and iteration > 1:
             left = round_off_of_impulses(W, h, length)
             if worst <= left and left > ELASTIC_ROUND_OFF:
@@ -125,7 +125,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
         best = min(best, worst)
         if not worst < 1e100 or stalls > 6 or iteration == NEWTON_ITERATIONS or progress.effort > progress.limit:
             return False
-        last, pace = worst, worst / last
+        last, pace = worst, worst / last if iteration > since else 1.0
         if factors == KEPT and (slow or not fit):
             factors = FULL if renewed and fit else NEW
             if factors == FULL:  # only nearly singular or long steps come here
