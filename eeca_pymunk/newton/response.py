@@ -14,6 +14,7 @@ from ..compiled import nonallocating
 from ..model.joint_steps import STEP, STIFF_ALL, STIFF_NONE
 from ..model.joints import CONDENSED, DUAL, GEAR, GROOVE, INDEPENDENT, Workspace
 from ..model.parameters.joints import CONDENSED_PASSES, REDUNDANT_EPSILON, RESPONSE_PASSES, TAUT
+from .dual import are_independent
 from .entries import acts
 from .motion import go_back, move
 from .rows import joint_rows, start_joint
@@ -100,15 +101,17 @@ def prepare_response(W: Workspace, what: int, h: float) -> int:
         first_iterate(W, what, h)
     system = first_system(component, what)
     give = W.J.JOINT[link[0].joint].compliance / h**2 if what == STEP else 0.0
-    loops = component.loops > 0 and give == 0.0 and (what != STEP or component.dependence != INDEPENDENT)
-    epsilon = REDUNDANT_EPSILON if loops else 0.0
+    loops, sure = component.loops > 0 and give == 0.0, component.dependence == INDEPENDENT
+    epsilon = 0.0 if not loops or (sure and (what == STEP or system == DUAL)) else REDUNDANT_EPSILON
     while True:
         for i in range(component.unknowns + component.impulses):
             W.J.RIGHT[i] = 0.0
         assemble(W, what, h, give, True, system, True)
         if decompose(W, what, system, epsilon, give):
-            W.J.TALLY.refined = RESPONSE_PASSES if loops and system != CONDENSED else 0
-            return int(system)
+            # Poses at an instant are others than those at which rows were found to be independent.
+            if what == STEP or not loops or epsilon > 0.0 or are_independent(W):
+                W.J.TALLY.refined = RESPONSE_PASSES if loops and epsilon > 0.0 and system != CONDENSED else 0
+                return int(system)
         if epsilon == 0.0:
             epsilon = REDUNDANT_EPSILON
         elif system != DUAL:
