@@ -111,22 +111,18 @@ def close_at_poses(
 def ready_in_step(J: Joints, s: int, h: float) -> bool:
     """Prepare the response of component s to impulses over the step h that `step_component` has just taken: the scratch
     is at its start again. False if there is none."""
-    W = workspace(J, s)
-    J.TALLY.gives = int(W.J.JOINT[W.link[0].joint].compliance > 0.0)
-    J.TALLY.answers = prepare_response(W, STEP, h)
-    return bool(J.TALLY.answers >= 0)
+    return prepare_response(workspace(J, s), STEP, h)
 
 
 @nonallocating
 def ready_at_poses(J: Joints, s: int) -> bool:
     """Prepare the response of component s to impulses at the instant and the poses that `gather_component` has put into
     the scratch. False if there is none."""
-    J.TALLY.answers, J.TALLY.gives = prepare_response(workspace(J, s), SPEEDS, 2.0), 0
-    return bool(J.TALLY.answers >= 0)
+    return prepare_response(workspace(J, s), SPEEDS, 2.0)
 
 
 @nonallocating
 def answer(J: Joints, s: int, PUSH: FloatArray) -> None:
     """Replace the impulses PUSH (bodies of the component, 3) by the changes of velocity that they cause in component s,
     which `ready_in_step` or `ready_at_poses` has prepared."""
-    respond(workspace(J, s), J.TALLY.answers, PUSH, J.TALLY.gives > 0)
+    respond(workspace(J, s), PUSH)

@@ -165,8 +165,8 @@ class Tally(Record):
     order: int  # of steps without dissipation, drives and contacts: 4, or 2
     pinned: int  # rows of PINNED in use
     worst: int  # status of the step
-    answers: int  # linear system of the response that was prepared last (`..jointed.component`), -1 for none
-    gives: int  # 1 if joints give way in that
+    answers: int  # linear system of the response that was prepared last (`..newton.response`)
+    passes: int  # of each answer if that is condensed
     refined: int  # refinements of each answer, as rows may be redundant
 
 

@@ -77,12 +77,13 @@ def bend_rows(W: Workspace, k: int, h: float) -> None:
 
 
 @nonallocating
-def prepare_response(W: Workspace, what: int, h: float) -> int:
-    """Compute the factors that `respond` needs, in MATRIX and PIVOTS; returns their system, -1 if there are none.
+def prepare_response(W: Workspace, what: int, h: float) -> bool:
+    """Compute what `respond` needs: factors in MATRIX and PIVOTS, and in TALLY how answers are computed with them.
+    Returns False if there are none.
 
     `what` is STEP, after `take_step` (whose start becomes that of `local` again), or SPEEDS, at the present poses.
     """
-    link, local, component = W.link, W.J.LOCAL, W.J.COMPONENT[W.s]
+    link, local, component, tally = W.link, W.J.LOCAL, W.J.COMPONENT[W.s], W.J.TALLY
     if what == STEP:
         for i in range(W.bodies):
             for c in range(3):
@@ -102,6 +103,8 @@ def prepare_response(W: Workspace, what: int, h: float) -> int:
     system = first_system(component, what)
     give = W.J.JOINT[link[0].joint].compliance / h**2 if what == STEP else 0.0
     loops, sure = component.loops > 0 and give == 0.0, component.dependence == INDEPENDENT
+    # Of a step an answer is a derivative, for iterations; at an instant it is a change of velocities.
+    tally.passes = 1 if give > 0.0 else CONDENSED_PASSES - 1 if sure and what == STEP else CONDENSED_PASSES
     epsilon = 0.0 if not loops or (sure and (what == STEP or system == DUAL)) else REDUNDANT_EPSILON
     while True:
         for i in range(component.unknowns + component.impulses):
@@ -110,45 +113,44 @@ def prepare_response(W: Workspace, what: int, h: float) -> int:
         if decompose(W, what, system, epsilon, give):
             # Poses at an instant are others than those at which rows were found to be independent.
             if what == STEP or not loops or epsilon > 0.0 or are_independent(W):
-                W.J.TALLY.refined = RESPONSE_PASSES if loops and epsilon > 0.0 and system != CONDENSED else 0
-                return int(system)
+                tally.answers = system
+                tally.refined = RESPONSE_PASSES if loops and epsilon > 0.0 and system != CONDENSED else 0
+                return True
         if epsilon == 0.0:
             epsilon = REDUNDANT_EPSILON
         elif system != DUAL:
-            return -1
+            return False
         else:
             system = component.system
 
 
 @nonallocating
-def respond(W: Workspace, system: int, push: FloatArray, gives: bool) -> None:
+def respond(W: Workspace, push: FloatArray) -> None:
     """Replace impulses on the bodies by the changes of velocity that they cause, with the factors of
     `prepare_response`.
 
-    Args:
-        system: its result.  gives: whether joints are elastic.
-        push: (bodies, 3) impulses (mass length/time, mass length²/time) in, velocities (length/time, 1/time) out.
+    push: (bodies, 3) impulses (mass length/time, mass length²/time) in, velocities (length/time, 1/time) out.
     """
-    local, component, right = W.J.LOCAL, W.J.COMPONENT[W.s], W.J.RIGHT
+    local, component, right, tally = W.J.LOCAL, W.J.COMPONENT[W.s], W.J.RIGHT, W.J.TALLY
     size = component.unknowns + component.impulses
     for i in range(size):
         right[i] = 0.0
     for i in range(W.bodies):
         for c in range(local[i].freedoms):
             right[local[i].column + c] = push[i, c] * local[i].root[c]
-    back(W, system, 1 if gives else CONDENSED_PASSES, right)
+    back(W, tally.answers, tally.passes, right)
     # (A + epsilon) x = b leaves b - A x = epsilon x in the rows, and each correction d leaves epsilon d.
     rest = right[size : 2 * size]
-    for i in range(size if W.J.TALLY.refined > 0 else 0):
+    for i in range(size if tally.refined > 0 else 0):
         rest[i] = right[i]
-    for _ in range(W.J.TALLY.refined):
+    for _ in range(tally.refined):
         for i in range(W.bodies):
             for c in range(local[i].freedoms):
                 rest[local[i].column + c] = 0.0
         for k in range(W.joints):
             for r in range(W.link[k].rows):
                 rest[W.link[k].first_row + r] *= REDUNDANT_EPSILON
-        back(W, system, CONDENSED_PASSES, rest)
+        back(W, tally.answers, tally.passes, rest)
         for i in range(size):
             right[i] += rest[i]
     for i in range(W.bodies):
