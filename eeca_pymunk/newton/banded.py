@@ -8,7 +8,8 @@ from ..compiled import nonallocating
 
 @nonallocating
 def factor_banded(matrix: FloatArray, size: int, band: int, pivots: IntArray) -> bool:
-    """LU factors in place of `matrix`, reciprocals on the diagonal; False if a pivot vanishes.
+    """LU factors in place of `matrix`, reciprocals on the diagonal, and column k of L, below it, at the first entries of
+    row k, where it is read in line; False if a pivot vanishes.
 
     `matrix` (size (3 band + 1) or more,): A[i, j] at i (3 band + 1) + j - i + band for |i - j| <= band; the last `band`
     entries of each row are 0, room for the rows that exchanges bring in. `pivots` (2 size or more,): out, the row that
@@ -42,9 +43,9 @@ def factor_banded(matrix: FloatArray, size: int, band: int, pivots: IntArray) ->
             below = matrix[to]
             if below != 0.0:
                 below *= inverse
-                matrix[to] = below
                 for j in range(1, reach):
                     matrix[to + j] -= below * matrix[at + j]
+            matrix[k * width + i - k - 1] = below
     return True
 
 
@@ -59,8 +60,9 @@ def back_banded(matrix: FloatArray, size: int, band: int, pivots: IntArray, righ
             right[k] = right[pivot]
             right[pivot] = keep
         if right[k] != 0.0:
-            for i in range(k + 1, min(size, k + band + 1)):
-                right[i] -= matrix[i * width + k - i + band] * right[k]
+            amount, at = right[k], k * width
+            for j in range(min(band, size - 1 - k)):
+                right[k + 1 + j] -= matrix[at + j] * amount
     for k in range(size - 1, -1, -1):
         total = right[k]
         at = k * width + band
