@@ -24,18 +24,18 @@ def subtract(row: FloatArray, other: FloatArray, amount: float) -> None:
         row[j] -= amount * other[j]
 
 
-@nonallocating
-def dot(row: FloatArray, other: FloatArray) -> float:
-    """The product of two arrays of one length, in four independent sums, which the processor overlaps."""
-    n = len(row)
+@inlined
+def dot(row: FloatArray, i: int, other: FloatArray, k: int, n: int) -> float:
+    """The product of row[i : i + n] and other[k : k + n], in four independent sums, which the processor overlaps."""
     a = b = c = d = 0.0
-    for j in range(0, n - 3, 4):
-        a += row[j] * other[j]
-        b += row[j + 1] * other[j + 1]
-        c += row[j + 2] * other[j + 2]
-        d += row[j + 3] * other[j + 3]
-    for j in range(n - n % 4, n):
-        a += row[j] * other[j]
+    whole = n & -4
+    for j in range(0, whole, 4):
+        a += row[i + j] * other[k + j]
+        b += row[i + j + 1] * other[k + j + 1]
+        c += row[i + j + 2] * other[k + j + 2]
+        d += row[i + j + 3] * other[k + j + 3]
+    for j in range(whole, n):
+        a += row[i + j] * other[k + j]
     return float((a + b) + (c + d))
 
 
@@ -74,7 +74,7 @@ def substitute(matrix: FloatArray, size: int, band: int, right: FloatArray, at: 
         n = min(band, i)
         begin = i * width + band - n
         if band >= FACTOR_BAND:
-            right[at + i] -= dot(matrix[begin : begin + n], right[at + i - n : at + i])
+            right[at + i] -= dot(matrix, begin, right, at + i - n, n)
         else:
             total = right[at + i]
             for j in range(n):
@@ -85,7 +85,7 @@ def substitute(matrix: FloatArray, size: int, band: int, right: FloatArray, at: 
         begin = i * width + band
         total = right[at + i]
         if band >= FACTOR_BAND:
-            total -= dot(matrix[begin + 1 : begin + 1 + n], right[at + i + 1 : at + i + 1 + n])
+            total -= dot(matrix, begin + 1, right, at + i + 1, n)
         else:
             # The unknown found last is used last, so that no other product waits for it.
             for j in range(n, 0, -1):
