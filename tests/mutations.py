@@ -391,6 +391,8 @@ MUTATIONS = (
     Mutation("joints: an error that has stalled is no round-off", "newton/solve.py",
              "NEWTON_FLOOR if stalls > 1 else", "JOINT_ROUND_OFF if stalls > 1 else",
              "joints/test_redundant.py", "knots"),
+    Mutation("joints: round-off is an error to be solved", "newton/solve.py", "(sure and worst < JOINT_ROUND_OFF and",
+             "(False and worst < JOINT_ROUND_OFF and", "newton/test_equations.py", "stiff_springs"),
     Mutation("joints: momenta are off by the round-off of large impulses", "joints/gains.py",
              "part.closed += restore_momenta(W, h, length, load)", "pass", "joints/test_pairs.py",
              "[431]"),

@@ -40,7 +40,7 @@ def measure_plan(J: Joints) -> bool:
         whole, dual = C.unknowns * (3 * C.band + 1), C.dual_size * (2 * C.dual_band + 1)
         ROOM[0] = max(ROOM[0], C.end_body - C.first_body)
         ROOM[1] = max(ROOM[1], C.end_joint - C.first_joint)
-        ROOM[2] = max(ROOM[2], 2 * C.unknowns)
+        ROOM[2] = max(ROOM[2], 2 * C.unknowns, C.dual_size)
         ROOM[3] = max(ROOM[3], whole, dual if C.dual_for != NOTHING or C.loops > 0 else 0)
         ROOM[4] = max(ROOM[4], 2 * (C.unknowns + C.impulses))
         ROOM[5] = max(ROOM[5], C.dual_size)

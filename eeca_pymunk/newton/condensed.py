@@ -10,7 +10,7 @@ which they were made are stored, *frozen* (`frozen_rows`, `frozen_slopes`).
 
 from __future__ import annotations
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..compiled import inlined, nonallocating
 from ..model.joints import CONDENSED, WHOLE, Workspace
 from ..model.parameters.joints import FACTOR_BAND
@@ -40,10 +40,12 @@ def dot(row: FloatArray, i: int, other: FloatArray, k: int, n: int) -> float:
 
 
 @inlined
-def factor(matrix: FloatArray, size: int, band: int) -> bool:
+def factor(matrix: FloatArray, size: int, band: int, first: IntArray) -> bool:
     """LU factors without pivots in place of `matrix`, A[i, j] at i (2 band + 1) + j - i + band, reciprocals on the
-    diagonal; False if a pivot vanishes."""
+    diagonal; False if a pivot vanishes. first: out, the first column of each row of L that is not 0."""
     width = 2 * band + 1
+    for k in range(size):
+        first[k] = k
     for k in range(size):
         at = k * width + band
         pivot = matrix[at]
@@ -58,6 +60,7 @@ def factor(matrix: FloatArray, size: int, band: int) -> bool:
             if below != 0.0:
                 below *= inverse
                 matrix[to] = below
+                first[i] = min(first[i], k)
                 if band >= FACTOR_BAND:
                     subtract(matrix[to + 1 : to + reach], matrix[at + 1 : at + reach], below)
                 else:
@@ -67,11 +70,13 @@ def factor(matrix: FloatArray, size: int, band: int) -> bool:
 
 
 @inlined
-def substitute(matrix: FloatArray, size: int, band: int, right: FloatArray, at: int) -> None:
+def substitute(
+    matrix: FloatArray, size: int, band: int, first: IntArray, right: FloatArray, at: int
+) -> None:  # fmt: skip
     """Solve with the factors of `factor`, in place of right[at : at + size]."""
     width = 2 * band + 1
     for i in range(size):
-        n = min(band, i)
+        n = i - first[i]
         begin = i * width + band - n
         if band >= FACTOR_BAND:
             right[at + i] -= dot(matrix, begin, right, at + i - n, n)
@@ -161,7 +166,7 @@ def back_condensed(
             for r in range(link[k].rows):
                 if hinge[k].weight[r] > 0.0:
                     add_column(W, k, r, hinge[k].weight[r] * hinge[k].missing[r], right, room)
-        substitute(matrix, size, band, right, room)
+        substitute(matrix, size, band, W.J.PIVOTS, right, room)
         for k in range(W.joints):
             for r in range(link[k].rows):
                 if hinge[k].weight[r] > 0.0:

@@ -77,7 +77,7 @@ def factor_dual(W: Workspace, slopes: bool, add: float) -> bool:
         while one >= 0:
             put_pairs(W, one, local[i].first)
             one = link[one >> 1].following[one & 1]
-    return factor(matrix, size, band)
+    return factor(matrix, size, band, W.J.PIVOTS)
 
 
 @nonallocating
@@ -110,7 +110,8 @@ def back_dual(W: Workspace, right: FloatArray) -> None:
         for r in range(link[k].rows):
             left = right[link[k].first_row + r] - row_times(W, k, r, right, 0) if hinge[k].weight[r] != 0.0 else 0.0
             more[link[k].first_dual + r] = left
-    substitute(W.J.MATRIX, W.J.COMPONENT[W.s].dual_size, W.J.COMPONENT[W.s].dual_band, more, 0)
+    component = W.J.COMPONENT[W.s]
+    substitute(W.J.MATRIX, component.dual_size, component.dual_band, W.J.PIVOTS, more, 0)
     for k in range(W.joints):
         for r in range(link[k].rows):
             if hinge[k].weight[r] != 0.0:

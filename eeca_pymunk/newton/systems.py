@@ -179,7 +179,7 @@ def decompose(W: Workspace, what: int, system: int, epsilon: float, give: float)
     size, band = W.J.COMPONENT[W.s].unknowns, W.J.COMPONENT[W.s].band
     W.J.PROGRESS.effort += work_of_factors(system, W.J.COMPONENT[W.s])
     if system == CONDENSED:
-        return factor(matrix, size, band)
+        return factor(matrix, size, band, W.J.PIVOTS)
     if system == DUAL:
         return factor_dual(W, what == STEP, epsilon + give)
     if epsilon > 0.0:

@@ -70,7 +70,7 @@ def test_the_work_of_steps_is_spent_on_motion(monkeypatch: pytest.MonkeyPatch, s
     assert np.mean(scene.stepper.parts) >= least
 
 
-@pytest.mark.parametrize("seed", [4, 6])
+@pytest.mark.parametrize("seed", [4, 5])
 def test_a_heap_that_settles_takes_its_time(seed: int) -> None:
     """200 bodies in one island: a solve takes a twenty-fifth of the budget, and never converges, as more than forty
     contacts are solved roughly. If intervals may not grow by more than 1.5 from one to the next, half of the time is
