@@ -8,8 +8,8 @@ from ..compiled import nonallocating
 
 @nonallocating
 def factor_banded(matrix: FloatArray, size: int, band: int, pivots: IntArray) -> bool:
-    """LU factors in place of `matrix`, reciprocals on the diagonal, and column k of L, below it, at the first entries of
-    row k, where it is read in line; False if a pivot vanishes.
+    """LU factors in place of `matrix`, reciprocals on the diagonal, and column k of L, below it, at the first entries
+    of row k, where it is read in line; False if a pivot vanishes.
 
     `matrix` (size (3 band + 1) or more,): A[i, j] at i (3 band + 1) + j - i + band for |i - j| <= band; the last `band`
     entries of each row are 0, room for the rows that exchanges bring in. `pivots` (2 size or more,): out, the row that

@@ -99,7 +99,7 @@ def dual(W: Any, more: int) -> int:
 Part = tuple[Any, str, Callable[..., float]]  # a function of a module, and how much work a call is
 ROWS: list[Part] = [(module, "assemble", lambda W, *_: W.joints + 1) for module in (systems, response)]
 FACTORS: list[Part] = [
-    (systems, "factor", lambda matrix, size, band: size),
+    (systems, "factor", lambda matrix, size, *_: size),
     (systems, "factor_banded", lambda matrix, size, band, *_: 0.5 * size),
     (systems, "factor_dual", lambda W, *_: W.J.COMPONENT[W.s].dual_size),
 ]
