@@ -393,6 +393,8 @@ MUTATIONS = (
              "joints/test_redundant.py", "knots"),
     Mutation("joints: round-off is an error to be solved", "newton/solve.py", "(sure and worst < JOINT_ROUND_OFF and",
              "(False and worst < JOINT_ROUND_OFF and", "newton/test_equations.py", "stiff_springs"),
+    Mutation("correction: bodies without shapes are the smallest", "contacts/correction.py",
+             "EXTENT[i] if EXTENT[i] > 0.0 else math.inf", "EXTENT[i]", "jointed/test_lifting.py", "without_shapes"),
     Mutation("joints: momenta are off by the round-off of large impulses", "joints/gains.py",
              "part.closed += restore_momenta(W, h, length, load)", "pass", "joints/test_pairs.py",
              "[431]"),

@@ -96,10 +96,10 @@ def lifting(
 
 @nonallocating
 def least_of(EXTENT: FloatArray, n: int) -> float:
-    """The extent of the smallest of n bodies."""
+    """The extent of the smallest of n bodies that have shapes."""
     size = math.inf
     for i in range(n):
-        size = min(size, EXTENT[i])
+        size = min(size, EXTENT[i] if EXTENT[i] > 0.0 else math.inf)
     return size
 
 

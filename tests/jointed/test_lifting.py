@@ -35,3 +35,20 @@ def test_bodies_are_not_lifted_against_springs_that_they_can_spare(stiffness: fl
     assert 0.0 <= ledger.external < 0.01 * 0.5 * stiffness * (DEEP / ARM) ** 2
     wall, _, rod = space.bodies
     assert rod.local_to_world((0.5, 0.0)).x + 0.02 - wall.position.x < 0.01 * DEEP
+
+
+def test_a_body_without_shapes_lets_the_others_be_lifted() -> None:
+    """A box with a bob that has no shape lands on an edge. How far points may move in a correction is relative to the
+    smallest body: with the bob's extent, 0, the box stays .015 deep."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -9.81
+    floor = pymunk.Segment(space.static_body, (-50.0, 0.0), (50.0, 0.0), 0.0)
+    box, bob = pymunk.Body(1.0, pymunk.moment_for_box(1.0, (0.6, 0.4))), pymunk.Body(0.5, 0.01)
+    box.position, box.angle, bob.position = (0.0, 0.5), 0.5, (0.5, 0.8)
+    shape = pymunk.Poly.create_box(box, (0.6, 0.4))
+    floor.friction = shape.friction = 0.5
+    space.add(floor, box, shape, bob, pymunk.PivotJoint(box, bob, box.position))
+    stepper = ep.EECA(space)
+    for _ in range(60):
+        stepper.step(DT)
+    assert -1e-8 < min(box.local_to_world(corner).y for corner in shape.get_vertices()) < 1e-3
