@@ -46,7 +46,7 @@ ELASTIC_ROUND_OFF = round_off(1e-12, "of the component",
     "Error by round-off of the impulses of elastic joints above which these have to be softer.")
 SPACING = round_off(2.2e-16, "of a number", "Spacing of floating-point numbers.")
 NEWTON_ITERATIONS = work(25, "iterations", "Newton iterations of a step, at most.")
-ROW_APART = work(0.05, "of the square of a row",
+ROW_APART = work(0.01, "of the square of a row",
     "Part of a joint's row outside the span of others below which rows count as redundant: impulses begin anew.")
 TRY_WORK = work(0.05, "of a step's work",
     "Iterations of a component with cycles, at most, for which it is tried with the impulses of the last step.")
