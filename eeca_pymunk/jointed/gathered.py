@@ -53,14 +53,16 @@ def gave_way(J: Joints, s: int) -> bool:
 
 @nonallocating
 def takes_shorter(A: Scene, J: Joints, s: int, t: float, h: float, effort: float) -> bool:
-    """Whether an interval h from instant t is to be shorter, as joints of component s `gave_way` in it: if they are
-    apart by more than NEARLY_HELD, if the step has work for shorter ones, of the effort that this one took, or none at
-    all. Joints that hold in an interval of no length, as of a chain that is straight up to round-off, would stop the
-    step."""
+    """Whether an interval h from instant t is to be shorter, as joints of component s `gave_way` in it. Not so if they
+    were elastic before, have opened by no more than NEARLY_HELD, and the step has too little work for shorter ones, of
+    the effort that this one took: joints that hold in an interval of no length, as of a chain that is straight up to
+    round-off, would stop the step."""
+    first = J.COUPLING[J.COMPONENT[s].first_joint].joint  # has the compliance of all
     if not gave_way(J, s):
         return False
-    left = work_left(A, J) >= 0.0
-    return bool(J.STEPPED[s].gave > NEARLY_HELD) or not left or has_work_for(A, J, t, h, 2.0, effort)
+    if J.KEPT[first].compliance == 0.0 or J.STEPPED[s].gave > NEARLY_HELD or work_left(A, J) < 0.0:
+        return True
+    return has_work_for(A, J, t, h, 2.0, effort)
 
 
 @nonallocating
