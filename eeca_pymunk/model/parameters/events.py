@@ -42,7 +42,7 @@ ENTRY_LOOKS = work(0.75, "looks", "Work of a shape in a near list that a predict
 BODY_LOOKS = work(7.5, "looks", "Work of a body in a solve.")
 PAIR_LOOKS = work(1.25, "looks", "Work of the geometry of a pair in a solve, or of the gap that leaves it out.")
 OPERATION_LOOKS = work(0.00125, "looks", "Work of an operation of a homotopy.")
-SWEEP_LOOKS = work(0.19, "looks", "Work of a contact in a sweep.")
+SWEEP_LOOKS = work(0.28, "looks", "Work of a contact in a sweep.")
 DIRECT_LOOKS = work(0.1, "looks", "Work of a direct solution, times its contacts, times these up to DENSE_CONTACTS.")
 INITIAL_PENETRATION = heuristic(1e-06, "of the smaller shape",
     "Overlap above which shapes that the program placed into each other are separated. Smaller: large piles move on.")
