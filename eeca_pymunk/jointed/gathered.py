@@ -9,7 +9,7 @@ from ..joints.ledger import clear_interval
 from ..joints.parts import meets_limit
 from ..model.joint_steps import ELASTIC, LINEAR
 from ..model.joints import GIVES_WAY, LEFT_APART, RATCHET, UNTESTED, Joints
-from ..model.parameters.joints import NEARLY_HELD
+from ..model.parameters.joints import GIVEN_INTERVAL, NEARLY_HELD
 from ..model.scene import Scene
 from ..newton.motion import seat, size_up
 from .groups import Groups
@@ -56,9 +56,10 @@ def takes_shorter(A: Scene, J: Joints, s: int, t: float, h: float, effort: float
     """Whether an interval h from instant t is to be shorter, as joints of component s `gave_way` in it. Not so if they
     were elastic before, have opened by no more than NEARLY_HELD, and the step has too little work for shorter ones, of
     the effort that this one took: joints that hold in an interval of no length, as of a chain that is straight up to
-    round-off, would stop the step."""
+    round-off, would stop the step. Nor below GIVEN_INTERVAL: limits that contradict each other lie ever closer ahead of
+    what slows down between them, and intervals that end before would come to no end."""
     first = J.COUPLING[J.COMPONENT[s].first_joint].joint  # has the compliance of all
-    if not gave_way(J, s):
+    if h <= GIVEN_INTERVAL * A.PAR.planned or not gave_way(J, s):
         return False
     if J.KEPT[first].compliance == 0.0 or J.STEPPED[s].gave > NEARLY_HELD or work_left(A, J) < 0.0:
         return True

@@ -19,6 +19,7 @@ from ..model.parameters.joints import MEET_MANY
 from ..model.scene import Scene
 from ..pairs.rules import barred, far_apart
 from ..prediction.impact_times import time_of_impact
+from ..prediction.work import look_work
 from .component import fit_speeds
 from .ends import under_way
 from .gathered import gather_alone
@@ -90,7 +91,10 @@ def passes_through(A: Scene, root: int, t: float) -> float:
                 if twice or A.FLAG[w] != 0 or barred(A, s, o):
                     continue
                 began = max(A.BODY[i].since, A.BODY[A.LINK[o].owner].since)
-                g = math.inf if far_apart(A, s, o, t, 0.0) else gap(A, s, o, t)[0]
+                g = math.inf
+                if not far_apart(A, s, o, t, 0.0):
+                    A.COUNT.work += look_work(A, s, o)
+                    g = gap(A, s, o, t)[0]
                 if g > 0.0:
                     through, met = crossing_of_paths(A, s, o, t)
                     if met and through > began + A.PAR.instant and is_beyond(A, s, o, through, t):

@@ -9,19 +9,8 @@ from __future__ import annotations
 from ..compiled import nonallocating
 from ..model.joint_steps import SPEEDS
 from ..model.joints import DUAL, Workspace
-from ..model.parameters.joints import CONDENSED_PASSES, NEWTON_ITERATIONS, TRY_WORK
 from ..newton.dual import are_independent, factor_dual
-from ..newton.effort import work_of_iteration
 from ..newton.systems import assemble, first_iterate
-
-
-@nonallocating
-def affords_try(W: Workspace) -> bool:
-    """Whether a step's work pays for a solution with the impulses of the last step that fails, as of wide nets that are
-    folded: all its iterations take less than TRY_WORK of it."""
-    component = W.J.COMPONENT[W.s]
-    one = work_of_iteration(component.system, CONDENSED_PASSES, W.joints, component)
-    return bool(NEWTON_ITERATIONS * one <= TRY_WORK * W.J.PROGRESS.budget)
 
 
 @nonallocating

@@ -36,7 +36,7 @@ from .correct import fitting_loss, project
 from .gains import take_gain
 from .ladder import climb, limit_work
 from .ledger import add_part, clear_ledger
-from .redundancy import affords_try, rows_depend
+from .redundancy import rows_depend
 from .start import bounded_targets, compute_rows, read_joints
 from .unheld import step_linearly
 
@@ -113,10 +113,11 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
     clear_ledger(ledger)
     component.factored = 0
     touched, bounded = read_joints(W, h, length)
-    # Redundant rows begin without impulses, unless their pull holds bodies.
+    enough = limit_work(W)
+    # Redundant rows begin without impulses, unless their pull holds bodies; others, too, if there is no work to try.
     component.taut = 1 if component.loops > 0 and is_taut(W, h) else 0
     if component.loops > 0 and component.dependence == UNTESTED:
-        component.dependence = INDEPENDENT if affords_try(W) and not rows_depend(W) else DEPENDENT
+        component.dependence = INDEPENDENT if enough and not rows_depend(W) else DEPENDENT
     if component.dependence == DEPENDENT and component.taut == 0:
         drop_impulses(W)
     for i in range(W.bodies):
@@ -136,7 +137,7 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
         save(W)
     for k in range(W.joints):
         W.J.JOINT[W.link[k].joint].side = W.link[k].side  # to which the ladder returns
-    order = order if limit_work(W) else 2
+    order = order if enough else 2
     ledger.apart = farthest(W)
     status = climb(W, h, order, length, touched, own)
     before = step_linearly(W, h, length) if status == LINEAR else 0.0

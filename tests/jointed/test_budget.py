@@ -41,7 +41,7 @@ class Counting(ep.EECA):
 @pytest.mark.parametrize("side", [7, 8, 10, 14])
 def test_a_cloth_that_falls_over_a_disk_stays_within_its_budget(side: int) -> None:
     """Its knots are almost in line when it folds, so that Newton's method is slow, and 196 of them are expensive. Past
-    the budget only what ends a step is solved, six tenths of the budget at most (four budgets, .18 s, if each attempt
+    the budget only what ends a step is solved, at most as much again (four budgets, .18 s, if each attempt
     at an interval may take 40 iterations, and becomes shorter by a factor of 4). Steps are cut, but time goes on, also
     where knots in line are apart by 1e-12, which no motion closes (100 knots stood still from the 50th step on, if
     Newton's method repeats iterations of which each makes the error smaller by 2e-4 of it), and where cells are folded
@@ -51,7 +51,7 @@ def test_a_cloth_that_falls_over_a_disk_stays_within_its_budget(side: int) -> No
     stepper = Counting(space)
     for _ in range(60):
         stepper.step(DT)
-    assert 0.5 < max(stepper.works) <= 1.6
+    assert 0.5 < max(stepper.works) <= 2.0
     assert np.mean(stepper.parts) >= 0.4
     assert min(stepper.parts) > 0.0
     assert sum(part < 1e-6 for part in stepper.parts) <= 1

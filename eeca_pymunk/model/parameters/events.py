@@ -28,9 +28,9 @@ FARTHEST_MARGIN = work(0.7, "of the margin",
 SAME_INSTANT = round_off(1e-09, "of the step", "Two computations of an instant that differ by less agree.")
 AHEAD = work(0.4, "of the margin", "Distance of the centre of a new margin circle ahead of its shape.")
 MARGIN_LEFT = work(0.1, "of the margin", "Part of the margin that is left of a shape that counts as inside its circle.")
-STEP_LOOKS = work(60000, "looks",
-    "Work of the events of a step after which it ends early: about .2 us each. Larger: longer steps.")
-STEP_LOOKS_BODY = work(100, "looks", "What each body adds to it.")
+STEP_LOOKS = work(48000, "looks",
+    "Work of the events of a step after which it ends early: about .3 us each. Larger: longer steps.")
+STEP_LOOKS_BODY = work(80, "looks", "What each body adds to it.")
 MANY_BODIES = work(200, "bodies", "Number from which what a body adds grows with it, as piles are solved whole.")
 BUDGET_TIME = work(1 / 30, "s", "Length of a step from which the budget grows with it.")
 LONGEST_SEARCH = work(1.25, "of the budget",

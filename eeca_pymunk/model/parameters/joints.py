@@ -48,8 +48,6 @@ SPACING = round_off(2.2e-16, "of a number", "Spacing of floating-point numbers."
 NEWTON_ITERATIONS = work(25, "iterations", "Newton iterations of a step, at most.")
 ROW_APART = work(0.01, "of the square of a row",
     "Part of a joint's row outside the span of others below which rows count as redundant: impulses begin anew.")
-TRY_WORK = work(0.05, "of a step's work",
-    "Iterations of a component with cycles, at most, for which it is tried with the impulses of the last step.")
 REDUNDANT_EPSILON = round_off(1e-10, "of the diagonal", "Term added to the diagonal for rows that may be redundant.")
 REDUNDANT_MOST = work(0.01, "of the diagonal",
     "The same while errors are large, at most: rows that contradict each other have small impulses. Where that is "
@@ -70,6 +68,8 @@ BALANCED = round_off(1e-6, "of the errors of joints, as forces",
     "Force on bodies by which the errors of joints balance: these contradict one another, and become elastic at once.")
 NEARLY_HELD = accuracy(1e-08, "of the component, or rad",
     "Error of elastic joints, by their own formulas, up to which the step counts as converged.")
+GIVEN_INTERVAL = work(1e-6, "of the step",
+    "Length of an interval below which joints that give way are not tried for a shorter one.")
 REPAID = accuracy(1e-3, "of the kinetic energy",
     "Gain of closing joints that an earlier step left apart, up to which it is locked.")
 JOINT_GAIN = round_off(1e-12, "of the kinetic energy before and after",
@@ -105,11 +105,11 @@ FIT_RESIDUAL = accuracy(1e-06, "of the fastest closing contact",
     "Residual of the impulses that keep contacts from closing in this projection.")
 FIT_ENERGY = round_off(1e-12, "of the energy", "Change of energy by this projection that is round-off.")
 JOINTED_CORRECTION_SWEEPS = work(40, "sweeps", "Sweeps of the penetration correction of jointed bodies.")
-STEP_WORK = work(54000000.0, "operations",
-    "Work of a step with joints besides STEP_WORK_BODY; 4e9 operations take about a second.")
+STEP_WORK = work(36000000.0, "operations",
+    "Work of a step with joints besides STEP_WORK_BODY; 2.5e9 operations take about a second.")
 INTERVAL_SHARE = work(0.25, "of what is left of the budget",
     "Work of a long interval after which it is solved again, shorter, if it has not converged.")
-STEP_WORK_BODY = work(250000.0, "operations", "Work of a step with joints for each body of the scene.")
+STEP_WORK_BODY = work(160000.0, "operations", "Work of a step with joints for each body of the scene.")
 CUT_WORK = work(8000000.0, "operations",
     "Work for the intervals with joints that end where a step is cut short, beside its budget.")
 COMPONENT_WORK = work(1100.0, "operations", "Work of a step of a component, beside its iterations.")
