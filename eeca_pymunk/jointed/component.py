@@ -7,8 +7,8 @@ import math
 from ..arrays import FloatArray
 from ..compiled import inlined, nonallocating
 from ..joints.bounds import passed_side
-from ..joints.correct import project
-from ..joints.start import springs_of
+from ..joints.correct import hold_passed_by, project
+from ..joints.start import compute_rows, springs_of
 from ..joints.step import take_step
 from ..joints.workspace import workspace
 from ..model.joint_steps import POSES, SPEEDS, STEP
@@ -105,6 +105,20 @@ def close_at_poses(
         if passed != 0 and passed != link.side:
             return math.inf
     return stored
+
+
+@nonallocating
+def passes_limit(
+    A: Scene, J: Joints, s: int, POSE: FloatArray, D: FloatArray, IM: FloatArray, II: FloatArray, t: float, h: float,
+    least: float,
+) -> bool:  # fmt: skip
+    """Let limits of component s act that displacements D (k, 3) from the poses POSE (k, 3) pass by more than the length
+    `least`. Returns whether there are any."""
+    W = workspace(J, s)
+    length = gather_component(A, J, s, POSE, D, D, IM, II, t, h)
+    size_joints(W, length)
+    compute_rows(W)
+    return hold_passed_by(W, least / length)
 
 
 @nonallocating

@@ -16,15 +16,18 @@ from ..islands.payment import payment
 from ..model.contacts import Columns, JointedProblem, Row
 from ..model.joints import Joints
 from ..model.parameters.intervals import CORRECTION_ROUND_OFF
-from ..model.parameters.joints import JOINTED_CORRECTION_SWEEPS
+from ..model.parameters.joints import COLUMN_CONTACTS, IMPACT_LIMITS, JOINTED_CORRECTION_SWEEPS, JOINTED_LIFT_ERROR
 from ..model.scene import Scene
 from ..rows.bounded import room_for_rows
 from ..rows.build import normal_rate
+from ..rows.columns import breach
+from ..rows.coulomb import slip_freely
+from ..rows.homotopy import follow_homotopy
 from ..rows.inplace import copy
-from ..rows.lifting import lift_above_walls
+from ..rows.lifting import keep_walls, lift
 from .advance import Interval
-from .columns import fill_group, set_effective_masses
-from .component import close_at_poses, ready_at_poses
+from .columns import count_operations, fill_group, set_effective_masses
+from .component import close_at_poses, passes_limit, ready_at_poses
 from .gathered import find_places, gather_component
 from .groups import is_free
 
@@ -34,11 +37,26 @@ def raise_gaps(
     problem: JointedProblem, n: int, GAPS: FloatArray, D: FloatArray, tolerance: float
 ) -> FloatArray:  # fmt: skip
     """Displacements D (k, 3) = Y mu with 0 <= mu _|_ g + G D >= 0, for contacts that are not left out; returns mu
-    (m,)."""
-    for i in range(problem.m):
+    (m,). Where a light body in a corner is joined to one a thousand times heavier, sweeps have not come far: of few
+    contacts this is the law of contacts without friction, with targets -g, and solved as such."""
+    ROWS, m, MU = problem.ROWS, problem.m, np.zeros(problem.m)
+    for i in range(m):
         if problem.C.LEFT_OUT[i] != 0:
             GAPS[i] = np.inf
-    return lift_above_walls(problem, n, GAPS, D, tolerance, JOINTED_CORRECTION_SWEEPS)
+    if lift(problem, GAPS, MU, D, tolerance, JOINTED_CORRECTION_SWEEPS) <= tolerance:
+        return MU
+    if m <= COLUMN_CONTACTS:
+        slip_freely(ROWS, m)
+        L, WAY = np.zeros((m, 2)), D.copy()
+        for i in range(m):
+            L[i, 0], ROWS[i].target, ROWS[i].wake = MU[i], -GAPS[i], np.inf
+        if follow_homotopy(problem, L, WAY, np.zeros_like(D), False) and breach(problem, L, WAY) <= tolerance:
+            copy(D, WAY)
+            for i in range(m):
+                MU[i] = L[i, 0]
+            return MU
+    keep_walls(problem, n, GAPS, np.minimum(GAPS, 0.0), MU, D)
+    return MU
 
 
 @kernel
@@ -87,9 +105,10 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget
     """Move the poses at the end of an island's motion out of each other, at a cost of at most `budget`, not at all if
     that is below 0; returns the cost.
 
-    It is -m a.D for displacements D, rotations included, and the energy that springs gain. D is along the joints; their
-    errors of second order are then closed. A free island keeps its centre of mass and its angular momentum: velocities
-    at the end rotate by what the displacements have changed of it.
+    It is -m a.D for displacements D, rotations included, and the energy that springs gain. D is along the joints, and
+    limits that a solution passes, which hold in the next; errors of second order are then closed. A free island keeps
+    its centre of mass and its angular momentum: velocities at the end rotate by what the displacements have changed of
+    it.
     """
     isle, groups, ROWS, motion, C, m, n, _, h, _ = interval
     V, WAY, END = motion.V, motion.WAY, motion.END
@@ -107,10 +126,19 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget
         # prescribe speeds at its end.
         if s >= 0 and J.COMPONENT[s].bounded_joints > 0:
             fill_at_end(A, J, interval, C, g, INDEX, ROWS, m, end)
-    KEEP = ROWS[:m].copy()
-    set_effective_masses(groups, C, KEEP, m)
     D = np.zeros_like(V)
-    raise_gaps(JointedProblem(KEEP, C, room_for_rows(0, 0), m), n, GAPS, D, 1e-3 * -deepest)
+    for _ in range(IMPACT_LIMITS):
+        KEEP, D[:] = ROWS[:m].copy(), 0.0
+        set_effective_masses(groups, C, KEEP, m)
+        raise_gaps(JointedProblem(KEEP, C, room_for_rows(0, 0), m), n, GAPS, D, JOINTED_LIFT_ERROR * -deepest)
+        count_operations(J, C)
+        again = False
+        for g in range(len(groups.COMPONENT)):
+            s = groups.COMPONENT[g]
+            if s >= 0 and passes_limit(A, J, s, END, D, isle.IM, isle.II, end, h, JOINTED_LIFT_ERROR * -deepest):
+                again = fill_at_end(A, J, interval, C, g, INDEX, ROWS, m, end) or again
+        if not again:
+            break
     free = is_free(isle, groups, n, J)
     if free:
         keep_centre(D, isle.IM, n)

@@ -221,6 +221,13 @@ def test_steps_that_are_cut_press_nothing_through_walls(seed: int) -> None:
     Varied(seed, False).play()
 
 
+def test_what_a_heavy_body_presses_into_a_corner_is_lifted_out_of_it() -> None:
+    """By a limit, on which the two stand at the end of an interval but not from its start: the correction had turned
+    the light one, 5000 times lighter, against it, which closing the limit undid. It went deeper in each step, and
+    through the wall in the 44th."""
+    Varied(65002643, True).play(46)
+
+
 @pytest.mark.parametrize("seed", [52005, 830006, 830642, 832408])
 def test_what_rests_and_what_is_wedged_keeps_its_place_where_intervals_are_cut(seed: int) -> None:
     """Contacts that have given energy are solved again up to the cut, those that friction wedges without friction, and

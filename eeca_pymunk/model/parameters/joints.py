@@ -105,6 +105,7 @@ FIT_RESIDUAL = accuracy(1e-06, "of the fastest closing contact",
     "Residual of the impulses that keep contacts from closing in this projection.")
 FIT_ENERGY = round_off(1e-12, "of the energy", "Change of energy by this projection that is round-off.")
 JOINTED_CORRECTION_SWEEPS = work(40, "sweeps", "Sweeps of the penetration correction of jointed bodies.")
+JOINTED_LIFT_ERROR = accuracy(0.001, "of the deepest overlap", "Error of this correction, also of limits in its way.")
 STEP_WORK = work(36000000.0, "operations",
     "Work of a step with joints besides STEP_WORK_BODY; 2.5e9 operations take about a second.")
 INTERVAL_SHARE = work(0.25, "of what is left of the budget",
