@@ -17,6 +17,7 @@ from ..islands.membership import jointed, members, persists_from
 from ..jointed.columns import count_operations, fill_free, make_columns, set_effective_masses
 from ..jointed.ends import shorten, under_way
 from ..jointed.groups import find_groups
+from ..jointed.ledger import work_left
 from ..jointed.meet import end_before, locate_impact
 from ..joints.start import release_limits
 from ..joints.workspace import workspace
@@ -175,7 +176,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     finish_block(A, block, n, m, L, OUT, status, t)
     spend(A, n, m, 0.0)  # besides what its solutions take
     count_operations(J, C)
-    n = unite_block(A, a, b, t, n, lasts, lost)
+    n = unite_block(A, a, b, t, n, lasts, lost, 1.0 - work_left(A, J) / J.PROGRESS.budget)
     n = list_ended(A, n)
     for q in range(n):
         A.RESTING[A.BLOCK[q]].longest *= UNSOLVED_PART  # they move otherwise now, perhaps for long

@@ -21,9 +21,11 @@ from ..islands.local import clear_places, set_places
 from ..islands.membership import jointed, members, unite
 from ..model.bodies import AT_REST
 from ..model.contacts import SOLVED, Problem, Solved
+from ..model.parameters.events import BUSY_WORK
 from ..model.scene import Scene
 from ..model.step import IMPACT
 from ..pairs.rules import law
+from ..prediction.work import most_work
 from ..rows.blocks import CONVERGED, solve_block, solve_freely
 from ..rows.laws import solved_exactly
 from .simultaneous import Block, gather_block, make_block, take_owed_energy
@@ -118,14 +120,21 @@ def strike(A: Scene, a: int, b: int, t: float, lasts: bool) -> int:
     lost = OUT[0].restitution + OUT[0].friction - owed
     finish_block(A, block, n, m, L, OUT, status, t)
     spend(A, n, m, looks_of(rows, OUT[0]))
-    return unite_block(A, a, b, t, n, lasts, lost)
+    return unite_block(A, a, b, t, n, lasts, lost, A.COUNT.work / most_work(A))
 
 
 @kernel
-def unite_block(A: Scene, a: int, b: int, t: float, n: int, lasts: bool, lost: float) -> int:
+def unite_block(A: Scene, a: int, b: int, t: float, n: int, lasts: bool, lost: float, spent: float) -> int:
     """After the impact of the n bodies in A.BLOCK: unite their islands, and with them the bodies of shapes a and b if
-    their contact persists (`lasts`). lost: energy lost in the impact. Returns the number of bodies in A.BLOCK: those of
-    the block and of that island."""
+    their contact persists (`lasts`). Returns the number of bodies in A.BLOCK: those of the block and of that island.
+
+    An island that has been hit as often as a step allows becomes `busy`: further shapes are contacts of the interval
+    that now begins. With joints if nothing bounces, as this is the same law; others, and those that bounce, once
+    BUSY_WORK of the step is spent: each hit on a crowd of thin shapes costs a solve of all, and steps end early.
+
+    Args:
+        lost: energy lost in the impact.  spent: part of the work of the step that is spent.
+    """
     STATE, BODIES = A.STATE, A.BLOCK
     root = -1
     for q in range(n):
@@ -146,8 +155,10 @@ def unite_block(A: Scene, a: int, b: int, t: float, n: int, lasts: bool, lost: f
     root = STATE[root].island
     A.RESTING[root].lost += lost
     A.MEMBER[root].hits += 1
-    if jointed(A, root) and law(A, a, b)[0] == 0.0 and A.MEMBER[root].hits >= most_hits(A, a, b):
-        make_busy(A, root)  # further ones are contacts of the interval that now begins: without bounces, the same law
+    e = law(A, a, b)[0]
+    if (jointed(A, root) and e == 0.0) or (e < 1.0 and spent > BUSY_WORK):
+        if A.MEMBER[root].hits >= most_hits(A, a, b):
+            make_busy(A, root)
     # Bodies of the block that are in no island are predicted too.
     free = 0
     for q in range(n):

@@ -33,7 +33,9 @@ def work_of_solution(system: int, passes: int, joints: int, component: Component
         (component.dual_size, component.dual_band + 24) if system == DUAL else (component.unknowns, component.band)
     )
     one = BACK_WORK * size * (more + 6)
-    return float(passes * (one + REFINEMENT_WORK * joints) if system == CONDENSED else one)
+    if system == CONDENSED and component.impulses > 0:
+        return float(passes * (one + REFINEMENT_WORK * joints))
+    return float(one)
 
 
 @inlined

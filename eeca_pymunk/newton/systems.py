@@ -210,6 +210,7 @@ def back(W: Workspace, system: int, passes: int, right: FloatArray) -> None:
     size, band = W.J.COMPONENT[W.s].unknowns, W.J.COMPONENT[W.s].band
     W.J.PROGRESS.effort += work_of_solution(system, passes, W.joints, W.J.COMPONENT[W.s])
     if system == CONDENSED:
+        passes = passes if W.J.COMPONENT[W.s].impulses > 0 else 1  # springs alone leave nothing to refine
         back_condensed(W, passes, size, band, W.J.MATRIX, right, len(right) - size)
     elif system == DUAL:
         back_dual(W, right)

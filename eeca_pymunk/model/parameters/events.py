@@ -23,6 +23,7 @@ BUSY_STEPS = work(32, "steps",
     "Steps for which bodies are busy after an impact was passed over. Larger: fewer single impacts of piles that "
     "settle. With this and REST_RETRY at 8, falling piles cost a tenth more, and three times as many of their steps "
     "pass over impacts.")
+BUSY_WORK = work(0.5, "of a step's work", "After which an island becomes busy that is hit as often as a step allows.")
 FARTHEST_MARGIN = work(0.7, "of the margin",
     "Distance of the centre of a single disk's new margin circle ahead of it, at most.")
 SAME_INSTANT = round_off(1e-09, "of the step", "Two computations of an instant that differ by less agree.")
