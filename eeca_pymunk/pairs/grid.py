@@ -9,11 +9,11 @@ from __future__ import annotations
 import math
 
 from ..compiled import Table, fetch, nonallocating
-from ..geometry.flight import norm, pose
+from ..geometry.flight import norm, pose, rate
 from ..model.scene import Scene, scene_of
 from ..model.shapes import BATCH, LEVELS
 from .cells import bucket, cell_at, enter, overlaps, set_circle, unlink
-from .rules import append, circle_centre, direction_of_motion, may_collide, place_in, remove
+from .rules import append, circle_centre, may_collide, place_in, remove
 from .walls import box_wall, seek_walls
 
 _FIRST_CAPACITY = 8
@@ -155,8 +155,10 @@ def renew_circle(A: Scene, s: int, t: float, ahead: float) -> int:
     else:
         x, y = circle_centre(A, s, t)
     if ahead > 0.0:
-        ux, uy = direction_of_motion(A, s, t)
-        x, y = x + ahead * margin * ux, y + ahead * margin * uy
+        ux, uy, _ = rate(A.BODY, i, t)
+        u = norm(ux, uy)
+        if u > 0.0:
+            x, y = x + ahead * margin * (ux / u), y + ahead * margin * (uy / u)
     set_circle(A, s, x, y)
     A.GRID.renewals += 1
     kept = drop_distant(A, s)
