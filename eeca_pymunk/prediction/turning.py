@@ -118,12 +118,12 @@ def swept(
         p, q: numbers of the vertices of the cores, in CORE, which change.  one, two: motions of the bodies.
         bend: part of the bound B of a fixed axis that rotation of a slow one gives.  of: constants of a fixed axis.
     """
-    P, Q, extent = A.CORE[0], A.CORE[1], 0.0
+    P, Q = A.CORE[0], A.CORE[1]
     if fast_a:
         P[0, 0], P[0, 1], p = one.x, one.y, 1
     if fast_b:
         Q[0, 0], Q[0, 1], q = two.x, two.y, 1
-    extent += A.SHAPE[a].extent if fast_a else A.SHAPE[a].rounding
+    extent = A.SHAPE[a].extent if fast_a else A.SHAPE[a].rounding
     extent += A.SHAPE[b].extent if fast_b else A.SHAPE[b].rounding
     near = closest(P, p, Q, q)
     if near.distance <= extent:
@@ -187,9 +187,9 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float, most: float) 
     start = max(BODY[i].since, BODY[j].since)
     duration = max(horizon - start, 0.0)
     tolerance = gap_round_off(A, a, b)
-    s, never = circles_meet(A, a, b, start, duration, tolerance)
+    s = circles_meet(A, a, b, start, duration, tolerance)
     if s > duration:
-        return start + s, never
+        return start + s, s == math.inf
     if s == 0.0:
         s = carried_circles_meet(A, a, b, start, duration)
         if s > duration:
