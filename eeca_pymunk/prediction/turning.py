@@ -154,11 +154,11 @@ def general(A: Scene, a: int, b: int, horizon: float, latest: float) -> tuple[fl
 
 
 @nonallocating
-def note_sides(A: Scene, a: int, b: int, horizon: float, t: float) -> None:
+def note_sides(A: Scene, a: int, b: int, t: float) -> None:
     """Note on which side of each other thin shapes a < b are at instant t, as they follow their paths."""
     start = max(A.BODY[A.LINK[a].owner].since, A.BODY[A.LINK[b].owner].since)
-    begin_side(A, a, b, start, max(horizon - start, 0.0), gap_round_off(A, a, b))
-    search(A, a, b, horizon, t, math.inf)
+    begin_side(A, a, b, start, max(A.PAR.dt - start, 0.0), gap_round_off(A, a, b))
+    search(A, a, b, A.PAR.dt, t, math.inf)
 
 
 @nonallocating
