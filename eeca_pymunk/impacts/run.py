@@ -21,6 +21,7 @@ from ..model.run import AFTER, BETWEEN, WITHIN, Run, RunArrays, run_arrays_of
 from ..model.scene import Scene, scene_of
 from ..model.step import ENERGY, IMPACTS_FULL
 from ..model.values import Reading, reading_of
+from .memory import lengthened
 from .step import resume, start
 
 _NOBODY: IntArray = np.zeros(0, np.int64)
@@ -228,9 +229,7 @@ class RunBuffers:
     def more_events(self) -> None:
         """Double the memory for impacts."""
         arrays = self._arrays
-        longer = rows(Impulse, 2 * len(arrays.EVENTS))
-        longer[: arrays.RUN.kept] = arrays.EVENTS[: arrays.RUN.kept]
-        self.arrays = arrays._replace(EVENTS=longer)
+        self.arrays = arrays._replace(EVENTS=lengthened(arrays.EVENTS, int(arrays.RUN.kept)))
 
     @property
     def events(self) -> Rows[Impulse]:

@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import Table
 from ..compiled.library import result_of
-from ..compiled.records import R, Rows, columns, from_bytes, rows
+from ..compiled.records import Rows, columns, from_bytes, rows
 from ..contacts.memory import copy_recent
 from ..islands.accounting import flag_pairs
 from ..joints.pinned import hold, release_held
@@ -25,6 +25,7 @@ from ..pairs.setup import with_more_room
 from ..report import Details, of_events
 from . import step as stages
 from .edits import Changes, renew, words_of
+from .memory import lengthened
 from .remembering import UNBOUND, Remembering
 from .run import RunBuffers, run
 from .scene_memory import RULE_COLUMNS, Laid, SceneMemory
@@ -32,13 +33,6 @@ from .taking_over import Kept, take_over
 
 if TYPE_CHECKING:
     import pymunk
-
-
-def _longer(table: Rows[R], used: int) -> Rows[R]:
-    """A table of twice as many rows, with the first `used` ones copied."""
-    longer: Rows[R] = np.zeros(2 * len(table), table.dtype)  # type: ignore[assignment]
-    longer[:used] = table[:used]
-    return longer
 
 
 def _details(logged: bytes, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray) -> Details:
@@ -153,7 +147,7 @@ class EventLoop(Remembering):
         """Provide the memory that a step needs, `wish` being its status; the step can then be resumed."""
         scene = self.scene
         if wish == LOG_FULL:
-            self.scene = scene._replace(LOG=_longer(scene.LOG, int(scene.COUNT.logged)))
+            self.scene = scene._replace(LOG=lengthened(scene.LOG, int(scene.COUNT.logged)))
             self._memory.log = len(self.scene.LOG)
             return
         if wish == PUSHES_FULL:
@@ -164,7 +158,7 @@ class EventLoop(Remembering):
             self._clean(2 * size)
             used = int(scene.COUNT.pushes)
             self.scene = self.scene._replace(
-                PUSHED_BY=_longer(scene.PUSHED_BY, used), PUSHED=_longer(scene.PUSHED, used)
+                PUSHED_BY=lengthened(scene.PUSHED_BY, used), PUSHED=lengthened(scene.PUSHED, used)
             )
             self._memory.contacts = len(self.scene.PUSHED)
             return
