@@ -94,8 +94,8 @@ class Listing:
         """The rows of the constraints of bodies whose centre of gravity has changed since `centres` were read, which
         are read again: the values of these constraints have to be, too."""
         before, self.centres = self.centres, self._centres()
-        pairs = zip(self.bodies, before, self.centres, strict=True)
-        return self.with_body({body: centre != now for body, centre, now in pairs})
+        moved = [centre != now for centre, now in zip(before, self.centres, strict=True)]
+        return np.flatnonzero(np.array(moved)[self.ends].any(axis=1)).tolist() if any(moved) else []
 
     def find_functions(self) -> None:
         """Find the lists of constraints that depend on kinds, bounds and functions."""
@@ -105,13 +105,6 @@ class Listing:
         self.before = [item for item, calls in zip(self.items, self.calls, strict=True) if calls.before is not None]
         self.after = [item for item, calls in zip(self.items, self.calls, strict=True) if calls.after is not None]
         self.calling = list(dict.fromkeys((*self.before, *self.after)))
-
-    def with_body(self, marked: dict[pymunk.Body, bool]) -> list[int]:
-        """The rows of the constraints of which a body is marked True."""
-        if not any(marked.values()):
-            return []
-        marks = np.array([marked.get(body, False) for body in self.bodies])
-        return np.flatnonzero(marks[self.ends].any(axis=1)).tolist()
 
     def measured(self) -> list[int]:
         """Rows of the pins whose length is the distance of their anchors, up to round-off: pickles of pymunk lack the
