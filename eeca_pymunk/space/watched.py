@@ -32,10 +32,10 @@ class Watched:
             for separate. Between two calls of one stage pymunk changes no body.
     """
 
-    __slots__ = ("_decides", "_phase", "_rehearsal", "_stage", "function")
+    __slots__ = ("_decides", "_rehearsal", "_stage", "function")
 
     def __init__(self, rehearsal: Rehearsal, function: Callable[..., Any], phase: str, stage: int) -> None:
-        self._rehearsal, self.function, self._phase, self._stage = rehearsal, function, phase, stage
+        self._rehearsal, self.function, self._stage = rehearsal, function, stage
         self._decides = phase in (_BEGIN, _PRE_SOLVE)
 
     def __call__(self, *arguments: Any) -> bool | None:
@@ -46,7 +46,8 @@ class Watched:
         before = private.decision(arguments[0]) if self._decides else None
         result: bool | None = True
         try:
-            result = to_return(self.function(*arguments), self.function, self._phase)
+            value = self.function(*arguments)
+            result = to_return(value, self.function) if self._decides else None
         except BaseException as error:
             # pymunk's C code would discard it; `Rehearsal.run` raises it.
             rehearsal.failure = error

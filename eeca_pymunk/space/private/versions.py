@@ -71,13 +71,12 @@ def may_differ(
     return not products or surface.x != 0.0 or surface.y != 0.0
 
 
-def to_return(value: Any, function: Callable[..., Any], phase: str) -> bool | None:
-    """What a wrapper of a handler's function returns to pymunk, if the function has returned `value`.
+def to_return(value: Any, function: Callable[..., Any]) -> bool | None:
+    """What a wrapper of a handler's `begin` or `pre_solve` returns to pymunk, if the function has returned `value`.
 
-    pymunk 7 ignores return values. pymunk 6 expects a bool from `begin` and `pre_solve`; for other values it warns, and
-    the collision takes place.
+    pymunk 7 ignores return values. pymunk 6 expects a bool; for other values it warns, and the collision takes place.
     """
-    if not BY_RETURN or phase not in ("_begin", "_pre_solve"):
+    if not BY_RETURN:
         return None
     if isinstance(value, bool):
         return value
