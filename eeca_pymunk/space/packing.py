@@ -76,7 +76,7 @@ def read_surface(shape: pymunk.Shape, record: ShapeRecord) -> ShapeRecord:
     """The record of a shape whose body and vertices are still those of `record`."""
     numbers, words = _surface(shape)
     packed = _VALUES.pack(0, len(record.vertices), *words, *numbers, 0, 0)
-    return ShapeRecord(record.body, record.vertices, numbers, words, record.outside, packed, record.points)
+    return record._replace(numbers=numbers, filter=words, packed=packed)
 
 
 def _surface(shape: pymunk.Shape) -> tuple[tuple[float, ...], tuple[int, int, int]]:
