@@ -142,22 +142,18 @@ class BodyStates:
         self.STATES[layout.WRITTEN] = self.HOOKED[layout.UNALTERED]
 
     def is_current(self) -> bool:
-        """Whether `gather` has read these bodies, and no static one was moved."""
-        return self.same_bodies() and not self.moved_static()
+        """Whether `gather` has read these bodies, and no static one was moved since the rows were made."""
+        now, then = (self.STATES[which, self.bodies.static, :3] for which in (layout.READ, layout.WRITTEN))
+        return self.same_bodies() and np.array_equal(now, then)
 
     def same_bodies(self) -> bool:
         """Whether `gather` has read these bodies and no others."""
         now, known = self.IDS[layout.READ_ID].tobytes(), self.IDS[layout.KNOWN_ID].tobytes()
         return bool(now == known)  # numpy takes five times as long to compare few numbers
 
-    def moved_static(self) -> bool:
-        """Whether a static body was moved since the rows were made, by the states that `gather` has read."""
-        still = self.bodies.static
-        return not np.array_equal(self.STATES[layout.READ, still, :3], self.STATES[layout.WRITTEN, still, :3])
-
     def static_moved_since(self) -> bool:
-        """As `moved_static`, by the present poses, also if other bodies have come, or pymunk's order has changed. Not
-        of bodies that slept: pymunk wakes those that a program moves."""
+        """Whether a static body was moved since the rows were made, by the present poses, also if other bodies have
+        come, or pymunk's order has changed. Not of bodies that slept: pymunk wakes those that a program moves."""
         still: list[int] = (self.bodies.static & ~self.bodies.asleep).nonzero()[0].tolist()
         known = [(self.bodies.items[i], self.STATES[layout.WRITTEN, i, :3].tolist()) for i in still]
         return any(body.space is self.space and [*body.position, body.angle] != pose for body, pose in known)
