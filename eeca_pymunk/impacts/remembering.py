@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import AnyArray, FloatArray, IntArray
-from ..compiled import Table, replaced, table_of
+from ..compiled import Table, table_of
 from ..compiled.records import Rows, as_integers, numbers, put
 from ..energy.ledger import BOOK
 from ..model.bodies import POSE, VELOCITY, Body
@@ -68,10 +68,6 @@ class Remembering:
     def _view(self, par: memoryview, count: memoryview, log: memoryview) -> None:
         """Use these as the memory of PAR, COUNT and LOG."""
         self._par, self._count, self.log, self._book = par, count, log, par[BOOK]
-
-    def exchange(self, name: str, array: AnyArray) -> None:
-        """Use another array of this name, which steps only read."""
-        self.table, self._bound = replaced(self.table, Scene, name, array), UNBOUND
 
     @property
     def joints(self) -> Joints:

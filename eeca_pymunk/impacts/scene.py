@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import Table
+from ..compiled import Table, replaced
 from ..compiled.library import result_of
 from ..compiled.records import Rows, columns, from_bytes, rows
 from ..contacts.memory import copy_recent
@@ -20,6 +20,7 @@ from ..model.bodies import CHECK, MOBILITY, Body
 from ..model.contacts import Force, Impulse
 from ..model.joints import Joint, Pinned
 from ..model.parameters.events import MANY_BODIES, STEP_LOOKS, STEP_LOOKS_BODY
+from ..model.scene import Scene
 from ..model.step import IMPACTS_FULL, LOG_FULL, PUSHES_FULL, Missed, needs_memory
 from ..pairs.setup import with_more_room
 from ..report import Details, of_events
@@ -193,7 +194,7 @@ class EventLoop(Remembering):
         if rules != self._rules:
             self._rules = dict(rules)
             table = np.array([(*pair, *what) for pair, what in rules.items()], float).reshape(-1, RULE_COLUMNS)
-            self.exchange("RULE", table)
+            self.table, self._bound = replaced(self.table, Scene, "RULE", table), UNBOUND
 
     @property
     def events(self) -> Rows[Impulse]:
