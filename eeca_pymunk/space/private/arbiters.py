@@ -13,7 +13,8 @@ from pymunk._chipmunk_cffi import ffi, lib
 from .versions import decide
 
 OF_LIBRARY = (
-    "pmSpaceArbiterIteratorFuncBatched", "cpBodyIsSleeping", "cpArbiterTotalImpulse", "cpShapeGetCollisionType",
+    "pmSpaceArbiterIteratorFuncBatched", "cpBodyIsSleeping", "cpShapeGetCollisionType",
+    "CP_ARBITER_STATE_FIRST_COLLISION",
 )  # fmt: skip
 TYPES = ("cpArbiter *", "cpContact[1]")
 

@@ -11,7 +11,7 @@ from pymunk._chipmunk_cffi import ffi, lib
 
 OF_LIBRARY = (
     "cpBodyIsSleeping", "cpConstraintGetBodyA", "cpConstraintGetBodyB",
-    "cpBodyGetPosition", "cpBodyGetCenterOfGravity", "cpBodyGetType", "CP_BODY_TYPE_KINEMATIC", "cpBodyGetAngle",
+    "cpBodyGetCenterOfGravity", "cpBodyGetType", "CP_BODY_TYPE_KINEMATIC", "CP_BODY_TYPE_STATIC",
     "cpSpaceGetCurrentTimeStep", "cpSpaceSetCurrentTimeStep",
     "cpConstraintGetMaxForce", "cpConstraintSetMaxForce", "cpConstraintGetErrorBias", "cpConstraintGetMaxBias",
     "cpConstraintGetPreSolveFunc", "cpConstraintSetPreSolveFunc",
