@@ -45,8 +45,8 @@ _OF_LIBRARY = (
 CONTENTS = "_add_shape", "_add_body", "_remove_shape", "_remove_body"
 LINKS = "_add_constraint", "_remove_constraint"
 _OF_SPACE = (
-    "_space", "_bodies", "_shapes", "_constraints", "_handlers", "_get_arbiters", "_locked", "_add_later",
-    "_remove_later", "_removed_shapes", "_post_step_callbacks", *CONTENTS, *LINKS,
+    "_space", "_bodies", "_handlers", "_get_arbiters", "_locked", "_add_later", "_remove_later", "_removed_shapes",
+    "_post_step_callbacks", *CONTENTS, *LINKS,
 )  # fmt: skip
 _OF_BODY = ("_body", "_velocity_func", "_position_func")
 _TYPES = (*private_batch.TYPES, *private_arbiters.TYPES)
