@@ -104,7 +104,8 @@ class EventLoop(Remembering):
         """Go on with other joints, or with edited ones, on the rows of the scene, which have the present poses.
 
         Args:
-            replan: whether components may differ; else only whether joints hold other bodies where they are.
+            replan: whether components may be others. If not, they are planned anew only if the joints hold other bodies
+                where they are than before.
         """
         self.release()
         if replan or hold(self.table, self.ties):
@@ -144,14 +145,14 @@ class EventLoop(Remembering):
             else:
                 return status
 
-    def _grow(self, wish: int) -> None:
-        """Provide the memory that a step needs, `wish` being its status; the step can then be resumed."""
+    def _grow(self, status: int) -> None:
+        """Provide the memory that a step needs which has returned this status; it can then be resumed."""
         scene = self.scene
-        if wish == LOG_FULL:
+        if status == LOG_FULL:
             self.scene = scene._replace(LOG=lengthened(scene.LOG, int(scene.COUNT.logged)))
             self._memory.log = len(self.scene.LOG)
             return
-        if wish == PUSHES_FULL:
+        if status == PUSHES_FULL:
             size, count = len(scene.KEYS), int(scene.COUNT.remembered)
             self._clean(size)
             if count - scene.COUNT.remembered >= size // 8:

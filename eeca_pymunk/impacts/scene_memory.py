@@ -165,7 +165,7 @@ class SceneMemory:
         return layout.floats("PAR"), layout.integers("COUNT"), layout.integers("LOG")
 
     def unjointed(self, scene: Table, n: int) -> Table:
-        """The table `Joints` of a scene without joints, of n bodies."""
+        """The table `Joints` of a scene without joints, of n bodies; also of later scenes, up to twice as many."""
         if self._unjointed[1] < n:
             self._unjointed = JointMemory().plan(scene, 2 * n, NO_LINKAGE), 2 * n
         return self._unjointed[0]

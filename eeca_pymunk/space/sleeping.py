@@ -141,7 +141,7 @@ class Sleep:
         return pymunk.BB(x - reach, y - reach, x + reach, y + reach) if math.isfinite(x + y + reach) else None
 
     def _left_alone(self, groups: list[list[pymunk.Body]], dt: float) -> list[list[pymunk.Body]]:
-        """Those of the groups that `wake_ahead` would not wake in the next step; all others may move in it."""
+        """Those of the groups that `wake_ahead` would not wake in the next step, if all other bodies may move in it."""
         row, moves = self.world.bodies.row, self._moves[self.world.plain].tolist()
         self.world.gather()
         while True:
@@ -241,10 +241,10 @@ class Sleep:
         if len(ready) < enough or len(self._left_alone(ready, dt)) < enough:
             return
         pairs = () if joints is None else joints.pairs.values()
-        islands = self._left_alone(resting_groups(self.space, bodies, self._ready, report.contacts, pairs), dt)
-        if sum(map(len, islands)) < enough:
+        groups = self._left_alone(resting_groups(self.space, bodies, self._ready, report.contacts, pairs), dt)
+        if sum(map(len, groups)) < enough:
             return
         self._since = 0
-        for island in islands:
-            self._rested[[bodies.row[body] for body in island]] = 0.0
-            sleep_together(island)
+        for group in groups:
+            self._rested[[bodies.row[body] for body in group]] = 0.0
+            sleep_together(group)
