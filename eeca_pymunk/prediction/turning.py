@@ -21,13 +21,11 @@ from __future__ import annotations
 import math
 
 from ..compiled import nonallocating
-from ..compiled.records import Rows
 from ..geometry import sides
 from ..geometry.convex import closest, place_vertices
 from ..geometry.gap import gap_round_off
 from ..geometry.manifold import face_points
 from ..geometry.widths import smaller
-from ..model.bodies import Body
 from ..model.parameters.events import ADVANCES, APPROACH_ROUND_OFF, LONGEST_SEARCH, RESOLUTION
 from ..model.parameters.intervals import TOUCH
 from ..model.scene import Scene
@@ -40,14 +38,13 @@ from .work import look_work, most_work
 
 @nonallocating
 def time_to_contact_again(
-    BODY: Rows[Body], i: int, j: int, t: float, nx: float, ny: float, px: float, py: float
+    A: Scene, a: int, b: int, nx: float, ny: float, px: float, py: float, one: MotionState, two: MotionState
 ) -> float:
-    """Time after which bodies that touch at the point p and part there along n with u >= 0 touch again: 2 u / a_n if
-    the acceleration of the points closes the gap with a_n > 0, else infinite."""
-    a, b = motion(BODY, i, t), motion(BODY, j, t)
-    u = opening(a, b, nx, ny, px, py)
-    one, two = BODY[i], BODY[j]
-    closing = closing_rate(a, b, one.ax, one.ay, one.angular, two.ax, two.ay, two.angular, nx, ny, px, py)
+    """Time after which shapes a and b, with the motions `one` and `two` of their bodies, that touch at the point p and
+    part there along n with u >= 0 touch again: 2 u / a_n if the acceleration of the points closes the gap with a_n > 0,
+    else infinite."""
+    u, i, j = opening(one, two, nx, ny, px, py), A.BODY[A.LINK[a].owner], A.BODY[A.LINK[b].owner]
+    closing = closing_rate(one, two, i.ax, i.ay, i.angular, j.ax, j.ay, j.angular, nx, ny, px, py)
     return 2.0 * max(u, 0.0) / closing if closing > 0.0 else math.inf
 
 
@@ -80,19 +77,17 @@ def face_closes(
 
 @nonallocating
 def face_closes_again(
-    A: Scene, a: int, b: int, nx: float, ny: float, x: float, y: float, d: float, one: MotionState, two: MotionState,
-    t: float,
-) -> float:  # fmt: skip
-    """`time_to_contact_again` of shapes a < b that touch, at instant t. Where the point that is nearest approaches, it
-    is beyond the end of the face that both have in common, as that of a rod on a shorter plank is: then at the ends of
-    this face."""
-    BODY, i, j = A.BODY, A.LINK[a].owner, A.LINK[b].owner
+    A: Scene, a: int, b: int, nx: float, ny: float, x: float, y: float, d: float, one: MotionState, two: MotionState
+) -> float:
+    """`time_to_contact_again` of shapes a < b that touch. Where the point that is nearest approaches, it is beyond the
+    end of the face that both have in common, as that of a rod on a shorter plank is: then at the ends of this face.
+    Arguments as of `face_closes`."""
     px, py = x + A.SHAPE[a].rounding * nx, y + A.SHAPE[a].rounding * ny
     if opening(one, two, nx, ny, px, py) >= 0.0:
-        return time_to_contact_again(BODY, i, j, t, nx, ny, px, py)
+        return time_to_contact_again(A, a, b, nx, ny, px, py, one, two)
     px, py, qx, qy = points_of_face(A, a, b, nx, ny, x, y, d)
-    again = time_to_contact_again(BODY, i, j, t, nx, ny, px, py)
-    return min(again, time_to_contact_again(BODY, i, j, t, nx, ny, qx, qy))
+    again = time_to_contact_again(A, a, b, nx, ny, px, py, one, two)
+    return min(again, time_to_contact_again(A, a, b, nx, ny, qx, qy, one, two))
 
 
 @nonallocating
@@ -234,7 +229,7 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float, most: float) 
         if met and near < -tolerance and not face_closes(A, a, b, nx, ny, px, py, d, one, two, still):
             met, safe = False, max(safe, duration / ADVANCES)
         if not met and near <= tolerance:
-            back = face_closes_again(A, a, b, nx, ny, px, py, d, one, two, start + s)
+            back = face_closes_again(A, a, b, nx, ny, px, py, d, one, two)
             if back <= min(safe, interval):
                 return start + s + back, True
         if met:
