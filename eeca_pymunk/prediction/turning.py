@@ -139,7 +139,7 @@ def general(A: Scene, a: int, b: int, horizon: float, latest: float) -> tuple[fl
     if not sides.remembers(A, a, b):
         return search(A, a, b, horizon, latest, most)
     start = max(A.BODY[A.LINK[a].owner].since, A.BODY[A.LINK[b].owner].since)
-    begin_side(A, a, b, start, max(horizon - start, 0.0), gap_round_off(A, a, b))
+    begin_side(A, a, b, start, max(horizon - start, 0.0))
     A.COUNT.work += look_work(A, a, b)
     side = A.SIDE[sides.side_row(A, sides.side_key(A, a, b))]
     key, nx, ny, deep = side.key, side.nx, side.ny, side.deep
@@ -152,7 +152,7 @@ def general(A: Scene, a: int, b: int, horizon: float, latest: float) -> tuple[fl
 def note_sides(A: Scene, a: int, b: int, t: float) -> None:
     """Note on which side of each other thin shapes a < b are at instant t, as they follow their paths."""
     start = max(A.BODY[A.LINK[a].owner].since, A.BODY[A.LINK[b].owner].since)
-    begin_side(A, a, b, start, max(A.PAR.dt - start, 0.0), gap_round_off(A, a, b))
+    begin_side(A, a, b, start, max(A.PAR.dt - start, 0.0))
     search(A, a, b, A.PAR.dt, t, math.inf)
 
 
