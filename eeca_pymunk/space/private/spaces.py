@@ -14,6 +14,7 @@ from functools import partial
 from typing import Any
 
 import pymunk
+from pymunk._chipmunk_cffi import ffi, lib
 
 from . import arbiters as private_arbiters
 from . import batch as private_batch
@@ -23,11 +24,6 @@ from . import shapes as private_shapes
 from . import sleep as private_sleep
 from . import versions as private_versions
 from .versions import REQUIRED
-
-try:
-    from pymunk._chipmunk_cffi import ffi, lib
-except ImportError as error:  # pragma: no cover - needs another pymunk
-    raise ImportError(f"pymunk {pymunk.version} has no pymunk._chipmunk_cffi: pip install '{REQUIRED}'") from error
 
 # Functions of a handler, in the order in which pymunk calls them.
 PHASES = ("_begin", "_pre_solve", "_post_solve", "_separate")
