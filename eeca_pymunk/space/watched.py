@@ -13,7 +13,7 @@ from .joints import JointRows
 from .private import joints as private_joints
 from .private import spaces as private
 from .private.joints import clear_max_forces, restore_max_forces, restore_motions, silent, with_laws
-from .private.versions import to_return
+from .private.versions import decision, to_return
 
 if TYPE_CHECKING:
     from .rehearsal import Rehearsal
@@ -43,7 +43,7 @@ class Watched:
         if rehearsal.failure is not None:
             return True
         rehearsal.before_call(self._stage)
-        before = private.decision(arguments[0]) if self._decides else None
+        before = decision(arguments[0]) if self._decides else None
         result: bool | None = True
         try:
             value = self.function(*arguments)
@@ -51,7 +51,7 @@ class Watched:
         except BaseException as error:
             # pymunk's C code would discard it; `Rehearsal.run` raises it.
             rehearsal.failure = error
-        if self._decides and (result is False or private.decision(arguments[0]) != before):
+        if self._decides and (result is False or decision(arguments[0]) != before):
             rehearsal.decided = True
         rehearsal.after_call(self._stage)
         return result

@@ -95,13 +95,7 @@ def arbiters(space: pymunk.Space) -> list[pymunk.Arbiter]:
 
 def differing_arbiters(space: pymunk.Space) -> list[pymunk.Arbiter]:
     """Those of `arbiters` whose values may differ from those that follow from their shapes."""
-    own = lib.cpShapeGetSensor, lib.cpShapeGetElasticity, lib.cpShapeGetFriction
-    return [pymunk.Arbiter(one, space) for one in space._get_arbiters() if private_versions.may_differ(one, *own)]
-
-
-def decision(arbiter: pymunk.Arbiter) -> tuple[Any, ...]:
-    """The values of an arbiter that functions may change, for comparison."""
-    return private_versions.decision(arbiter._arbiter, lib.cpShapeGetSensor)
+    return [pymunk.Arbiter(one, space) for one in space._get_arbiters() if private_versions.may_differ(one)]
 
 
 def pointers(bodies: Iterable[pymunk.Body]) -> list[Any]:
