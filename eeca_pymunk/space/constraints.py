@@ -195,8 +195,7 @@ def _pin(
     length: float, force: tuple[float, float, float], a: tuple[float, float], b: tuple[float, float]
 ) -> ConstraintValues:  # fmt: skip
     """A pin, or a pivot if its length is 0, for which a pin has no direction."""
-    scale = max(map(abs, (*a, *b)))
-    kind = joints.PIVOT if length <= _SMALL * max(scale, 1e-300) or length == 0.0 else joints.PIN
+    kind = joints.PIVOT if length <= _SMALL * max(map(abs, (*a, *b))) else joints.PIN
     return ConstraintValues(kind, force, a, b, length)
 
 
