@@ -3,8 +3,8 @@
 In: a `pymunk.Space`, its bodies, shapes, settings, functions and handlers. Out: arrays, and errors for unsupported
 features. Back: the arrays of the end of a step, written into the space.
 
-Open first `world.py`, the space as packed arrays, and `checks.py`, the unsupported features. Words used throughout: a
-body has an index in pymunk's order (`bodies.items`, `bodies.row`), and a row in BODY, which kernels use
+Open first `world.py`, the space as packed arrays, and `checks.py`, values that cannot be stepped. Words used
+throughout: a body has an index in pymunk's order (`bodies.items`, `bodies.row`), and a row in BODY, which kernels use
 (`IDS[BODY_ROW]`); a *function* is one of the program, which pymunk calls; *past* is the object of the same class for an
 earlier reading of the space, of which everything that has not changed is used again.
 
