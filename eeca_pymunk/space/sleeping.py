@@ -124,7 +124,7 @@ class Sleep:
         """Wake the sleeping bodies that a kinematic body may meet in the step that begins with the states read; unless
         the world is plain, all that may be met, since steps that call functions are not repeated. Whether any woke."""
         world, found = self.world, False
-        for i in self._near(dt, math.hypot(*world.gravity)) if len(self._moves[world.plain]) else ():
+        for i in self._near(dt) if len(self._moves[world.plain]) else ():
             if (box := self._reached(i, dt)) is not None:
                 found |= self._wake_within(box)
         return found
@@ -153,16 +153,15 @@ class Sleep:
                 return groups
             groups = remaining
 
-    def _near(self, dt: float, pull: float) -> list[int]:
-        """Those of `_moves` (rows) that may reach the box of a sleeping shape within dt, see `sleepers.approaches`.
-        `pull`: length of the acceleration by gravity."""
+    def _near(self, dt: float) -> list[int]:
+        """Those of `_moves` (rows) that may reach the box of a sleeping shape within dt, see `sleepers.approaches`."""
         plain, world = self.world.plain, self.world
         if plain not in self._nears:
             near = np.zeros(len(self._moves[plain]), np.int64)
             of = world.STATES, self._moves[plain], self._far, world.bodies.inverse_mass.copy(), self._boxes
             self._nears[plain] = near, approaches.bind(*of, near)
         near, call = self._nears[plain]
-        return near[: call(dt, pull)].tolist()  # type: ignore[no-any-return]
+        return near[: call(dt, math.hypot(*world.gravity))].tolist()  # type: ignore[no-any-return]
 
     @cached_property
     def _boxes(self) -> FloatArray:
