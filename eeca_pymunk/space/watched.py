@@ -12,7 +12,7 @@ import pymunk
 from .joints import JointRows
 from .private import joints as private_joints
 from .private import spaces as private
-from .private.joints import clear_max_forces, restore_max_forces, restore_motions, silent, with_laws
+from .private.joints import clear_max_forces, motions, restore_max_forces, restore_motions, silent, with_laws
 from .private.versions import decision, to_return
 
 if TYPE_CHECKING:
@@ -64,8 +64,8 @@ def silent_joints(rehearsal: Rehearsal, joints: JointRows) -> Iterator[None]:
     # `Hooks.before` calls `pre_solve` where the first body is outside the space: pymunk does not.
     silenced = [item for item in joints.calling if item.pre_solve is None or item.a.space is None]
     with ExitStack() as stack:
-        if joints.partners.items:
-            stack.callback(restore_motions, joints.partners.motions())
+        if joints.partners.items:  # constraints change their velocities; to nan if no body of a constraint can be moved
+            stack.callback(restore_motions, motions(private.pointers(joints.partners.items)))
         if silenced:
             stack.enter_context(silent(silenced))
         if joints.with_law:
