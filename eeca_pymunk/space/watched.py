@@ -3,7 +3,7 @@ constraints that it must not call are removed meanwhile."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -70,24 +70,13 @@ def silent_joints(rehearsal: Rehearsal, joints: JointRows) -> Iterator[None]:
             stack.enter_context(silent(silenced))
         if joints.with_law:
             stack.enter_context(with_laws(joints.with_law, joints.laws()))
-        if joints.before:
-            stack.enter_context(_watched_joints(rehearsal, [item for item in joints.before if item not in silenced]))
+        for item in joints.before:
+            before, after = item.pre_solve, item.post_solve
+            if item not in silenced and before is not None:
+                stack.callback(private_joints.replace_functions, item, before, after)
+                nothing = None if after is None else lambda *_: None
+                private_joints.replace_functions(item, Watched(rehearsal, before, "", 0), nothing)
         yield
-
-
-@contextmanager
-def _watched_joints(rehearsal: Rehearsal, items: Sequence[pymunk.Constraint]) -> Iterator[None]:
-    """Within this block `pre_solve` of constraints is wrapped, and `post_solve` is not called."""
-    functions = [(item, item.pre_solve, item.post_solve) for item in items]
-    try:
-        for item, before, after in functions:
-            assert before is not None
-            nothing = None if after is None else lambda *_: None
-            private_joints.replace_functions(item, Watched(rehearsal, before, "", 0), nothing)
-        yield
-    finally:
-        for item, before, after in functions:
-            private_joints.replace_functions(item, before, after)
 
 
 def stop_joints(space: pymunk.Space, forces: bool) -> Callable[[], None]:
