@@ -3,11 +3,11 @@
 In: the packed arrays of a world (`..model.scene`) at the start of a step. Out: the same at its end, and a log of
 impulses. Open `step.py` first, the stages of a step: `begin.py`, islands and intervals (`intervals.py`), the queue of
 events in `loop.py`, `close.py`. An impact acts on one disk (`..contacts.single`) or on all bodies that touch
-(`simultaneous.py`, `resolution.py`; `joint_impact.py` if joints hold any of them). `midstep.py` solves all contacts of
-a step at once; `run.py` takes many steps in one call.
+(`simultaneous.py`, `resolution.py`; `joint_impact.py` and `joint_answers.py` if joints hold any of them). `midstep.py`
+solves all contacts of a step at once; `run.py` takes many steps in one call.
 
-`scene.py` owns the arrays, `memory.py` and `remembering.py` store what a state of a run consists of, `edits.py` writes
-what programs edit in place.
+`scene.py` owns the arrays, in memory of `scene_memory.py`; `memory.py` and `remembering.py` store what a state of a run
+consists of, `edits.py` writes what programs edit in place, and `taking_over.py` what a new scene has of the last one.
 
 Names of arguments: A is the scene, J its joints (`..model.joints`); STATES, IDS, EXTRA, ENDS the arrays exchanged with
 pymunk (`..layout`); F the arrays of a run (`..model.run`).

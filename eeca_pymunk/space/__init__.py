@@ -10,7 +10,8 @@ earlier reading of the space, of which everything that has not changed is used a
 
 | subject | files |
 |---|---|
-| reading bodies and shapes | `bodies.py` (also energy and momenta), `outlines.py` (also for pictures), `packing.py` |
+| reading bodies | `bodies.py` (also energy and momenta), `body_values.py` |
+| reading shapes | `outlines.py` (also for pictures), `packing.py` |
 | reading joints | `joints.py`, `constraints.py`, `listing.py`, `partners.py`, `spring_functions.py` |
 | states in and out | `body_states.py` |
 | edits by the program | `edits.py` (shapes, bodies), `listing.py` (joints), `patching.py` (rows after edits in place) |
