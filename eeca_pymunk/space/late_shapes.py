@@ -51,11 +51,6 @@ class Late:
         self._movers: list[Any] = []
         self._contents: tuple[int, ...] = ()
 
-    def cost_more(self, moving: int) -> bool:
-        """Whether reindexing after this step would cost more than a rest step, for this number of moving shapes in a
-        spatial hash."""
-        return self.reindexings <= 0 or (self.read and moving > MOST_READ)
-
     def move(self, space: pymunk.Space) -> None:
         """Move the shapes to their bodies, unless pymunk has done so, in a step that it has begun since. Within such a
         step nothing can be reindexed."""
