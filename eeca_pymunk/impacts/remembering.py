@@ -160,9 +160,8 @@ class Remembering:
         lossy = self._count[_LOSSY]
         self.scene = recalled(self.scene, take)
         self._count[_LOSSY] = lossy
-        write_edits(
-            self.table, edits_since(self.scene, *(take(then.dtype, then.shape) for then in values_of(self.scene)))
-        )
+        then = [take(now.dtype, now.shape) for now in values_of(self.scene)]
+        write_edits(self.table, edits_since(self.scene, *then))
         self.fresh = self.fresh[:0]
         now = lists_key(self.scene)
         return bool((now == take(now.dtype, now.shape)).all())
