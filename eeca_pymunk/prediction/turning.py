@@ -30,7 +30,7 @@ from ..model.parameters.events import ADVANCES, APPROACH_ROUND_OFF, LONGEST_SEAR
 from ..model.parameters.intervals import TOUCH
 from ..model.scene import Scene
 from ..pairs.rules import face_tolerance
-from .axes import Closing, MotionState, bends, fixed_axis, motion, pulled_along, reach_of, speed_bound, turning_axis
+from .axes import Closing, MotionState, bends, fixed_axis, motion, pulled_along, speed_bound, turning_axis
 from .bounding_circles import carried_circles_meet, circles_meet
 from .sides import begin_side, closing_rate, opening
 from .work import look_work, most_work
@@ -91,14 +91,10 @@ def face_closes_again(
 
 
 @nonallocating
-def turning(A: Scene, s: int, start: float, duration: float) -> tuple[bool, float]:
-    """Whether shape s turns more than once within a `duration` from instant `start` on; and if not, its part of the
-    bound B (length/time²) of a fixed axis, see `axes.py`."""
-    w, q = abs(motion(A.BODY, A.LINK[s].owner, start).spin), abs(A.BODY[A.LINK[s].owner].angular)
-    w += q * duration
-    if w * duration > 2.0 * math.pi:
-        return True, 0.0
-    return False, max(reach_of(A, s)[2] - A.SHAPE[s].rounding, 0.0) * (w * w + q)
+def turns_fast(A: Scene, s: int, start: float, duration: float) -> bool:
+    """Whether shape s turns more than once within a `duration` from instant `start` on."""
+    i = A.LINK[s].owner
+    return (abs(motion(A.BODY, i, start).spin) + abs(A.BODY[i].angular) * duration) * duration > 2.0 * math.pi
 
 
 @nonallocating
@@ -193,7 +189,7 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float, most: float) 
             return horizon, False
     if start + s > until:
         return start + s, False
-    around, bend_a, bend_b = bends(A, a, b, start, duration)
+    around_a, around_b, bend_a, bend_b = bends(A, a, b, start, duration)
     extent = SHAPE[a].rounding + SHAPE[b].rounding
     still = APPROACH_ROUND_OFF * (speed_bound(A, a, start) + speed_bound(A, b, start))
     depth = TOUCH * smaller(A, a, b)
@@ -201,9 +197,8 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float, most: float) 
     P, Q = A.CORE[0], A.CORE[1]
     looks, mark, interval = 0, s, duration / RESOLUTION
     each = look_work(A, a, b)
-    fast_a, slow_a = turning(A, a, start, duration)
-    fast_b, slow_b = turning(A, b, start, duration)
-    slow = slow_a + slow_b
+    fast_a, fast_b = turns_fast(A, a, start, duration), turns_fast(A, b, start, duration)
+    slow = (0.0 if fast_a else around_a) + (0.0 if fast_b else around_b)
     while True:
         looks += 1
         A.COUNT.work += each
@@ -216,7 +211,7 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float, most: float) 
         d, nx, ny, px, py, faces = here.distance, here.nx, here.ny, here.x, here.y, here.faces
         if d > sides.near_side(A, a, b):
             sides.note_side(A, a, b, nx, ny, False)
-        fixed = Closing(extent, around + pulled_along(A, a, b, nx, ny), tolerance, depth, still)
+        fixed = Closing(extent, around_a + around_b + pulled_along(A, a, b, nx, ny), tolerance, depth, still)
         safe, near, met = fixed_axis(P, p, Q, q, nx, ny, one, two, fixed)
         # Edges along whose normals the shapes overlap more than along n do not bound when they meet.
         least = min(d - extent, 0.0) - tolerance
