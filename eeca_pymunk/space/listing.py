@@ -1,8 +1,8 @@
 """Listing: the constraints of a space, what is read of them independently of the rows of their bodies, and their edits.
 
 pymunk records no edits: its setters write into Chipmunk at once. But all attributes of constraints are set in Python.
-So `pymunk.Constraint.__setattr__` is replaced when the first `Edits` is made; for constraints without one it acts as
-before.
+So `pymunk.Constraint.__setattr__` is replaced when the first `ConstraintEdits` is made; for constraints without one it
+acts as before.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ _LISTED = (
     "after", "calling", "centres",
 )  # fmt: skip
 
-# All `Edits` by their numbers. To iterate over a `WeakSet` takes ten times as long, in every edit of any constraint.
-_watching: dict[int, ref[Edits]] = {}
+# All `ConstraintEdits` by their numbers. To iterate over a `WeakSet` takes ten times as long, in every edit of one.
+_watching: dict[int, ref[ConstraintEdits]] = {}
 _native_setattr = pymunk.Constraint.__setattr__
 # Attributes that do not change what functions a constraint has, or whether its bodies collide.
 _NUMBERS = frozenset((
@@ -118,7 +118,7 @@ class Listing:
         return found
 
 
-class Edits:
+class ConstraintEdits:
     """The edits of the constraints of one listing.
 
     Attributes:
