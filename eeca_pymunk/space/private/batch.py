@@ -29,8 +29,8 @@ def reader(
 ) -> Callable[[], None]:
     """`batch.get_space_bodies` into given memory, at a quarter of its cost.
 
-    The caller must ensure that `floats` and `ids`, flat and contiguous, have room for one body more than the space has
-    at every call: pymunk would replace memory that is too small by its own, and free it.
+    The caller must ensure that `floats` and `ids`, C-contiguous, have room for one body more than the space has at
+    every call: pymunk would replace memory that is too small by its own, and free it.
 
     Args:
         last: a reader of the same fields of the same space. It is changed to use these arrays, and returned; making a
@@ -82,7 +82,7 @@ def writer(
     space: pymunk.Space, fields: batch.BodyFields, floats: FloatArray, bodies: Sequence[pymunk.Body] | None = None,
     last: Any = None,
 ) -> Callable[[], None]:  # fmt: skip
-    """`batch.set_space_bodies` from given memory, flat and contiguous, with a row for every body of the space.
+    """`batch.set_space_bodies` from given memory, C-contiguous, with a row for every body of the space.
 
     With `bodies`, the first ones of the space in pymunk's order, only these are written, one after the other.
     `last`: as for `reader`; a writer of some bodies is not used again.
