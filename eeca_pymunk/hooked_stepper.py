@@ -175,12 +175,10 @@ class HookedStepper(PackedSpace):
 
     def _write_hooked_end(self, world: World, dt: float, status: int) -> None:
         """Write the end of a step to the space, and call `post_solve` of constraints."""
+        world.scatter(status)
         if world.joints is not None and world.joints.calling:
-            world.scatter(status)
             world.joints.write()
             world.hooks.after(dt)
-        else:
-            world.scatter(status)
         if not world.collisions:  # else the rehearsal has updated pymunk's shapes
             self.update_shapes(dt)
 

@@ -101,6 +101,7 @@ def test_pymunk_stays_at_the_edge(path: Path) -> None:
 # What pymunk keeps to itself; all that `private` looks up at import is here.
 NAMES = {*private._OF_SPACE, *private._OF_BODY, *private.PHASES, *private_joints.OF_CONSTRAINT}
 NAMES |= {"_body", "_shape", "_arbiter", "_force_func", "_torque_func", "_float_arr", "_int_arr", "_remove", "_bb"}
+NAMES |= {"_shapes", "_constraints"}
 PRIVATE = re.compile(rf"_chipmunk|\bcp[A-Z]\w+|\.({'|'.join(sorted(NAMES))})\b")
 
 

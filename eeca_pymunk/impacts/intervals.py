@@ -68,7 +68,7 @@ def start_waiting(A: Scene, J: Joints) -> int:
             if status == SPENT:
                 COUNT.waiting = 0
                 return cut_short(A, J, root, A.BODY[root].since)
-    predict_all(A, COUNT.waiting, A.PAR.now, A.PAR.dt)
+    predict_all(A, COUNT.waiting, A.PAR.now)
     COUNT.waiting = 0
     return DONE
 

@@ -58,11 +58,11 @@ def run_events(A: Scene, may_persist: bool, most: float) -> int:
             is to be cut short.
     """
     BODY, STATE, COUNT, TIME, OF = A.BODY, A.STATE, A.COUNT, A.HEAP_TIME, A.HEAP_BODY
-    disks, moving, end = COUNT.disks, A.LIST.shape[0], A.PAR.dt
+    disks, moving = COUNT.disks, A.LIST.shape[0]
     one, two, t = -1, -1, 0.0  # bodies to be predicted
     while True:
         while one >= 0:
-            predict_next(A, one, t, end, False)
+            predict_next(A, one, t, False)
             one, two = two, -1
         if COUNT.heap == 0:
             return DONE
@@ -82,7 +82,7 @@ def run_events(A: Scene, may_persist: bool, most: float) -> int:
             return BLOCK_DUE
         if o == LEAVE:
             if i < disks and STATE[i].island < 0:
-                room = continue_path(A, i, t, end)
+                room = continue_path(A, i, t)
             else:
                 one, room = i, True
                 if margin_used(A, s, t):
@@ -137,7 +137,7 @@ def process_events(A: Scene, J: Joints, may_persist: bool) -> int:
     """Process all events of the step, with simultaneous impacts and islands. After a status other than DONE: provide
     more memory, and call again. may_persist: as in `run_events`."""
     COUNT, STATE = A.COUNT, A.STATE
-    end, few = A.PAR.dt, -1
+    few = -1
     while True:
         if few < 0 or COUNT.pushes > 2 * few + _ROOM:
             drop_ended(A)
@@ -157,11 +157,11 @@ def process_events(A: Scene, J: Joints, may_persist: bool) -> int:
         j = i if o == RENEW else A.LINK[o].owner
         met = o != RENEW
         if met and remembers(A, s, o):
-            note_sides(A, min(s, o), max(s, o), end, t)
+            note_sides(A, min(s, o), max(s, o), t)
         if met and (STATE[i].island >= 0 or STATE[j].island >= 0) and passed_over(A, s, o, t):
             note_unmet(A, HITS, s, o, float(hits_of(A, s, o)), float(most_hits(A, s, o)))
             mark_pair(A, s, o, 1)
-            predict_next(A, i, t, end, False)
+            predict_next(A, i, t, False)
             continue
         joints, waiting = jointed(A, i) or jointed(A, j), 0
         if met and not joints:

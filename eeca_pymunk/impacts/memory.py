@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import AnyArray, IntArray, address_of, side_by_side
+from ..compiled.records import R, Rows
 from ..model.bodies import MOBILITY, OF_SHAPES
 from ..model.scene import Scene
 
@@ -29,6 +30,13 @@ OF_SCENE = (
 )  # fmt: skip
 # Those that are made larger on the way.
 GROWN_ARRAYS = ("LOG", "PUSHED_BY", "PUSHED", "KEYS", "FORCES")
+
+
+def lengthened(table: Rows[R], used: int) -> Rows[R]:
+    """A table of twice as many rows, with the first `used` ones copied."""
+    longer: Rows[R] = np.zeros(2 * len(table), table.dtype)  # type: ignore[assignment]
+    longer[:used] = table[:used]
+    return longer
 
 
 def gathered(*parts: tuple[Any, tuple[str, ...]]) -> tuple[list[Any], IntArray]:

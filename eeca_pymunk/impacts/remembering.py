@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import AnyArray, FloatArray, IntArray
-from ..compiled import Table, replaced, table_of
+from ..compiled import Table, table_of
 from ..compiled.records import Rows, as_integers, numbers, put
 from ..energy.ledger import BOOK
 from ..model.bodies import POSE, VELOCITY, Body
@@ -43,6 +43,7 @@ class Remembering:
     joint: Rows[Joint]
     partner: Rows[Body]
     table: Table = None
+    own: IntArray
     fresh: IntArray = np.empty(0, np.int64)
     _memory: SceneMemory
     _listed: bool | None
@@ -67,10 +68,6 @@ class Remembering:
     def _view(self, par: memoryview, count: memoryview, log: memoryview) -> None:
         """Use these as the memory of PAR, COUNT and LOG."""
         self._par, self._count, self.log, self._book = par, count, log, par[BOOK]
-
-    def exchange(self, name: str, array: AnyArray) -> None:
-        """Use another array of this name, which steps only read."""
-        self.table, self._bound = replaced(self.table, Scene, name, array), UNBOUND
 
     @property
     def joints(self) -> Joints:
@@ -112,8 +109,13 @@ class Remembering:
         self.scene, self.joints = self.__dict__.pop("_arrays")
 
     def keep_fresh(self) -> None:
-        """Before the first step: store what steps change, apart from poses and velocities, for `reset_to`."""
-        self.own = self._gather()
+        """Before the first step: put what steps change, apart from poses and velocities, into one piece of memory, and
+        copy this for `reset_to`."""
+        if self.jointed:
+            (self.scene, self.joints), self.own = gathered((self.scene, OF_SCENE), (self.joints, OF_JOINTS))
+            self.joint = self.joints.JOINT
+        else:
+            (self.scene,), self.own = gathered((self.scene, OF_SCENE))
         self.fresh = self.own.copy()
         self._first, self._listed = self.table, None  # the table whose values `fresh` has
 
@@ -140,7 +142,12 @@ class Remembering:
             self._first = self.table
         self.scene.KEYS.fill(-1)
         if self.listed:
-            self._make_lists()
+            table = refilled(self.table)  # near lists for the present places of bodies
+            if table is self.table:
+                self.fresh[:] = self.own
+            else:
+                self.scene = scene_of(table)
+                self.keep_fresh()
 
     def remembered(self) -> list[AnyArray]:
         """All arrays that determine the next step, apart from the states exchanged with pymunk."""
@@ -153,27 +160,8 @@ class Remembering:
         lossy = self._count[_LOSSY]
         self.scene = recalled(self.scene, take)
         self._count[_LOSSY] = lossy
-        write_edits(
-            self.table, edits_since(self.scene, *(take(then.dtype, then.shape) for then in values_of(self.scene)))
-        )
+        then = [take(now.dtype, now.shape) for now in values_of(self.scene)]
+        write_edits(self.table, edits_since(self.scene, *then))
         self.fresh = self.fresh[:0]
         now = lists_key(self.scene)
         return bool((now == take(now.dtype, now.shape)).all())
-
-    def _gather(self) -> IntArray:
-        """Put what steps change, apart from poses and velocities, into one piece of memory; returns it as integers."""
-        if not self.jointed:
-            (self.scene,), memory = gathered((self.scene, OF_SCENE))
-            return memory
-        (self.scene, self.joints), memory = gathered((self.scene, OF_SCENE), (self.joints, OF_JOINTS))
-        self.joint = self.joints.JOINT
-        return memory
-
-    def _make_lists(self) -> None:
-        """Make near lists for the present places of bodies, as for a new loop."""
-        table = refilled(self.table)
-        if table is self.table:
-            self.fresh[:] = self.own
-        else:
-            self.scene = scene_of(table)
-            self.keep_fresh()

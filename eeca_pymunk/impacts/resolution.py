@@ -108,13 +108,13 @@ def strike(A: Scene, a: int, b: int, t: float, lasts: bool) -> int:
             return -1
     if lacks_room(A, n, m):
         return list_ended(A, n)
-    owed, piled = take_owed_energy(A, n)
+    owed, in_islands = take_owed_energy(A, n)
     block = make_block(A, n, m, PAIRS, pair_of(A, a, b), lasts, t)
     rows = len(block.ROWS)
     L, OUT = np.zeros((rows, 2)), zeros(1, SOLVED)
     problem = Problem(block.ROWS, block.IM, block.II, block.POSE, n, rows)
     FREE = block.V.copy()
-    status = solve_block(problem, L, block.V, owed, piled, OUT)
+    status = solve_block(problem, L, block.V, owed, in_islands, OUT)
     if solved_exactly(n, rows):
         status = solve_freely(problem, L, block.V, FREE, owed, status, OUT)
     lost = OUT[0].restitution + OUT[0].friction - owed

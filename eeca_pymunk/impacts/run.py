@@ -21,9 +21,10 @@ from ..model.run import AFTER, BETWEEN, WITHIN, Run, RunArrays, run_arrays_of
 from ..model.scene import Scene, scene_of
 from ..model.step import ENERGY, IMPACTS_FULL
 from ..model.values import Reading, reading_of
+from .memory import lengthened
 from .step import resume, start
 
-_NOBODY: IntArray = np.zeros(0, np.int64)
+_NO_ROWS: IntArray = np.zeros(0, np.int64)
 _IMPACTS = 256  # rows of EVENTS at first
 
 
@@ -189,7 +190,7 @@ class RunBuffers:
     """
 
     def __init__(
-        self, dt: float, gravity: tuple[float, ...], half_damping: float, time: float = 0.0, kept: IntArray = _NOBODY,
+        self, dt: float, gravity: tuple[float, ...], half_damping: float, time: float = 0.0, kept: IntArray = _NO_ROWS,
         frames: int = 0, every: int = 0, events: bool = False, initial: FloatArray | None = None,
         push: FloatArray | None = None, into: FloatArray | None = None,
     ) -> None:  # fmt: skip
@@ -201,7 +202,7 @@ class RunBuffers:
             RUN, np.ascontiguousarray(kept, np.int64), np.zeros((frames * b, 6)) if into is None else _flat(into, 6),
             np.zeros((frames, 6)),
             rows(Impulse, _IMPACTS if events else 0), np.zeros(6), _flat(initial, 6), _flat(push, 3),
-            np.zeros((rollouts, 2), np.int64), _NOBODY, _NOBODY,
+            np.zeros((rollouts, 2), np.int64), _NO_ROWS, _NO_ROWS,
         )  # fmt: skip
 
     @property
@@ -228,9 +229,7 @@ class RunBuffers:
     def more_events(self) -> None:
         """Double the memory for impacts."""
         arrays = self._arrays
-        longer = rows(Impulse, 2 * len(arrays.EVENTS))
-        longer[: arrays.RUN.kept] = arrays.EVENTS[: arrays.RUN.kept]
-        self.arrays = arrays._replace(EVENTS=longer)
+        self.arrays = arrays._replace(EVENTS=lengthened(arrays.EVENTS, int(arrays.RUN.kept)))
 
     @property
     def events(self) -> Rows[Impulse]:

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import Table
+from ..compiled import Table, replaced
 from ..compiled.library import result_of
-from ..compiled.records import R, Rows, columns, from_bytes, rows
+from ..compiled.records import Rows, columns, from_bytes, rows
 from ..contacts.memory import copy_recent
 from ..islands.accounting import flag_pairs
 from ..joints.pinned import hold, release_held
@@ -20,11 +20,13 @@ from ..model.bodies import CHECK, MOBILITY, Body
 from ..model.contacts import Force, Impulse
 from ..model.joints import Joint, Pinned
 from ..model.parameters.events import MANY_BODIES, STEP_LOOKS, STEP_LOOKS_BODY
+from ..model.scene import Scene
 from ..model.step import IMPACTS_FULL, LOG_FULL, PUSHES_FULL, Missed, needs_memory
 from ..pairs.setup import with_more_room
 from ..report import Details, of_events
 from . import step as stages
 from .edits import Changes, renew, words_of
+from .memory import lengthened
 from .remembering import UNBOUND, Remembering
 from .run import RunBuffers, run
 from .scene_memory import RULE_COLUMNS, Laid, SceneMemory
@@ -32,13 +34,6 @@ from .taking_over import Kept, take_over
 
 if TYPE_CHECKING:
     import pymunk
-
-
-def _longer(table: Rows[R], used: int) -> Rows[R]:
-    """A table of twice as many rows, with the first `used` ones copied."""
-    longer: Rows[R] = np.zeros(2 * len(table), table.dtype)  # type: ignore[assignment]
-    longer[:used] = table[:used]
-    return longer
 
 
 def _details(logged: bytes, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray) -> Details:
@@ -109,7 +104,8 @@ class EventLoop(Remembering):
         """Go on with other joints, or with edited ones, on the rows of the scene, which have the present poses.
 
         Args:
-            replan: whether components may differ; else only whether joints hold other bodies where they are.
+            replan: whether components may be others. If not, they are planned anew only if the joints hold other bodies
+                where they are than before.
         """
         self.release()
         if replan or hold(self.table, self.ties):
@@ -149,14 +145,14 @@ class EventLoop(Remembering):
             else:
                 return status
 
-    def _grow(self, wish: int) -> None:
-        """Provide the memory that a step needs, `wish` being its status; the step can then be resumed."""
+    def _grow(self, status: int) -> None:
+        """Provide the memory that a step needs which has returned this status; it can then be resumed."""
         scene = self.scene
-        if wish == LOG_FULL:
-            self.scene = scene._replace(LOG=_longer(scene.LOG, int(scene.COUNT.logged)))
+        if status == LOG_FULL:
+            self.scene = scene._replace(LOG=lengthened(scene.LOG, int(scene.COUNT.logged)))
             self._memory.log = len(self.scene.LOG)
             return
-        if wish == PUSHES_FULL:
+        if status == PUSHES_FULL:
             size, count = len(scene.KEYS), int(scene.COUNT.remembered)
             self._clean(size)
             if count - scene.COUNT.remembered >= size // 8:
@@ -164,7 +160,7 @@ class EventLoop(Remembering):
             self._clean(2 * size)
             used = int(scene.COUNT.pushes)
             self.scene = self.scene._replace(
-                PUSHED_BY=_longer(scene.PUSHED_BY, used), PUSHED=_longer(scene.PUSHED, used)
+                PUSHED_BY=lengthened(scene.PUSHED_BY, used), PUSHED=lengthened(scene.PUSHED, used)
             )
             self._memory.contacts = len(self.scene.PUSHED)
             return
@@ -199,7 +195,7 @@ class EventLoop(Remembering):
         if rules != self._rules:
             self._rules = dict(rules)
             table = np.array([(*pair, *what) for pair, what in rules.items()], float).reshape(-1, RULE_COLUMNS)
-            self.exchange("RULE", table)
+            self.table, self._bound = replaced(self.table, Scene, "RULE", table), UNBOUND
 
     @property
     def events(self) -> Rows[Impulse]:

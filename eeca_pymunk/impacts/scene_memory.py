@@ -56,8 +56,8 @@ def measure_scene(reading: Table) -> None:
 
 @kernel
 def begin_scene(table: Table, limit: int, disks: int, together: int, budget: int, lossy: int) -> int:
-    """Write to the arrays of a new scene, which contain zeros, what is not 0 in it: of bodies, of CORNER, of KEYS, and
-    these fields of COUNT. Returns what `begin_lists` does."""
+    """Write to the arrays of a new scene, which contain zeros, what is not 0 in it: of bodies, of CORNER, of KEYS,
+    these fields of COUNT, and PAR.share. Returns what `begin_lists` does."""
     A = scene_of(table)
     A.COUNT.limit, A.COUNT.disks, A.COUNT.together = limit, disks, together
     A.COUNT.budget, A.COUNT.lossy = budget, lossy
@@ -165,7 +165,7 @@ class SceneMemory:
         return layout.floats("PAR"), layout.integers("COUNT"), layout.integers("LOG")
 
     def unjointed(self, scene: Table, n: int) -> Table:
-        """The table `Joints` of a scene without joints, of n bodies."""
+        """The table `Joints` of a scene without joints, of n bodies; also of later scenes, up to twice as many."""
         if self._unjointed[1] < n:
             self._unjointed = JointMemory().plan(scene, 2 * n, NO_LINKAGE), 2 * n
         return self._unjointed[0]

@@ -116,16 +116,16 @@ def gather_block(A: Scene, a: int, b: int, t: float) -> tuple[int, int, IntArray
 @nonallocating
 def take_owed_energy(A: Scene, n: int) -> tuple[float, bool]:
     """Energy owed by the islands of the n bodies in A.BLOCK, as shortened intervals have given it: their block has to
-    lose it, and they owe it no longer. Also whether there are any islands."""
-    owed, piled = 0.0, False
+    lose it, and they owe it no longer. Also whether any of the bodies is in an island."""
+    owed, in_islands = 0.0, False
     for q in range(n):
         root = A.STATE[A.BLOCK[q]].island
         if root >= 0:
-            piled = True
+            in_islands = True
             owes = max(-A.RESTING[root].lost, 0.0)
             A.RESTING[root].lost += owes
             owed += owes
-    return owed, piled
+    return owed, in_islands
 
 
 class Block(NamedTuple):

@@ -22,8 +22,8 @@ class Scene(NamedTuple):
     the pair, or its impact was left out in this step: it makes no events.
     HEAD (power of 2,): first shape in each bucket of the grid of moving shapes, -1 for none.  GRID: its record.
     BOX (static shapes, 4): left, bottom, right, top.  CSR: starts of the cells of their grid, then shapes.
-    RULE (r, 6): pairs a < b for which a collision handler decides: shapes a, b, elasticity (negative: no contact),
-    friction, surface velocity of b relative to a.
+    RULE (r, 6): pairs a < b for which a collision handler or a joint decides: shapes a, b, elasticity (negative: no
+    contact), friction, surface velocity of b relative to a.
     HEAP_TIME, HEAP_BODY: the queue of events.  LOG: impulses of the step.
     BEGAN (n, 3): poses at the start of the step.  PULL (n, 3): accelerations without contacts.
     PLACE (n,): -1, or a body's place in BLOCK (n,), a scratch list of bodies.

@@ -17,7 +17,7 @@ from ..model.shapes import LEVELS
 
 @nonallocating
 def bucket(level: int, column: int, row: int, mask: int) -> int:
-    """Bucket of a cell in the hash table."""
+    """Bucket of a cell in the hash table, which has mask + 1 of them, a power of 2."""
     return ((column * 73856093) ^ (row * 19349663) ^ (level * 83492791)) & mask
 
 
@@ -29,7 +29,8 @@ def cell_at(x: float, length: float) -> int:
 
 @nonallocating
 def level_of(radius: float, cell: float) -> int:
-    """The lowest level whose cells are at least twice as long as the radius."""
+    """The lowest level whose cells are at least twice as long as the radius, the last one if there is none. `cell`:
+    length of the cells of level 0."""
     level, length = 0, cell
     while length < 2.0 * radius and level < LEVELS - 1:
         length *= 2.0

@@ -1,7 +1,8 @@
 """The grid: near lists of all shapes, renewed one at a time as shapes leave their margin circles.
 
 A search on a level of `cells.py` visits the cells that the circle, enlarged by half a cell, overlaps; or all shapes of
-the level, if these are fewer than the cells. Static shapes have a grid of their own (`walls.py`), built once.
+the level, if there are more than some four cells for each. Static shapes have a grid of their own, built once
+(`walls.py`).
 """
 
 from __future__ import annotations
@@ -9,11 +10,11 @@ from __future__ import annotations
 import math
 
 from ..compiled import Table, fetch, nonallocating
-from ..geometry.flight import norm, pose
+from ..geometry.flight import norm, pose, rate
 from ..model.scene import Scene, scene_of
 from ..model.shapes import BATCH, LEVELS
 from .cells import bucket, cell_at, enter, overlaps, set_circle, unlink
-from .rules import append, circle_centre, direction_of_motion, may_collide, place_in, remove
+from .rules import append, circle_centre, may_collide, place_in, remove
 from .walls import box_wall, seek_walls
 
 _FIRST_CAPACITY = 8
@@ -74,15 +75,15 @@ def seek_moving(A: Scene, s: int) -> bool:
     length = 0.5 * GRID.cell
     for level in range(LEVELS):
         length *= 2.0
-        left = GRID.level[level]
-        if left == 0:
+        shapes = GRID.level[level]
+        if shapes == 0:
             continue
         reach = radius + 0.5 * length
         west, east = cell_at(x - reach, length), cell_at(x + reach, length)
         south, north = cell_at(y - reach, length), cell_at(y + reach, length)
         # The last level also holds all larger circles, so all its shapes are tested.
         last = level == LEVELS - 1
-        if last or float(east - west + 1) * float(north - south + 1) > 4.0 * left + 16.0:
+        if last or float(east - west + 1) * float(north - south + 1) > 4.0 * shapes + 16.0:
             for o in range(GRID.moving):
                 here = CELL[o].level == level and CELL[o].bucket >= 0 and o != s
                 if here and overlaps(A, o, x, y, radius) and place_in(A, s, o) < 0 and not join(A, s, o):
@@ -155,8 +156,10 @@ def renew_circle(A: Scene, s: int, t: float, ahead: float) -> int:
     else:
         x, y = circle_centre(A, s, t)
     if ahead > 0.0:
-        ux, uy = direction_of_motion(A, s, t)
-        x, y = x + ahead * margin * ux, y + ahead * margin * uy
+        ux, uy, _ = rate(A.BODY, i, t)
+        u = norm(ux, uy)
+        if u > 0.0:
+            x, y = x + ahead * margin * (ux / u), y + ahead * margin * (uy / u)
     set_circle(A, s, x, y)
     A.GRID.renewals += 1
     kept = drop_distant(A, s)

@@ -16,7 +16,7 @@ import math
 from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..compiled.records import Rows
-from ..geometry.flight import norm, pose, rate, rotated
+from ..geometry.flight import pose, rotated
 from ..geometry.gap import gap_round_off
 from ..geometry.widths import smaller
 from ..model.parameters.impulses import FACE_ROUND_OFF, ROCKING
@@ -96,14 +96,6 @@ def far_apart(A: Scene, a: int, b: int, t: float, reach: float) -> bool:
     bx, by = circle_centre(A, b, t)
     apart = A.SHAPE[a].bound + A.SHAPE[b].bound + reach
     return bool((bx - ax) * (bx - ax) + (by - ay) * (by - ay) > apart * apart)
-
-
-@nonallocating
-def direction_of_motion(A: Scene, s: int, t: float) -> tuple[float, float]:
-    """Direction of the velocity of the centre of mass of shape s's body at instant t; 0 if it has none."""
-    ux, uy, _ = rate(A.BODY, A.LINK[s].owner, t)
-    u = norm(ux, uy)
-    return (ux / u, uy / u) if u > 0.0 else (0.0, 0.0)
 
 
 @nonallocating

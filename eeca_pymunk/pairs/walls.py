@@ -77,19 +77,9 @@ def seek_walls(A: Scene, s: int) -> bool:
 
 
 @nonallocating
-def entries_of(BOX: FloatArray, GRID: Grid) -> int:
-    """The number of cells that static shapes with boxes (W, 4) overlap, counted for each shape."""
-    total = 0
-    for w in range(BOX.shape[0]):
-        west, east, south, north = cells_of(GRID, BOX[w, 0], BOX[w, 1], BOX[w, 2], BOX[w, 3])
-        total += (east - west + 1) * (north - south + 1)
-    return total
-
-
-@nonallocating
 def size_walls(BOX: FloatArray, GRID: Grid) -> int:
     """Choose the cells of the grid of static shapes with boxes (W, 4), W > 0: about as many as shapes, fewer if large
-    shapes would fill too many. Returns `entries_of`."""
+    shapes would fill too many. Returns the number of cells that the shapes overlap, counted for each shape."""
     count, left, bottom, right, top = BOX.shape[0], math.inf, math.inf, -math.inf, -math.inf
     for w in range(count):
         left, bottom = min(left, BOX[w, 0]), min(bottom, BOX[w, 1])
@@ -100,7 +90,10 @@ def size_walls(BOX: FloatArray, GRID: Grid) -> int:
     while True:
         GRID.wall_cell = length
         GRID.columns, GRID.rows = max(1, math.ceil(wide / length)), max(1, math.ceil(tall / length))
-        entries = entries_of(BOX, GRID)
+        entries = 0
+        for w in range(count):
+            west, east, south, north = cells_of(GRID, BOX[w, 0], BOX[w, 1], BOX[w, 2], BOX[w, 3])
+            entries += (east - west + 1) * (north - south + 1)
         if entries <= 32 * count or GRID.columns * GRID.rows == 1:
             return entries
         length *= 2.0

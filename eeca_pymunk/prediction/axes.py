@@ -151,9 +151,9 @@ def reach_of(A: Scene, s: int) -> tuple[float, float, float]:
 
 
 @nonallocating
-def bends(A: Scene, a: int, b: int, start: float, duration: float) -> tuple[float, float, float]:
-    """The part of the bound B (length/time²) of a fixed axis that rotation gives, and the bounds of the axes of a and
-    of b, from instant `start` on for a time `duration`."""
+def bends(A: Scene, a: int, b: int, start: float, duration: float) -> tuple[float, float, float, float]:
+    """The parts of the bound B (length/time²) of a fixed axis that rotation of a and of b gives, and the bounds of the
+    axes of a and of b, from instant `start` on for a time `duration`."""
     one, two = A.BODY[A.LINK[a].owner], A.BODY[A.LINK[b].owner]
     m, n = motion(A.BODY, A.LINK[a].owner, start), motion(A.BODY, A.LINK[b].owner, start)
     q_a, q_b = abs(one.angular), abs(two.angular)
@@ -167,7 +167,7 @@ def bends(A: Scene, a: int, b: int, start: float, duration: float) -> tuple[floa
     around_a, around_b = r_a * (w_a * w_a + q_a), r_b * (w_b * w_b + q_b)
     of_a = pull + around_b + 2.0 * w_a * (V + w_b * r_b) + (w_a * w_a + q_a) * (L + r_b)
     of_b = pull + around_a + 2.0 * w_b * (V + w_a * r_a) + (w_b * w_b + q_b) * (L + r_a)
-    return around_a + around_b, of_a, of_b
+    return around_a, around_b, of_a, of_b
 
 
 @nonallocating

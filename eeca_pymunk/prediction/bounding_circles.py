@@ -13,8 +13,8 @@ from .roots import falling_root
 
 
 @nonallocating
-def circles_meet(A: Scene, a: int, b: int, start: float, duration: float, tolerance: float) -> tuple[float, bool]:
-    """Time after `start` until which shapes a < b are certainly apart, and whether they never meet.
+def circles_meet(A: Scene, a: int, b: int, start: float, duration: float, tolerance: float) -> float:
+    """Time after `start` until which shapes a < b are certainly apart; infinite if they never meet.
 
     Circles about the centres of mass, of radius `extent`, which do not rotate, are compared; a static shape counts with
     its outline. 0 if they overlap. `tolerance` and `duration` as in `circles.circle_circle`.
@@ -28,19 +28,16 @@ def circles_meet(A: Scene, a: int, b: int, start: float, duration: float, tolera
         q = place_vertices(A, b, 0.0, 0.0, 0.0, A.CORE[1])
         extent = SHAPE[a].extent + SHAPE[b].rounding
         if point_core(x_a, y_a, A.CORE[1], q)[0] - extent <= tolerance:
-            return 0.0, False
-        s, _ = circle_outline(x_a, y_a, ux_a, uy_a, BODY[i].ax, BODY[i].ay, extent, tolerance, A, b, duration)
-        return s, s == math.inf
+            return 0.0
+        return circle_outline(x_a, y_a, ux_a, uy_a, BODY[i].ax, BODY[i].ay, extent, tolerance, A, b, duration)[0]
     x_b, y_b, _ = pose(BODY, j, start)
     ux_b, uy_b, _ = rate(BODY, j, start)
     dx, dy = x_b - x_a, y_b - y_a
     extent = SHAPE[a].extent + SHAPE[b].extent
     if math.sqrt(dx * dx + dy * dy) - extent <= tolerance:
-        return 0.0, False
-    s, _ = circle_circle(
-        dx, dy, ux_b - ux_a, uy_b - uy_a, BODY[j].ax - BODY[i].ax, BODY[j].ay - BODY[i].ay, extent, tolerance, duration
-    )
-    return s, s == math.inf
+        return 0.0
+    ax, ay = BODY[j].ax - BODY[i].ax, BODY[j].ay - BODY[i].ay
+    return circle_circle(dx, dy, ux_b - ux_a, uy_b - uy_a, ax, ay, extent, tolerance, duration)[0]
 
 
 @nonallocating

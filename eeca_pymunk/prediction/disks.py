@@ -39,9 +39,7 @@ def first_chosen(A: Scene, i: int, chosen: int, best: float, other: int) -> tupl
 
 
 @nonallocating
-def first_impact(
-    A: Scene, i: int, known: int, best: float, other: int, end: float, several: bool
-) -> tuple[float, int]:  # fmt: skip
+def first_impact(A: Scene, i: int, known: int, best: float, other: int, several: bool) -> tuple[float, int]:
     """Instant and shape of the first meeting of single disk i with shapes of its list from index `known` on; the given
     `best` and `other` if these come first. CHECK in the place of the shape for a lower bound.
 
@@ -72,14 +70,14 @@ def first_impact(
                 best, other = first_chosen(A, i, chosen, best, other)
                 chosen = 0
             continue
-        t, certain = time_of_impact(A, i, o, end, best)
+        t, certain = time_of_impact(A, i, o, A.PAR.dt, best)
         if t < best or (t == best and other >= 0 and o < other):
             best, other = t, (o if certain else CHECK)
     return first_chosen(A, i, chosen, best, other)
 
 
 @nonallocating
-def set_next_event(A: Scene, i: int, best: float, other: int, now: float, end: float) -> None:
+def set_next_event(A: Scene, i: int, best: float, other: int, now: float) -> None:
     """Set the next event of single disk i: meeting shape `other` at instant `best`, or leaving its margin circle
     before. An event that is due in this step goes on the heap."""
     out = inside_until(A, i, i, now)
@@ -90,19 +88,19 @@ def set_next_event(A: Scene, i: int, best: float, other: int, now: float, end: f
         best, other = out, LEAVE
     best = max(best, now)
     A.BODY[i].due, A.STATE[i].own, A.STATE[i].other = best, i, other
-    if best < end:
+    if best < A.PAR.dt:
         A.COUNT.heap = push_event(A.HEAP_TIME, A.HEAP_BODY, A.COUNT.heap, best, i)
 
 
 @nonallocating
-def continue_path(A: Scene, i: int, now: float, end: float) -> bool:
+def continue_path(A: Scene, i: int, now: float) -> bool:
     """Single disk i leaves its margin circle with an unchanged path: renew its list and predict its next event, for
     which only the new entries are tested. False if the pool is full."""
     BODY = A.BODY
     best, other, later, known = math.inf, NOTHING, A.LIST[i].later, A.LIST[i].number
     ahead = AHEAD
     if later >= 0 and A.STATE[body_of(A, later)].version == A.STATE[i].known:
-        best, certain = time_of_impact(A, i, later, end, math.inf)
+        best, certain = time_of_impact(A, i, later, A.PAR.dt, math.inf)
         other = later if certain else CHECK
     if margin_used(A, i, now):
         h = now - BODY[i].since
@@ -116,17 +114,17 @@ def continue_path(A: Scene, i: int, now: float, end: float) -> bool:
     if later != NOTHING and other < 0:
         # The kept impact is void, or only a lower bound: the old entries are tested too.
         known = 0
-    best, other = first_impact(A, i, known, best, other, end, False)
-    set_next_event(A, i, best, other, now, end)
+    best, other = first_impact(A, i, known, best, other, False)
+    set_next_event(A, i, best, other, now)
     return True
 
 
 @nonallocating
-def still_valid(A: Scene, i: int, end: float) -> bool:
+def still_valid(A: Scene, i: int) -> bool:
     """Whether the prediction of an earlier step for single disk i is still valid, because neither path has changed; if
     so, it goes on the heap. The instant is computed again from the paths as this step describes them, so that no bit
     depends on the age of the prediction."""
-    other, due = A.STATE[i].other, A.BODY[i].due
+    other, due, end = A.STATE[i].other, A.BODY[i].due, A.PAR.dt
     if due <= 0.0:
         return False
     if other >= 0:

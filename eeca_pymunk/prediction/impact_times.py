@@ -70,7 +70,7 @@ def meet_in_free_fall(BODY: Rows[Body], i: int, j: int, latest: float) -> float:
 
 @nonallocating
 def disk_disk(BODY: Rows[Body], i: int, j: int, horizon: float) -> tuple[float, bool]:
-    """Single disks i and j: a closed form if their accelerations are equal."""
+    """(t, certain) of single disks i and j: a closed form if their accelerations are equal."""
     ax_i, ay_i, ax_j, ay_j = BODY[i].ax, BODY[i].ay, BODY[j].ax, BODY[j].ay
     if ax_i == ax_j and ay_i == ay_j:
         return meet_in_free_fall(BODY, i, j, math.inf), True
@@ -89,7 +89,7 @@ def disk_disk(BODY: Rows[Body], i: int, j: int, horizon: float) -> tuple[float, 
 
 @nonallocating
 def disk_wall(A: Scene, i: int, b: int, horizon: float) -> tuple[float, bool]:
-    """Single disk i and a static shape b: a closed form, except for round ends under acceleration."""
+    """(t, certain) of single disk i and a static shape b: a closed form, except for round ends under acceleration."""
     body = A.BODY[i]
     extent = body.extent + A.SHAPE[b].rounding
     t, certain = circle_outline(

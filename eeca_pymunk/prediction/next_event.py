@@ -91,31 +91,28 @@ def margin_used(A: Scene, s: int, now: float) -> bool:
 
 
 @nonallocating
-def horizon_of(A: Scene, i: int, end: float) -> float:
+def horizon_of(A: Scene, i: int) -> float:
     """Instant up to which impacts on the present path of body i are searched: the end of the step; for a body of an
     island whose interval ends within the step, as long after the end of the interval as the path began before it. The
     body has another path then, and the bounds of a path that bends sharply are too wide over a longer time."""
     root = A.STATE[i].island
     if root < 0 or A.RESTING[root].until == math.inf:
-        return end
+        return A.PAR.dt
     until = A.RESTING[root].until
-    return min(end, until + max(until - A.BODY[i].since, 0.0))
+    return min(A.PAR.dt, until + max(until - A.BODY[i].since, 0.0))
 
 
 @inlined
-def predict(A: Scene, i: int, now: float, end: float, until: float) -> None:
+def predict(A: Scene, i: int, now: float) -> None:
     """Predict the next event of body i from its present path, at an instant `now` of the loop; one that is due in this
     step goes on the heap. Ties go to the lower shape numbers, so that the result does not depend on the order of lists.
 
-    Args:
-        A: PLACE (n,) >= 0 marks bodies that are predicted together; a pair of two such bodies is tested for the one
-            with the lower number only.
-        end: instant at which the step ends.
-        until: instant at which the interval of the body's island ends, infinite unless the body is its root.
+    The end of an island's interval is an event of its root. PLACE (n,) >= 0 marks bodies that are predicted together; a
+    pair of two such bodies is tested for the one with the lower number only.
     """
     BODY, STATE, LINK, LIST = A.BODY, A.STATE, A.LINK, A.LIST
     best, own, other, entries = math.inf, -1, NOTHING, 0
-    horizon = horizon_of(A, i, end)
+    horizon = horizon_of(A, i)
     first = STATE[i].first_shape
     for s in range(first, first + STATE[i].shapes):
         t = inside_until(A, i, s, now)
@@ -131,12 +128,12 @@ def predict(A: Scene, i: int, now: float, end: float, until: float) -> None:
                 continue
             if A.RULE.shape[0] > 0 and barred(A, s, o):
                 continue
-            t, certain = time_of_impact(A, s, o, min(horizon, horizon_of(A, LINK[o].owner, end)), best)
+            t, certain = time_of_impact(A, s, o, min(horizon, horizon_of(A, LINK[o].owner)), best)
             if t < best or (t == best and other >= 0 and (s < own or (s == own and o < other))):
                 best, own, other = t, s, (o if certain else CHECK)
     A.COUNT.work += 1 + ENTRY_LOOKS * entries + (STATE[i].shapes - 1) / SHAPES_LOOK
-    if until < best:
-        best, own, other = until, -1, RENEW
+    if STATE[i].island == i and A.RESTING[i].until < best:
+        best, own, other = A.RESTING[i].until, -1, RENEW
     best = max(best, now)
     BODY[i].due = best
     STATE[i].own, STATE[i].other = own, other
@@ -145,5 +142,5 @@ def predict(A: Scene, i: int, now: float, end: float, until: float) -> None:
     if i < A.COUNT.disks:
         # No impact is kept for `disks.continue_path`, which therefore tests the whole list.
         LIST[i].later = CHECK
-    if best < end:
+    if best < A.PAR.dt:
         A.COUNT.heap = push_event(A.HEAP_TIME, A.HEAP_BODY, A.COUNT.heap, best, i)

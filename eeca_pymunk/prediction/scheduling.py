@@ -12,25 +12,24 @@ from .next_event import predict
 
 
 @nonallocating
-def predict_next(A: Scene, i: int, t: float, end: float, several: bool) -> None:
+def predict_next(A: Scene, i: int, t: float, several: bool) -> None:
     """Predict the next event of body i at instant t of the loop; `several` as in `disks.first_impact`."""
     if i < A.COUNT.disks and A.STATE[i].island < 0:
-        best, other = first_impact(A, i, 0, math.inf, NOTHING, end, several)
-        set_next_event(A, i, best, other, t, end)
-        return
-    until = A.RESTING[i].until if A.STATE[i].island == i else math.inf
-    predict(A, i, t, end, until)
+        best, other = first_impact(A, i, 0, math.inf, NOTHING, several)
+        set_next_event(A, i, best, other, t)
+    else:
+        predict(A, i, t)
 
 
 @nonallocating
-def predict_all(A: Scene, n: int, t: float, end: float) -> None:
+def predict_all(A: Scene, n: int, t: float) -> None:
     """Predict the next events of the n bodies in A.BLOCK at instant t. A pair of two of them is tested only for the
     body with the lower number. That is enough: no impact of the pair comes before the next event of this body, after
     which it is predicted again, with all shapes of its lists."""
     for q in range(n):
         A.PLACE[A.BLOCK[q]] = q
     for q in range(n):
-        predict_next(A, A.BLOCK[q], t, end, True)
+        predict_next(A, A.BLOCK[q], t, True)
     for q in range(n):
         A.PLACE[A.BLOCK[q]] = -1
 
@@ -43,10 +42,10 @@ def predict_due(A: Scene) -> None:
     for i in range(A.BODY.shape[0] - 1):
         alone = A.STATE[i].island < 0
         if A.BODY[i].due < dt or not (alone or A.MEMBER[i].rest == AT_REST):
-            if not (alone and i < disks and still_valid(A, i, dt)):
+            if not (alone and i < disks and still_valid(A, i)):
                 A.BLOCK[n] = i
                 n += 1
-    predict_all(A, n, 0.0, dt)
+    predict_all(A, n, 0.0)
 
 
 @inlined

@@ -81,14 +81,12 @@ def side_of_others(A: Scene, a: int, b: int, nx: float, ny: float) -> float:
 
 @nonallocating
 def on_other_side(
-    A: Scene, a: int, b: int, d: float, nx: float, ny: float, px: float, py: float, start: float, duration: float,
-    tolerance: float,
-) -> bool:  # fmt: skip
+    A: Scene, a: int, b: int, d: float, nx: float, ny: float, px: float, py: float, start: float, duration: float
+) -> bool:
     """Whether flush shapes a < b of which nothing is known are on the side against n, see the module.
 
     Args:
         d, nx, ny, px, py: distance of the cores, normal from a to b, point.  start, duration: of the paths: time.
-        tolerance: round-off of the distance: length.
     """
     along = side_of_others(A, a, b, nx, ny)
     if along != 0.0:
@@ -102,12 +100,14 @@ def on_other_side(
     fast = abs(u) + abs(two.spin - one.spin) * smaller(A, a, b)
     if fast * fast <= 2.0 * abs(pressing) * sides.near_side(A, a, b):
         return pressing < 0.0
+    tolerance = gap_round_off(A, a, b)
     return d <= tolerance and u < 0.0 and -u * duration > tolerance
 
 
 @nonallocating
-def begin_side(A: Scene, a: int, b: int, start: float, duration: float, tolerance: float) -> None:
-    """Note on which side of each other thin shapes a < b are at the beginning of a path or of a search.
+def begin_side(A: Scene, a: int, b: int, start: float, duration: float) -> None:
+    """Note on which side of each other thin shapes a < b are at instant `start` of their paths, which end after
+    `duration`, a time.
 
     Shapes that touch without overlap, and that no forces hold, part: they keep their side up to `near_side` only, not
     up to `held_side`, as the bodies may turn by any angle before they come near again.
@@ -124,7 +124,7 @@ def begin_side(A: Scene, a: int, b: int, start: float, duration: float, toleranc
     depth, most = sides.near_side(A, a, b), FLUSH * smaller(A, a, b)
     held = d < -depth or in_one_island(A, i, j)
     if side.key != key and d <= most and flush(P, p, Q, q, nx, ny, most):
-        if on_other_side(A, a, b, d, nx, ny, near.x, near.y, start, duration, tolerance):
+        if on_other_side(A, a, b, d, nx, ny, near.x, near.y, start, duration):
             nx, ny, held = -nx, -ny, held or d > depth
         sides.note_side(A, a, b, nx, ny, held)
     elif side.key != key or d > depth:
@@ -152,4 +152,4 @@ def find_sides(A: Scene, every: bool) -> None:
                 most, extent = FLUSH * smaller(A, a, b), A.SHAPE[a].rounding + A.SHAPE[b].rounding
                 if mx == 0.0 and my == 0.0 and not far_apart(A, a, b, 0.0, most):
                     if gap(A, a, b, 0.0)[0] + extent <= most:
-                        begin_side(A, a, b, 0.0, A.PAR.dt, gap_round_off(A, a, b))
+                        begin_side(A, a, b, 0.0, A.PAR.dt)

@@ -21,18 +21,16 @@ from __future__ import annotations
 import math
 
 from ..compiled import nonallocating
-from ..compiled.records import Rows
 from ..geometry import sides
 from ..geometry.convex import closest, place_vertices
 from ..geometry.gap import gap_round_off
 from ..geometry.manifold import face_points
 from ..geometry.widths import smaller
-from ..model.bodies import Body
 from ..model.parameters.events import ADVANCES, APPROACH_ROUND_OFF, LONGEST_SEARCH, RESOLUTION
 from ..model.parameters.intervals import TOUCH
 from ..model.scene import Scene
 from ..pairs.rules import face_tolerance
-from .axes import Closing, MotionState, bends, fixed_axis, motion, pulled_along, reach_of, speed_bound, turning_axis
+from .axes import Closing, MotionState, bends, fixed_axis, motion, pulled_along, speed_bound, turning_axis
 from .bounding_circles import carried_circles_meet, circles_meet
 from .sides import begin_side, closing_rate, opening
 from .work import look_work, most_work
@@ -40,14 +38,13 @@ from .work import look_work, most_work
 
 @nonallocating
 def time_to_contact_again(
-    BODY: Rows[Body], i: int, j: int, t: float, nx: float, ny: float, px: float, py: float
+    A: Scene, a: int, b: int, nx: float, ny: float, px: float, py: float, one: MotionState, two: MotionState
 ) -> float:
-    """Time after which bodies that touch at the point p and part there along n with u >= 0 touch again: 2 u / a_n if
-    the acceleration of the points closes the gap with a_n > 0, else infinite."""
-    a, b = motion(BODY, i, t), motion(BODY, j, t)
-    u = opening(a, b, nx, ny, px, py)
-    one, two = BODY[i], BODY[j]
-    closing = closing_rate(a, b, one.ax, one.ay, one.angular, two.ax, two.ay, two.angular, nx, ny, px, py)
+    """Time after which shapes a and b, with the motions `one` and `two` of their bodies, that touch at the point p and
+    part there along n with u >= 0 touch again: 2 u / a_n if the acceleration of the points closes the gap with a_n > 0,
+    else infinite."""
+    u, i, j = opening(one, two, nx, ny, px, py), A.BODY[A.LINK[a].owner], A.BODY[A.LINK[b].owner]
+    closing = closing_rate(one, two, i.ax, i.ay, i.angular, j.ax, j.ay, j.angular, nx, ny, px, py)
     return 2.0 * max(u, 0.0) / closing if closing > 0.0 else math.inf
 
 
@@ -80,30 +77,24 @@ def face_closes(
 
 @nonallocating
 def face_closes_again(
-    A: Scene, a: int, b: int, nx: float, ny: float, x: float, y: float, d: float, one: MotionState, two: MotionState,
-    t: float,
-) -> float:  # fmt: skip
-    """`time_to_contact_again` of shapes a < b that touch, at instant t. Where the point that is nearest approaches, it
-    is beyond the end of the face that both have in common, as that of a rod on a shorter plank is: then at the ends of
-    this face."""
-    BODY, i, j = A.BODY, A.LINK[a].owner, A.LINK[b].owner
+    A: Scene, a: int, b: int, nx: float, ny: float, x: float, y: float, d: float, one: MotionState, two: MotionState
+) -> float:
+    """`time_to_contact_again` of shapes a < b that touch. Where the point that is nearest approaches, it is beyond the
+    end of the face that both have in common, as that of a rod on a shorter plank is: then at the ends of this face.
+    Arguments as of `face_closes`."""
     px, py = x + A.SHAPE[a].rounding * nx, y + A.SHAPE[a].rounding * ny
     if opening(one, two, nx, ny, px, py) >= 0.0:
-        return time_to_contact_again(BODY, i, j, t, nx, ny, px, py)
+        return time_to_contact_again(A, a, b, nx, ny, px, py, one, two)
     px, py, qx, qy = points_of_face(A, a, b, nx, ny, x, y, d)
-    again = time_to_contact_again(BODY, i, j, t, nx, ny, px, py)
-    return min(again, time_to_contact_again(BODY, i, j, t, nx, ny, qx, qy))
+    again = time_to_contact_again(A, a, b, nx, ny, px, py, one, two)
+    return min(again, time_to_contact_again(A, a, b, nx, ny, qx, qy, one, two))
 
 
 @nonallocating
-def turning(A: Scene, s: int, start: float, duration: float) -> tuple[bool, float]:
-    """Whether shape s turns more than once within a `duration` from instant `start` on; and if not, its part of the
-    bound B (length/time²) of a fixed axis, see `axes.py`."""
-    w, q = abs(motion(A.BODY, A.LINK[s].owner, start).spin), abs(A.BODY[A.LINK[s].owner].angular)
-    w += q * duration
-    if w * duration > 2.0 * math.pi:
-        return True, 0.0
-    return False, max(reach_of(A, s)[2] - A.SHAPE[s].rounding, 0.0) * (w * w + q)
+def turns_fast(A: Scene, s: int, start: float, duration: float) -> bool:
+    """Whether shape s turns more than once within a `duration` from instant `start` on."""
+    i = A.LINK[s].owner
+    return (abs(motion(A.BODY, i, start).spin) + abs(A.BODY[i].angular) * duration) * duration > 2.0 * math.pi
 
 
 @nonallocating
@@ -118,12 +109,12 @@ def swept(
         p, q: numbers of the vertices of the cores, in CORE, which change.  one, two: motions of the bodies.
         bend: part of the bound B of a fixed axis that rotation of a slow one gives.  of: constants of a fixed axis.
     """
-    P, Q, extent = A.CORE[0], A.CORE[1], 0.0
+    P, Q = A.CORE[0], A.CORE[1]
     if fast_a:
         P[0, 0], P[0, 1], p = one.x, one.y, 1
     if fast_b:
         Q[0, 0], Q[0, 1], q = two.x, two.y, 1
-    extent += A.SHAPE[a].extent if fast_a else A.SHAPE[a].rounding
+    extent = A.SHAPE[a].extent if fast_a else A.SHAPE[a].rounding
     extent += A.SHAPE[b].extent if fast_b else A.SHAPE[b].rounding
     near = closest(P, p, Q, q)
     if near.distance <= extent:
@@ -144,7 +135,7 @@ def general(A: Scene, a: int, b: int, horizon: float, latest: float) -> tuple[fl
     if not sides.remembers(A, a, b):
         return search(A, a, b, horizon, latest, most)
     start = max(A.BODY[A.LINK[a].owner].since, A.BODY[A.LINK[b].owner].since)
-    begin_side(A, a, b, start, max(horizon - start, 0.0), gap_round_off(A, a, b))
+    begin_side(A, a, b, start, max(horizon - start, 0.0))
     A.COUNT.work += look_work(A, a, b)
     side = A.SIDE[sides.side_row(A, sides.side_key(A, a, b))]
     key, nx, ny, deep = side.key, side.nx, side.ny, side.deep
@@ -154,11 +145,11 @@ def general(A: Scene, a: int, b: int, horizon: float, latest: float) -> tuple[fl
 
 
 @nonallocating
-def note_sides(A: Scene, a: int, b: int, horizon: float, t: float) -> None:
+def note_sides(A: Scene, a: int, b: int, t: float) -> None:
     """Note on which side of each other thin shapes a < b are at instant t, as they follow their paths."""
     start = max(A.BODY[A.LINK[a].owner].since, A.BODY[A.LINK[b].owner].since)
-    begin_side(A, a, b, start, max(horizon - start, 0.0), gap_round_off(A, a, b))
-    search(A, a, b, horizon, t, math.inf)
+    begin_side(A, a, b, start, max(A.PAR.dt - start, 0.0))
+    search(A, a, b, A.PAR.dt, t, math.inf)
 
 
 @nonallocating
@@ -187,9 +178,9 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float, most: float) 
     start = max(BODY[i].since, BODY[j].since)
     duration = max(horizon - start, 0.0)
     tolerance = gap_round_off(A, a, b)
-    s, never = circles_meet(A, a, b, start, duration, tolerance)
+    s = circles_meet(A, a, b, start, duration, tolerance)
     if s > duration:
-        return start + s, never
+        return start + s, s == math.inf
     if s == 0.0:
         s = carried_circles_meet(A, a, b, start, duration)
         if s > duration:
@@ -198,7 +189,7 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float, most: float) 
             return horizon, False
     if start + s > until:
         return start + s, False
-    around, bend_a, bend_b = bends(A, a, b, start, duration)
+    around_a, around_b, bend_a, bend_b = bends(A, a, b, start, duration)
     extent = SHAPE[a].rounding + SHAPE[b].rounding
     still = APPROACH_ROUND_OFF * (speed_bound(A, a, start) + speed_bound(A, b, start))
     depth = TOUCH * smaller(A, a, b)
@@ -206,9 +197,8 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float, most: float) 
     P, Q = A.CORE[0], A.CORE[1]
     looks, mark, interval = 0, s, duration / RESOLUTION
     each = look_work(A, a, b)
-    fast_a, slow_a = turning(A, a, start, duration)
-    fast_b, slow_b = turning(A, b, start, duration)
-    slow = slow_a + slow_b
+    fast_a, fast_b = turns_fast(A, a, start, duration), turns_fast(A, b, start, duration)
+    slow = (0.0 if fast_a else around_a) + (0.0 if fast_b else around_b)
     while True:
         looks += 1
         A.COUNT.work += each
@@ -221,7 +211,7 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float, most: float) 
         d, nx, ny, px, py, faces = here.distance, here.nx, here.ny, here.x, here.y, here.faces
         if d > sides.near_side(A, a, b):
             sides.note_side(A, a, b, nx, ny, False)
-        fixed = Closing(extent, around + pulled_along(A, a, b, nx, ny), tolerance, depth, still)
+        fixed = Closing(extent, around_a + around_b + pulled_along(A, a, b, nx, ny), tolerance, depth, still)
         safe, near, met = fixed_axis(P, p, Q, q, nx, ny, one, two, fixed)
         # Edges along whose normals the shapes overlap more than along n do not bound when they meet.
         least = min(d - extent, 0.0) - tolerance
@@ -234,7 +224,7 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float, most: float) 
         if met and near < -tolerance and not face_closes(A, a, b, nx, ny, px, py, d, one, two, still):
             met, safe = False, max(safe, duration / ADVANCES)
         if not met and near <= tolerance:
-            back = face_closes_again(A, a, b, nx, ny, px, py, d, one, two, start + s)
+            back = face_closes_again(A, a, b, nx, ny, px, py, d, one, two)
             if back <= min(safe, interval):
                 return start + s + back, True
         if met:

@@ -3,14 +3,15 @@
 In: a `pymunk.Space`, its bodies, shapes, settings, functions and handlers. Out: arrays, and errors for unsupported
 features. Back: the arrays of the end of a step, written into the space.
 
-Open first `world.py`, the space as packed arrays, and `checks.py`, the unsupported features. Words used throughout: a
-body has an index in pymunk's order (`bodies.items`, `bodies.row`), and a row in BODY, which kernels use
+Open first `world.py`, the space as packed arrays, and `checks.py`, values that cannot be stepped. Words used
+throughout: a body has an index in pymunk's order (`bodies.items`, `bodies.row`), and a row in BODY, which kernels use
 (`IDS[BODY_ROW]`); a *function* is one of the program, which pymunk calls; *past* is the object of the same class for an
 earlier reading of the space, of which everything that has not changed is used again.
 
 | subject | files |
 |---|---|
-| reading bodies and shapes | `bodies.py` (also energy and momenta), `outlines.py` (also for pictures), `packing.py` |
+| reading bodies | `bodies.py` (also energy and momenta), `body_values.py` |
+| reading shapes | `outlines.py` (also for pictures), `packing.py` |
 | reading joints | `joints.py`, `constraints.py`, `listing.py`, `partners.py`, `spring_functions.py` |
 | states in and out | `body_states.py` |
 | edits by the program | `edits.py` (shapes, bodies), `listing.py` (joints), `patching.py` (rows after edits in place) |

@@ -106,19 +106,16 @@ def _with_impulses(arbiters: Sequence[Any], found: dict[frozenset[int], Touch]) 
             if arbiter.count == 0 or private_arbiters.asleep(arbiter):
                 continue
             touch = missing.pop(private_arbiters.arbiter_key(arbiter), None)
-            impulse = None if touch is None else _on_second(arbiter, touch)
+            impulse = None
+            if touch is not None:  # the shapes of the arbiter may be in the other order
+                sign = 1.0 if private_arbiters.second_is(arbiter, touch.b) else -1.0
+                impulse = sign * touch.impulse[0], sign * touch.impulse[1]
             kept.append((arbiter, private_arbiters.set_impulse(arbiter, impulse)))
         there = [t for t in missing.values() if t.a.space is not None and t.b.space is not None]
         yield [private_arbiters.make_arbiter(t.a, t.b, t.normal, t.points, t.impulse) for t in there]
     finally:
         for arbiter, old in kept:
             private_arbiters.restore_impulse(arbiter, old)
-
-
-def _on_second(arbiter: Any, touch: Touch) -> tuple[float, float]:
-    """The impulse of a pair on the second shape of the arbiter, whose shapes may be in the other order."""
-    sign = 1.0 if private_arbiters.second_is(arbiter, touch.b) else -1.0
-    return sign * touch.impulse[0], sign * touch.impulse[1]
 
 
 def _each_arbiter(self: pymunk.Body, func: Callable[..., None], *args: Any, **kwargs: Any) -> None:

@@ -208,17 +208,12 @@ class Bodies:
             i, j = np.argwhere(~np.isfinite(state))[0]
             raise NotFiniteError(f"{COLUMN_NAMES[j]} of {self.items[i]} is {state[i, j]}: {remedy}")
 
-    def centers(self, state: FloatArray) -> FloatArray:
-        """(N, 2) centres of mass in an (N, 9) state."""
-        center: FloatArray = state[:, POSITION]
-        if self.center_of_gravity.any():
-            center = center + rotated(self.center_of_gravity, state[:, ANGLE])
-        return center
-
     def invariants(self, state: FloatArray, gravity: tuple[float, float]) -> Invariants:
         """Energy and momenta in an (N, 9) state."""
-        d = self.dynamic
-        motion = self.centers(state)[d][None], state[d, VELOCITY][None], state[d, ANGULAR_VELOCITY][None]
+        d, center = self.dynamic, state[:, POSITION]
+        if self.center_of_gravity.any():
+            center = center + rotated(self.center_of_gravity, state[:, ANGLE])
+        motion = center[d][None], state[d, VELOCITY][None], state[d, ANGULAR_VELOCITY][None]
         kinetic, potential, linear, angular = traces(self.mass[d], self.moment[d], *motion, gravity)
         return Invariants(float(kinetic[0]), float(potential[0]), linear[0], float(angular[0]))
 

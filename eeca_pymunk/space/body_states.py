@@ -30,12 +30,11 @@ _TABLES = {
     layout.END + TURNS: (layout.END, _F.POSITION | _F.ANGLE | _F.VELOCITY | _F.ANGULAR_VELOCITY),
     layout.RESET_FORCES: (layout.RESET_FORCES, _F.FORCE | _F.TORQUE),
 }
-# Where IDS, EXTRA and HOOKED begin in the memory, whose first array is STATES: in words of 8 bytes, over N.
-_IDS, _EXTRA, _HOOKED = (
-    2 * layout.STATE_COLUMNS,
-    2 * layout.STATE_COLUMNS + 4,
-    2 * layout.STATE_COLUMNS + 4 + layout.EXTRA_COLUMNS,
-)
+# Where IDS, EXTRA, HOOKED and ENDS begin in the memory, whose first array is STATES: in words of 8 bytes, over N.
+_IDS = 2 * layout.STATE_COLUMNS
+_EXTRA = _IDS + 4
+_HOOKED = _EXTRA + layout.EXTRA_COLUMNS
+_ENDS = _HOOKED + layout.HOOKED_TABLES * layout.STATE_COLUMNS
 _KERNELS = copy_start, write_ends, alter_end, accept_rounding, accept_static
 
 
@@ -88,15 +87,14 @@ class BodyStates:
             past.STATES, past.IDS = past.STATES.copy(), past.IDS.copy()
         self._memory: Memory = memory
         ends, row = layout.END_COLUMNS * N + 1, 8 * N
-        ids, extra, hooked = _IDS * row, _EXTRA * row, _HOOKED * row
-        memory.provide(0, hooked + layout.HOOKED_TABLES * layout.STATE_COLUMNS * row + 8 * ends)
+        memory.provide(0, _ENDS * row + 8 * ends)
         # STATES and IDS have more rows than a call fills, so that there is room for one body more: pymunk replaces
         # memory that is too small by its own. After additions the ids differ at once, and other arrays are made.
         self.STATES: FloatArray = memory.array((2, N, layout.STATE_COLUMNS), float, 0)
-        self.IDS: IntArray = memory.array((4, N), np.int64, ids)
-        self.EXTRA: FloatArray = memory.array((N, layout.EXTRA_COLUMNS), float, extra)
-        self.HOOKED: FloatArray = memory.array((layout.HOOKED_TABLES, N, layout.STATE_COLUMNS), float, hooked)
-        self.ENDS: FloatArray = memory.array((ends,), float, hooked + layout.HOOKED_TABLES * layout.STATE_COLUMNS * row)
+        self.IDS: IntArray = memory.array((4, N), np.int64, _IDS * row)
+        self.EXTRA: FloatArray = memory.array((N, layout.EXTRA_COLUMNS), float, _EXTRA * row)
+        self.HOOKED: FloatArray = memory.array((layout.HOOKED_TABLES, N, layout.STATE_COLUMNS), float, _HOOKED * row)
+        self.ENDS: FloatArray = memory.array((ends,), float, _ENDS * row)
         last = None if past is None else past.gather
         self.gather = private_batch.reader(space, STATE_FIELDS, self.STATES, self.IDS, last)
         self.gather()
@@ -142,22 +140,18 @@ class BodyStates:
         self.STATES[layout.WRITTEN] = self.HOOKED[layout.UNALTERED]
 
     def is_current(self) -> bool:
-        """Whether `gather` has read these bodies, and no static one was moved."""
-        return self.same_bodies() and not self.moved_static()
+        """Whether `gather` has read these bodies, and no static one was moved since the rows were made."""
+        now, then = (self.STATES[which, self.bodies.static, :3] for which in (layout.READ, layout.WRITTEN))
+        return self.same_bodies() and np.array_equal(now, then)
 
     def same_bodies(self) -> bool:
         """Whether `gather` has read these bodies and no others."""
         now, known = self.IDS[layout.READ_ID].tobytes(), self.IDS[layout.KNOWN_ID].tobytes()
         return bool(now == known)  # numpy takes five times as long to compare few numbers
 
-    def moved_static(self) -> bool:
-        """Whether a static body was moved since the rows were made, by the states that `gather` has read."""
-        still = self.bodies.static
-        return not np.array_equal(self.STATES[layout.READ, still, :3], self.STATES[layout.WRITTEN, still, :3])
-
     def static_moved_since(self) -> bool:
-        """As `moved_static`, by the present poses, also if other bodies have come, or pymunk's order has changed. Not
-        of bodies that slept: pymunk wakes those that a program moves."""
+        """Whether a static body was moved since the rows were made, by the present poses, also if other bodies have
+        come, or pymunk's order has changed. Not of bodies that slept: pymunk wakes those that a program moves."""
         still: list[int] = (self.bodies.static & ~self.bodies.asleep).nonzero()[0].tolist()
         known = [(self.bodies.items[i], self.STATES[layout.WRITTEN, i, :3].tolist()) for i in still]
         return any(body.space is self.space and [*body.position, body.angle] != pose for body, pose in known)

@@ -8,8 +8,6 @@ from typing import Any
 
 import pymunk
 
-from ..errors import UnsupportedFeature
-
 
 def shape_body(shape: pymunk.Shape) -> pymunk.Body:
     """The body of a shape; ValueError if it has none."""
@@ -38,15 +36,12 @@ def check_ignored(ignore: Sequence[str]) -> tuple[str, ...]:
 
 
 def check_shape(shape: Any) -> None:
-    """ValueError for invalid values of a shape, or a shape without a body; UnsupportedFeature for unknown kinds."""
-    shape_body(shape)
+    """ValueError for invalid values of a shape."""
     surface = shape.surface_velocity
     if not (math.isfinite(surface.x) and math.isfinite(surface.y)):
         raise ValueError(f"{shape} has surface velocity {surface}: set a finite one")
     if not 0.0 <= shape.friction < math.inf:
         raise ValueError(f"{shape} has friction {shape.friction}: set a finite value >= 0")
-    if not isinstance(shape, (pymunk.Circle, pymunk.Segment, pymunk.Poly)):
-        raise UnsupportedFeature(f"{shape} is neither a Circle, a Segment nor a Poly; replace it by one of them")
     if not 0.0 <= shape.elasticity < math.inf:
         raise ValueError(f"{shape} has elasticity {shape.elasticity}: set a finite value >= 0")
     if not math.isfinite(shape.radius):

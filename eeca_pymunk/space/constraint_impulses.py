@@ -49,7 +49,7 @@ class ConstraintImpulses:
 
     def go_on(self, items: Sequence[pymunk.Constraint], stamp: int, dt: float) -> None:
         """After a step dt in which all bodies sleep, let `impulse` return the impulses of the last forces, not those of
-        pymunk's solver. If pymunk has taken none, nothing has changed (`Sleep.step`)."""
+        pymunk's solver. If pymunk has taken no step since, nothing has changed (`Sleep.step`)."""
         if self._stamp == stamp:
             return
         last, impulse = self._joint["last_step"], self._joint["impulse"]

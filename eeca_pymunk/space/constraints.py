@@ -120,14 +120,8 @@ class ConstraintValues(NamedTuple):
         numbers = *self.anchor_a, *self.anchor_b, *self.groove, *self.gear, *self.ratchet, stiffness, damping, rest
         total = sum(numbers) + self.length + self.rate
         signs = force >= 0.0 and 0.0 <= error <= 1.0 and bias >= 0.0 and damping >= 0.0 and self.length >= 0.0
-        zero = self.kind == joints.GEAR and self.gear[0] == 0.0
-        return (
-            signs
-            and math.isfinite(total)
-            and lower <= upper
-            and not (self.kind == joints.SLIDE and upper < 0.0)
-            and not zero
-        )
+        wrong = (self.kind == joints.GEAR and self.gear[0] == 0.0) or (self.kind == joints.SLIDE and upper < 0.0)
+        return signs and math.isfinite(total) and lower <= upper and not wrong
 
     def put(self, memory: bytearray, j: int, a: int, b: int) -> None:
         """Write the values to row j of JOINT, whose memory is given, as EDITED, for bodies in the rows a and b."""
@@ -175,11 +169,9 @@ def _read(c: Any, force: tuple[float, float, float]) -> ConstraintValues:
     if isinstance(c, pymunk.PinJoint):
         return _pin(c.distance, force, a, b)
     if isinstance(c, pymunk.SlideJoint):
-        return (
-            _pin(c.max, force, a, b)
-            if c.min == c.max
-            else ConstraintValues(joints.SLIDE, force, a, b, limits=(c.min, c.max))
-        )
+        if c.min == c.max:
+            return _pin(c.max, force, a, b)
+        return ConstraintValues(joints.SLIDE, force, a, b, limits=(c.min, c.max))
     if isinstance(c, pymunk.PivotJoint):
         return ConstraintValues(joints.PIVOT, force, a, b)
     return ConstraintValues(joints.SPRING, force, a, b, spring=(c.stiffness, c.damping, c.rest_length))
@@ -195,8 +187,7 @@ def _pin(
     length: float, force: tuple[float, float, float], a: tuple[float, float], b: tuple[float, float]
 ) -> ConstraintValues:  # fmt: skip
     """A pin, or a pivot if its length is 0, for which a pin has no direction."""
-    scale = max(map(abs, (*a, *b)))
-    kind = joints.PIVOT if length <= _SMALL * max(scale, 1e-300) or length == 0.0 else joints.PIN
+    kind = joints.PIVOT if length <= _SMALL * max(map(abs, (*a, *b))) else joints.PIN
     return ConstraintValues(kind, force, a, b, length)
 
 

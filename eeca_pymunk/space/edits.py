@@ -23,9 +23,9 @@ import pymunk
 from .private import spaces as private
 from .private import versions as private_versions
 
+_SURFACE = ("filter", "elasticity", "friction", "surface_velocity")  # these change neither masses nor outlines
 _PROPERTIES: tuple[tuple[type, tuple[str, ...]], ...] = (
-    (pymunk.Shape, ("mass", "density", "sensor", "filter", "elasticity", "friction", "surface_velocity", "body")),
-    (pymunk.Shape, ("collision_type",)),
+    (pymunk.Shape, ("mass", "density", "sensor", *_SURFACE, "body", "collision_type")),
     (pymunk.Body, ("mass", "moment", "center_of_gravity", "body_type", "velocity_func", "position_func")),
     (pymunk.Space, ("gravity", "damping", "sleep_time_threshold")),
 )
@@ -35,8 +35,7 @@ _METHODS: tuple[tuple[type, tuple[str, ...]], ...] = (
     (pymunk.Poly, ("unsafe_set_radius", "unsafe_set_vertices")),
     (pymunk.Space, (*private.CONTENTS, *private.LINKS)),
 )
-_SURFACE = ("filter", "elasticity", "friction", "surface_velocity")  # these change neither masses nor outlines
-_VALUES = (*_SURFACE, "mass", "moment")  # nor sizes
+_VALUES = (*_SURFACE, "mass", "moment")  # these do not change sizes
 SLEEP = ("sleep", "sleep_with_group")
 _KEPT = 4096  # number of edits that are kept, the last ones
 _wrapped = False
@@ -46,9 +45,9 @@ _edited: deque[tuple[weakref.ref[Any], str]] = deque(maxlen=_KEPT)
 
 
 class Counts(list[int]):
-    """Four counts of a space: [0] edits of its shapes and bodies, including bodies put to sleep; [1] bodies put to
-    sleep alone; [2] changes of its settings, additions and removals; [3] those of shapes and bodies alone. A list,
-    which `private.spaces.watch` compares fastest."""
+    """Four counts of a space: [0] edits of its shapes and bodies, and bodies put to sleep; [1] bodies put to sleep
+    alone; [2] changes of its settings, additions and removals, also of constraints; [3] additions and removals of
+    shapes and bodies alone. A list, which `private.spaces.watch` compares fastest."""
 
     def __init__(self) -> None:
         super().__init__((0, 0, 0, 0))

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import pymunk
@@ -74,11 +74,7 @@ class Hooks:
 
     def later(self, function: Callable[..., Any]) -> Callable[..., None]:
         """A function that records its arguments, with which `after` calls `function`."""
-
-        def call(*arguments: Any) -> None:
-            self.late.append(lambda: function(*arguments))
-
-        return call
+        return lambda *arguments: self.late.append(partial(function, *arguments))
 
     @cached_property
     def _steered(self) -> list[pymunk.Body]:

@@ -16,7 +16,7 @@ from ..reentry import FunctionsCalled
 from .constraint_impulses import ConstraintImpulses
 from .constraints import read
 from .edits import clock
-from .listing import Edits, Listing, calls_of
+from .listing import ConstraintEdits, Listing, calls_of
 from .partners import Partners
 from .private import spaces as private
 from .spring_functions import BodyMotion, Rate, force_function, write_law
@@ -54,7 +54,7 @@ class JointRows(Listing):
         for j in self.fresh:
             self.values[j].put(self._memory, j, *self.joint["body"][j].tolist())
         self.partners: Partners = Partners(others, space, self.joint, n, None if past is None else past.partners)
-        self._edits, self._timestamp = Edits(self.row), private.timestamp(space)
+        self._edits, self._timestamp = ConstraintEdits(self.row), private.timestamp(space)
         self._clock = clock()
         self.rates: dict[pymunk.Constraint, Rate] = {} if past is None else past.rates
         self.parted: frozenset[tuple[pymunk.Body, pymunk.Body]] | None = None

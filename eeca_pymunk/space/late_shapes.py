@@ -42,20 +42,14 @@ class Late:
         sync: of the last EECA step, of whichever stepper.
     """
 
-    __slots__ = ("_bodies", "_contents", "_movers", "hashed", "late", "read", "reindexings", "stamp", "sync")
+    __slots__ = ("_contents", "_movers", "hashed", "late", "read", "reindexings", "stamp", "sync")
 
     def __init__(self) -> None:
         self.late, self.read, self.hashed, self.stamp, self.reindexings = False, False, False, -1, 0
         self.sync: ref[Sync] | None = None  # weak: it refers to the space, which is a key of `_known`
-        # Bodies with shapes that are not static, their pointers, and the contents of the space when they were found.
-        self._bodies: list[pymunk.Body] = []
+        # Pointers to the bodies with shapes that are not static, and the contents of the space when they were found.
         self._movers: list[Any] = []
         self._contents: tuple[int, ...] = ()
-
-    def cost_more(self, moving: int) -> bool:
-        """Whether reindexing after this step would cost more than a rest step, for this number of moving shapes in a
-        spatial hash."""
-        return self.reindexings <= 0 or (self.read and moving > MOST_READ)
 
     def move(self, space: pymunk.Space) -> None:
         """Move the shapes to their bodies, unless pymunk has done so, in a step that it has begun since. Within such a
@@ -65,8 +59,8 @@ class Late:
             self.reindexings -= 1
             contents = counts(space)[3], clock()
             if contents != self._contents:
-                self._bodies = [body for body in space.bodies if body.shapes and body.body_type != pymunk.Body.STATIC]
-                self._movers, self._contents = private.pointers(self._bodies), contents
+                moving = (body for body in space.bodies if body.shapes and body.body_type != pymunk.Body.STATIC)
+                self._movers, self._contents = private.pointers(moving), contents
             private_shapes.reindex(space, self._movers)
 
 

@@ -1,8 +1,8 @@
 """Listing: the constraints of a space, what is read of them independently of the rows of their bodies, and their edits.
 
 pymunk records no edits: its setters write into Chipmunk at once. But all attributes of constraints are set in Python.
-So `pymunk.Constraint.__setattr__` is replaced when the first `Edits` is made; for constraints without one it acts as
-before.
+So `pymunk.Constraint.__setattr__` is replaced when the first `ConstraintEdits` is made; for constraints without one it
+acts as before.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ _LISTED = (
     "after", "calling", "centres",
 )  # fmt: skip
 
-# All `Edits` by their numbers. To iterate over a `WeakSet` takes ten times as long, in every edit of any constraint.
-_watching: dict[int, ref[Edits]] = {}
+# All `ConstraintEdits` by their numbers. To iterate over a `WeakSet` takes ten times as long, in every edit of one.
+_watching: dict[int, ref[ConstraintEdits]] = {}
 _native_setattr = pymunk.Constraint.__setattr__
 # Attributes that do not change what functions a constraint has, or whether its bodies collide.
 _NUMBERS = frozenset((
@@ -94,8 +94,8 @@ class Listing:
         """The rows of the constraints of bodies whose centre of gravity has changed since `centres` were read, which
         are read again: the values of these constraints have to be, too."""
         before, self.centres = self.centres, self._centres()
-        pairs = zip(self.bodies, before, self.centres, strict=True)
-        return self.with_body({body: centre != now for body, centre, now in pairs})
+        moved = [centre != now for centre, now in zip(before, self.centres, strict=True)]
+        return np.flatnonzero(np.array(moved)[self.ends].any(axis=1)).tolist() if any(moved) else []
 
     def find_functions(self) -> None:
         """Find the lists of constraints that depend on kinds, bounds and functions."""
@@ -105,13 +105,6 @@ class Listing:
         self.before = [item for item, calls in zip(self.items, self.calls, strict=True) if calls.before is not None]
         self.after = [item for item, calls in zip(self.items, self.calls, strict=True) if calls.after is not None]
         self.calling = list(dict.fromkeys((*self.before, *self.after)))
-
-    def with_body(self, marked: dict[pymunk.Body, bool]) -> list[int]:
-        """The rows of the constraints of which a body is marked True."""
-        if not any(marked.values()):
-            return []
-        marks = np.array([marked.get(body, False) for body in self.bodies])
-        return np.flatnonzero(marks[self.ends].any(axis=1)).tolist()
 
     def measured(self) -> list[int]:
         """Rows of the pins whose length is the distance of their anchors, up to round-off: pickles of pymunk lack the
@@ -125,7 +118,7 @@ class Listing:
         return found
 
 
-class Edits:
+class ConstraintEdits:
     """The edits of the constraints of one listing.
 
     Attributes:

@@ -82,7 +82,7 @@ def local_outline(shape: pymunk.Shape) -> list[tuple[float, ...]]:
     polygon. UnsupportedFeature for other shapes."""
     outline = private_shapes.outline(shape)
     if outline is None:
-        raise UnsupportedFeature(f"{shape}: only circles, segments and polygons are known")
+        raise UnsupportedFeature(f"{shape} is neither a Circle, a Segment nor a Poly; replace it by one of them")
     return outline if len(outline) < 3 else corners(outline)
 
 

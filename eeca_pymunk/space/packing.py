@@ -59,10 +59,10 @@ def read(shape: pymunk.Shape, ground: pymunk.Body | None = None) -> ShapeRecord:
     """The record of a shape. If `ground` is given, the record of an equal shape of `ground` at the same place.
 
     Raises:
-        ValueError, UnsupportedFeature: see `check_shape`.
+        ValueError: see `shape_body` and `check_shape`.  UnsupportedFeature: see `local_outline`.
     """
     body = shape_body(shape)
-    (numbers, words), outline = _surface(shape), local_outline(shape)
+    outline, (numbers, words) = local_outline(shape), _surface(shape)
     if ground is not None:
         to_world, to_ground = body.local_to_world, ground.world_to_local
         outline = [tuple(to_ground(to_world((v[0], v[1])))) for v in outline]
@@ -76,7 +76,7 @@ def read_surface(shape: pymunk.Shape, record: ShapeRecord) -> ShapeRecord:
     """The record of a shape whose body and vertices are still those of `record`."""
     numbers, words = _surface(shape)
     packed = _VALUES.pack(0, len(record.vertices), *words, *numbers, 0, 0)
-    return ShapeRecord(record.body, record.vertices, numbers, words, record.outside, packed, record.points)
+    return record._replace(numbers=numbers, filter=words, packed=packed)
 
 
 def _surface(shape: pymunk.Shape) -> tuple[tuple[float, ...], tuple[int, int, int]]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pymunk
@@ -126,8 +126,3 @@ class Partners:
     def motion(self, i: int) -> tuple[float, float, float, float, float, float]:
         """Position of the origin (2), angle, velocity (2) and spin of the body in row i, as last read."""
         return tuple(self._known[i].tolist())
-
-    def motions(self) -> list[Any]:
-        """The velocities of the bodies, for `private_joints.restore_motions` after a step of pymunk. There constraints
-        change them, though pymunk does not move these bodies; to nan if no body of a constraint can be moved."""
-        return private_joints.motions(self.items)

@@ -116,9 +116,8 @@ class Rehearsal:
 
     def after_call(self, stage: int) -> None:
         """After a function was called: record its changes in HOOKED[CHANGES_BEFORE] or HOOKED[CHANGES_AFTER]."""
-        late = stage > 0
         self.world.gather()
-        self._changed[late] |= self._record_changes(late) > 0
+        self._changed[stage > 0] |= self._record_changes(stage > 0) > 0
 
     def run(self, dt: float, half_damping: float, sync: Sync, known: bool) -> int:
         """Take pymunk's step; STATES then has the start of the EECA step, with the changes by begin and pre_solve. An
@@ -211,7 +210,8 @@ class Rehearsal:
             self._step(self._settings[0])
         finally:
             world.bodies.scatter(present, unchanged=True)
-            private_shapes.reindex_uncorrected(self.space, world.movers)
+            private_shapes.forget_corrections(world.movers)
+            private_shapes.reindex(self.space, world.movers)
 
     @property
     def after(self) -> bool:

@@ -124,7 +124,7 @@ class Sleep:
         """Wake the sleeping bodies that a kinematic body may meet in the step that begins with the states read; unless
         the world is plain, all that may be met, since steps that call functions are not repeated. Whether any woke."""
         world, found = self.world, False
-        for i in self._near(dt, math.hypot(*world.gravity)) if len(self._moves[world.plain]) else ():
+        for i in self._near(dt) if len(self._moves[world.plain]) else ():
             if (box := self._reached(i, dt)) is not None:
                 found |= self._wake_within(box)
         return found
@@ -141,7 +141,7 @@ class Sleep:
         return pymunk.BB(x - reach, y - reach, x + reach, y + reach) if math.isfinite(x + y + reach) else None
 
     def _left_alone(self, groups: list[list[pymunk.Body]], dt: float) -> list[list[pymunk.Body]]:
-        """Those of the groups that `wake_ahead` would not wake in the next step; all others may move in it."""
+        """Those of the groups that `wake_ahead` would not wake in the next step, if all other bodies may move in it."""
         row, moves = self.world.bodies.row, self._moves[self.world.plain].tolist()
         self.world.gather()
         while True:
@@ -153,16 +153,15 @@ class Sleep:
                 return groups
             groups = remaining
 
-    def _near(self, dt: float, pull: float) -> list[int]:
-        """Those of `_moves` (rows) that may reach the box of a sleeping shape within dt, see `sleepers.approaches`.
-        `pull`: length of the acceleration by gravity."""
+    def _near(self, dt: float) -> list[int]:
+        """Those of `_moves` (rows) that may reach the box of a sleeping shape within dt, see `sleepers.approaches`."""
         plain, world = self.world.plain, self.world
         if plain not in self._nears:
             near = np.zeros(len(self._moves[plain]), np.int64)
             of = world.STATES, self._moves[plain], self._far, world.bodies.inverse_mass.copy(), self._boxes
             self._nears[plain] = near, approaches.bind(*of, near)
         near, call = self._nears[plain]
-        return near[: call(dt, pull)].tolist()  # type: ignore[no-any-return]
+        return near[: call(dt, math.hypot(*world.gravity))].tolist()  # type: ignore[no-any-return]
 
     @cached_property
     def _boxes(self) -> FloatArray:
@@ -241,10 +240,10 @@ class Sleep:
         if len(ready) < enough or len(self._left_alone(ready, dt)) < enough:
             return
         pairs = () if joints is None else joints.pairs.values()
-        islands = self._left_alone(resting_groups(self.space, bodies, self._ready, report.contacts, pairs), dt)
-        if sum(map(len, islands)) < enough:
+        groups = self._left_alone(resting_groups(self.space, bodies, self._ready, report.contacts, pairs), dt)
+        if sum(map(len, groups)) < enough:
             return
         self._since = 0
-        for island in islands:
-            self._rested[[bodies.row[body] for body in island]] = 0.0
-            sleep_together(island)
+        for group in groups:
+            self._rested[[bodies.row[body] for body in group]] = 0.0
+            sleep_together(group)

@@ -33,15 +33,8 @@ Rate = tuple[float, float]  # r0 and h of a step
 
 def own_function(item: Any) -> Callable[[Any, float], float] | None:
     """The force or torque function of a spring that the program has set; None for pymunk's and for other joints."""
-    default: Any
-    if isinstance(item, pymunk.DampedSpring):
-        default = pymunk.DampedSpring.spring_force
-    elif isinstance(item, pymunk.DampedRotarySpring):
-        default = pymunk.DampedRotarySpring.spring_torque
-    else:
-        return None
     function = private_joints.law_of(item)
-    return None if function is default else function
+    return None if function in (pymunk.DampedSpring.spring_force, pymunk.DampedRotarySpring.spring_torque) else function
 
 
 def write_law(item: Any, a: BodyMotion, b: BodyMotion, dt: float, row: Joint, past: Rate | None) -> Rate:

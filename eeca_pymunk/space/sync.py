@@ -26,7 +26,7 @@ from weakref import WeakMethod, ref
 
 from ..reentry import BUSY
 from .arbiters import ReadTouches, show_contacts
-from .late_shapes import late_shapes
+from .late_shapes import MOST_READ, late_shapes
 from .private import arbiters as private_arbiters
 from .private import batch as private_batch
 from .private import rest as private_rest
@@ -72,12 +72,14 @@ class Sync:
 
     def reindexes(self) -> bool:
         """Whether this step may leave the shapes late, to be reindexed when they are read. Not if pymunk has taken a
-        step since the last rest step, nor if arbiters were read after the last step, other than for a picture, nor if
-        reindexing costs more than a rest step."""
+        step since the last rest step, nor if arbiters were read after the last step, other than for a picture, nor, in
+        a spatial hash, after `REINDEXINGS` of them or if more than MOST_READ shapes are read after each step."""
         shapes = self._shapes
         if self.arbiters_read or self._timestamp() != self._rested:
             return False
-        return not (shapes.hashed and shapes.cost_more(self._world.moving_shapes))
+        if not shapes.hashed:
+            return True
+        return shapes.reindexings > 0 and not (shapes.read and self._world.moving_shapes > MOST_READ)
 
     def leave_late(self, dt: float) -> None:
         """End a step that `reindexes`: the shapes are late."""

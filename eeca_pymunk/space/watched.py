@@ -3,7 +3,7 @@ constraints that it must not call are removed meanwhile."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -12,8 +12,8 @@ import pymunk
 from .joints import JointRows
 from .private import joints as private_joints
 from .private import spaces as private
-from .private.joints import clear_max_forces, restore_max_forces, restore_motions, silent, with_laws
-from .private.versions import to_return
+from .private.joints import clear_max_forces, motions, restore_max_forces, restore_motions, silent, with_laws
+from .private.versions import decision, to_return
 
 if TYPE_CHECKING:
     from .rehearsal import Rehearsal
@@ -32,10 +32,10 @@ class Watched:
             for separate. Between two calls of one stage pymunk changes no body.
     """
 
-    __slots__ = ("_decides", "_phase", "_rehearsal", "_stage", "function")
+    __slots__ = ("_decides", "_rehearsal", "_stage", "function")
 
     def __init__(self, rehearsal: Rehearsal, function: Callable[..., Any], phase: str, stage: int) -> None:
-        self._rehearsal, self.function, self._phase, self._stage = rehearsal, function, phase, stage
+        self._rehearsal, self.function, self._stage = rehearsal, function, stage
         self._decides = phase in (_BEGIN, _PRE_SOLVE)
 
     def __call__(self, *arguments: Any) -> bool | None:
@@ -43,14 +43,15 @@ class Watched:
         if rehearsal.failure is not None:
             return True
         rehearsal.before_call(self._stage)
-        before = private.decision(arguments[0]) if self._decides else None
+        before = decision(arguments[0]) if self._decides else None
         result: bool | None = True
         try:
-            result = to_return(self.function(*arguments), self.function, self._phase)
+            value = self.function(*arguments)
+            result = to_return(value, self.function) if self._decides else None
         except BaseException as error:
             # pymunk's C code would discard it; `Rehearsal.run` raises it.
             rehearsal.failure = error
-        if self._decides and (result is False or private.decision(arguments[0]) != before):
+        if self._decides and (result is False or decision(arguments[0]) != before):
             rehearsal.decided = True
         rehearsal.after_call(self._stage)
         return result
@@ -63,30 +64,19 @@ def silent_joints(rehearsal: Rehearsal, joints: JointRows) -> Iterator[None]:
     # `Hooks.before` calls `pre_solve` where the first body is outside the space: pymunk does not.
     silenced = [item for item in joints.calling if item.pre_solve is None or item.a.space is None]
     with ExitStack() as stack:
-        if joints.partners.items:
-            stack.callback(restore_motions, joints.partners.motions())
+        if joints.partners.items:  # constraints change their velocities; to nan if no body of a constraint can be moved
+            stack.callback(restore_motions, motions(private.pointers(joints.partners.items)))
         if silenced:
             stack.enter_context(silent(silenced))
         if joints.with_law:
             stack.enter_context(with_laws(joints.with_law, joints.laws()))
-        if joints.before:
-            stack.enter_context(_watched_joints(rehearsal, [item for item in joints.before if item not in silenced]))
+        for item in joints.before:
+            before, after = item.pre_solve, item.post_solve
+            if item not in silenced and before is not None:
+                stack.callback(private_joints.replace_functions, item, before, after)
+                nothing = None if after is None else lambda *_: None
+                private_joints.replace_functions(item, Watched(rehearsal, before, "", 0), nothing)
         yield
-
-
-@contextmanager
-def _watched_joints(rehearsal: Rehearsal, items: Sequence[pymunk.Constraint]) -> Iterator[None]:
-    """Within this block `pre_solve` of constraints is wrapped, and `post_solve` is not called."""
-    functions = [(item, item.pre_solve, item.post_solve) for item in items]
-    try:
-        for item, before, after in functions:
-            assert before is not None
-            nothing = None if after is None else lambda *_: None
-            private_joints.replace_functions(item, Watched(rehearsal, before, "", 0), nothing)
-        yield
-    finally:
-        for item, before, after in functions:
-            private_joints.replace_functions(item, before, after)
 
 
 def stop_joints(space: pymunk.Space, forces: bool) -> Callable[[], None]:

@@ -40,15 +40,12 @@ class World(BodyStates):
         past: the world of the same space before. Bodies and shapes that have not changed since are not read again, and
             results of earlier steps for joints are kept.
 
-    Attributes:
+    Attributes, beside those of `BodyStates`:
         records: the values of the shapes of the space, None for sensors.
-        bodies: in pymunk's order, N with the static ones.  shapes: by row of SHAPE.
-        owner: (k,) index in `bodies.items` of the body of each shape.
-        BODY, SHAPE, LINK, VERTEX: see `..model`.  disks, dynamic: BODY[:disks] are single disks, BODY[disks:dynamic]
+        shapes: by row of SHAPE.  owner: (k,) index in `bodies.items` of the body of each.
+        SHAPE, LINK, VERTEX: see `..model`.  disks, dynamic: BODY[:disks] are single disks, BODY[disks:dynamic]
             other dynamic bodies; then come kinematic bodies, and last the ground, which has all static shapes.
-        STATES, IDS, EXTRA, ENDS, HOOKED: the arrays exchanged with pymunk, see `layout.py`.
-        gravity: length/time².  damping: pymunk's, the factor on velocities in one second; 1 is none.  damped: the
-            same, but 1 instead of 0, for which `alter_end` sets velocities to 0 at the end of the step.
+        gravity: length/time².  damping: pymunk's, the factor on velocities in one second; 1 is none.
         without_contacts: function that makes the arrays of a report without contacts.
         hooks: functions of bodies and constraints.  collisions: whether the space has collision handlers.
         hooked: whether a step calls functions of bodies or handlers, or damping is 0.  only_handlers: whether collision
@@ -110,9 +107,8 @@ class World(BodyStates):
 
     def read_settings(self, anew: bool = False, stale: Collection[Any] | None = None) -> None:
         """Read and check the settings of the space, and its joints if they have changed or if `anew`; record later
-        changes. `stale`: see there, in a new world."""
+        changes. `stale`: the result of this method, in a new world."""
         self.gravity, self.damping = settings(self.space)
-        self.damped = self.damping or 1.0
         self._read_joints(anew, stale)
         self._seen = [self._edits[0]]  # a list, because `current` reads its later values
         self._known = self._edits.in_place
@@ -127,8 +123,8 @@ class World(BodyStates):
         self.current = private.watch(self.space, self._edits, self._seen)
 
     def half_damping(self, dt: float) -> float:
-        """The factor of half a step's damping on velocities."""
-        return float(self.damped ** (0.5 * dt))
+        """The factor of half a step's damping on velocities; 1 if that is 0, for which `alter_end` stops the bodies."""
+        return float((self.damping or 1.0) ** (0.5 * dt))
 
     def _read_joints(self, anew: bool, stale: Collection[Any] | None) -> None:
         past = self.joints
@@ -234,7 +230,7 @@ class World(BodyStates):
         return self.rules.of_pairs(self.SHAPE, self.parted)
 
     def same_things(self) -> bool:
-        """Whether no shape or body was added, removed or put to sleep."""
+        """Whether no shape or body was added, removed or put to sleep (counts 3 and 1 of `edits.Counts`)."""
         return self._contents == self._edits[1::2]
 
     def edited(self) -> bool:

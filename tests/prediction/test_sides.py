@@ -36,7 +36,7 @@ def test_the_remembered_side_turns_with_the_shapes(turn: float, unit: float) -> 
             scene.BODY[i].angle = angle
         row = scene.BODY[scene.LINK[b].owner]
         row.x, row.y = -(half + apart) * math.sin(angle), (half + apart) * math.cos(angle)
-        begin_side(scene, a, b, 0.0, 0.1, 1e-12 * unit)
+        begin_side(scene, a, b, 0.0, 0.1)
         assert gap(scene, a, b, 0.0)[0] == pytest.approx(apart, rel=1e-6)
 
 

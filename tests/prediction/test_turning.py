@@ -231,7 +231,7 @@ def test_bends_bound_how_points_move_along_axes() -> None:
             for i in range(2)
         ]  # fmt: skip
         world = World(things)
-        around, *turning = bends(world.scene, 0, 1, 0.0, left)
+        around_a, around_b, *turning = bends(world.scene, 0, 1, 0.0, left)
         paths = []
         for thing in things:
             q = [np.array(thing.pose) + np.array(thing.rate) * t + 0.5 * np.array(thing.pull) * t * t for t in times]
@@ -242,7 +242,7 @@ def test_bends_bound_how_points_move_along_axes() -> None:
         apart = b[:, None] - a[:, :, None]
         fixed, of_a = (np.einsum("tijc,tc->tij", apart, n[c]) for c in (0, 1))
         of_b = np.einsum("tijc,tc->tij", -apart, n[2])
-        bound = around + pulled_along(world.scene, 0, 1, *n[0, 0]), *turning
+        bound = around_a + around_b + pulled_along(world.scene, 0, 1, *n[0, 0]), *turning
         for c, height in enumerate((fixed, of_a, of_b)):
             bend = (-np.diff(height, 2, axis=0)).max() / h**2
             assert bend <= bound[c] * (1.0 + 1e-6) + 1e-8

@@ -95,7 +95,9 @@ def test_reindexing_anew_moves_shapes_and_no_bodies() -> None:
         body.position, body.velocity = body.position * 0.1, (0.0, 0.0)
     space.step(0.1)
     bodies[0].position = at = (50.0, 0.0)
-    private_shapes.reindex_uncorrected(space, private.pointers(bodies))
+    pointers = private.pointers(bodies)
+    private_shapes.forget_corrections(pointers)
+    private_shapes.reindex(space, pointers)
     (shape,) = bodies[0].shapes
     assert shape.bb.left < 50.0 < shape.bb.right
     other = bodies[1].position

@@ -239,7 +239,7 @@ def test_centres_and_kinds_of_bodies_that_joints_hold() -> None:
 def test_bodies_that_move_on() -> None:
     body = pymunk.Body(2.0, 1.0)
     body.velocity, body.angular_velocity = (3.0, 4.0), 5.0
-    kept = private_joints.motions([body])
+    kept = private_joints.motions(private.pointers([body]))
     body.velocity, body.angular_velocity = (0.0, 1.0), 2.0
     private_joints.restore_motions(kept)
     assert (body.velocity, body.angular_velocity) == ((3.0, 4.0), 5.0)

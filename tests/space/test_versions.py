@@ -141,13 +141,9 @@ def test_arbiters_tell_whether_a_handler_has_rejected_the_collision() -> None:
         )
 
 
-def test_answers_are_those_of_begin_and_pre_solve_alone() -> None:
+def test_answers_of_begin_and_pre_solve_are_returned() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         for found in (True, False):
-            for phase in ("_begin", "_pre_solve"):
-                assert private_versions.to_return(found, print, phase) is (
-                    found if private_versions.BY_RETURN else None
-                )
-        assert private_versions.to_return(False, print, "_post_solve") is None
-        assert private_versions.to_return(math.pi, print, "_begin") is (True if private_versions.BY_RETURN else None)
+            assert private_versions.to_return(found, print) is (found if private_versions.BY_RETURN else None)
+        assert private_versions.to_return(math.pi, print) is (True if private_versions.BY_RETURN else None)

@@ -10,10 +10,12 @@ import pymunk
 from pymunk import batch
 from pymunk._chipmunk_cffi import ffi, lib
 
+from .batch import batched
 from .versions import decide
 
 OF_LIBRARY = (
-    "pmSpaceArbiterIteratorFuncBatched", "cpBodyIsSleeping", "cpArbiterTotalImpulse", "cpShapeGetCollisionType",
+    "pmSpaceArbiterIteratorFuncBatched", "cpBodyIsSleeping", "cpShapeGetCollisionType",
+    "CP_ARBITER_STATE_FIRST_COLLISION",
 )  # fmt: skip
 TYPES = ("cpArbiter *", "cpContact[1]")
 
@@ -125,7 +127,6 @@ def raw(arbiter: pymunk.Arbiter) -> Any:
 
 def batch_arbiters(arbiters: Sequence[Any], fields: batch.ArbiterFields, buffers: batch.Buffer) -> None:
     """Append arbiters to the buffers of `batch.get_space_arbiters`."""
-    data = ffi.new("pmBatchedData *")
-    data.fields, data.floatArray, data.intArray = fields.value, buffers._float_arr, buffers._int_arr
+    data = batched(fields, buffers._float_arr, buffers._int_arr)
     for arbiter in arbiters:
         lib.pmSpaceArbiterIteratorFuncBatched(arbiter, data)

@@ -29,8 +29,8 @@ def reader(
 ) -> Callable[[], None]:
     """`batch.get_space_bodies` into given memory, at a quarter of its cost.
 
-    The caller must ensure that `floats` and `ids`, flat and contiguous, have room for one body more than the space has
-    at every call: pymunk would replace memory that is too small by its own, and free it.
+    The caller must ensure that `floats` and `ids`, C-contiguous, have room for one body more than the space has at
+    every call: pymunk would replace memory that is too small by its own, and free it.
 
     Args:
         last: a reader of the same fields of the same space. It is changed to use these arrays, and returned; making a
@@ -42,7 +42,7 @@ def reader(
         last.held = floats, ids
         return last  # type: ignore[no-any-return]
     values, numbers = _array("pmFloatArray *", "cpFloat[]", floats), _array("pmIntArray *", "uintptr_t[]", ids)
-    data = _batched(fields, values, numbers)
+    data = batched(fields, values, numbers)
     c, each, filled, listed = space._space, lib.cpSpaceEachBody, _num(values), _num(numbers)
     function = ffi.addressof(lib, "pmSpaceBodyGetIteratorFuncBatched")
 
@@ -59,7 +59,7 @@ def reader(
 def reader_of(bodies: Sequence[pymunk.Body], fields: batch.BodyFields, floats: FloatArray) -> Callable[[], None]:
     """As `reader`, without ids, for some bodies, one call for each; they need not be in a space."""
     values, numbers = _array("pmFloatArray *", "cpFloat[]", floats), ffi.new("pmIntArray *")
-    data = _batched(fields, values, numbers)
+    data = batched(fields, values, numbers)
     return _one_by_one(lib.pmSpaceBodyGetIteratorFuncBatched, bodies, data, values, (floats, numbers))
 
 
@@ -82,7 +82,7 @@ def writer(
     space: pymunk.Space, fields: batch.BodyFields, floats: FloatArray, bodies: Sequence[pymunk.Body] | None = None,
     last: Any = None,
 ) -> Callable[[], None]:  # fmt: skip
-    """`batch.set_space_bodies` from given memory, flat and contiguous, with a row for every body of the space.
+    """`batch.set_space_bodies` from given memory, C-contiguous, with a row for every body of the space.
 
     With `bodies`, the first ones of the space in pymunk's order, only these are written, one after the other.
     `last`: as for `reader`; a writer of some bodies is not used again.
@@ -92,7 +92,7 @@ def writer(
         last.held = floats
         return last  # type: ignore[no-any-return]
     values, numbers = _array("pmFloatArray *", "cpFloat[]", floats), ffi.new("pmIntArray *")
-    data = _batched(fields, values, numbers)
+    data = batched(fields, values, numbers)
     c, each, taken = space._space, lib.cpSpaceEachBody, _num(values)
     function = ffi.addressof(lib, "pmSpaceBodySetIteratorFuncBatched")
 
@@ -125,7 +125,7 @@ def arbiter_bodies(space: pymunk.Space) -> list[int]:
     """For each arbiter that pymunk keeps, the exclusive or of the ids of both bodies."""
     floats, numbers = ffi.new("pmFloatArray *"), lib.pmIntArrayNew(0)
     try:
-        data = _batched(_BOTH_IDS, floats, numbers)
+        data = batched(_BOTH_IDS, floats, numbers)
         lib.cpSpaceEachCachedArbiter(space._space, ffi.addressof(lib, "pmSpaceArbiterIteratorFuncBatched"), data)
         ids = np.frombuffer(ffi.buffer(numbers.arr, 8 * numbers.num), np.int64)
         found: list[int] = (ids[::2] ^ ids[1::2]).tolist()
@@ -167,7 +167,7 @@ def _point(array: Any, items: str, memory: FloatArray | IntArray) -> None:
     array.num, array.max = 0, memory.size
 
 
-def _batched(fields: batch.BodyFields | batch.ArbiterFields, floats: Any, ints: Any) -> Any:
+def batched(fields: batch.BodyFields | batch.ArbiterFields, floats: Any, ints: Any) -> Any:
     """The argument of pymunk's batch functions."""
     data = ffi.new("pmBatchedData *")
     data.fields, data.floatArray, data.intArray = fields.value, floats, ints

@@ -11,7 +11,7 @@ from pymunk._chipmunk_cffi import ffi, lib
 
 OF_LIBRARY = (
     "cpBodyIsSleeping", "cpConstraintGetBodyA", "cpConstraintGetBodyB",
-    "cpBodyGetPosition", "cpBodyGetCenterOfGravity", "cpBodyGetType", "CP_BODY_TYPE_KINEMATIC", "cpBodyGetAngle",
+    "cpBodyGetCenterOfGravity", "cpBodyGetType", "CP_BODY_TYPE_KINEMATIC", "CP_BODY_TYPE_STATIC",
     "cpSpaceGetCurrentTimeStep", "cpSpaceSetCurrentTimeStep",
     "cpConstraintGetMaxForce", "cpConstraintSetMaxForce", "cpConstraintGetErrorBias", "cpConstraintGetMaxBias",
     "cpConstraintGetPreSolveFunc", "cpConstraintSetPreSolveFunc",
@@ -75,20 +75,16 @@ def bounds(constraint: Any) -> tuple[float, float, float]:
     return lib.cpConstraintGetMaxForce(c), lib.cpConstraintGetErrorBias(c), lib.cpConstraintGetMaxBias(c)
 
 
-def motions(bodies: Iterable[pymunk.Body]) -> list[tuple[Any, Any, float]]:
-    """Velocities and spins of the bodies, as `restore_motions` takes them."""
-    return _motions(body._body for body in bodies)
+def motions(pointers: Iterable[Any]) -> list[tuple[Any, Any, float]]:
+    """Velocities and spins of bodies, given as `pointers`, as `restore_motions` takes them."""
+    velocity, spin = lib.cpBodyGetVelocity, lib.cpBodyGetAngularVelocity
+    return [(c, velocity(c), spin(c)) for c in pointers]
 
 
 def motions_of_ends(constraints: Iterable[Any]) -> list[tuple[Any, Any, float]]:
     """The same of the bodies of constraints."""
     a, b, pointers = lib.cpConstraintGetBodyA, lib.cpConstraintGetBodyB, [one._constraint for one in constraints]
-    return _motions({*map(a, pointers), *map(b, pointers)})
-
-
-def _motions(pointers: Iterable[Any]) -> list[tuple[Any, Any, float]]:
-    velocity, spin = lib.cpBodyGetVelocity, lib.cpBodyGetAngularVelocity
-    return [(c, velocity(c), spin(c)) for c in pointers]
+    return motions({*map(a, pointers), *map(b, pointers)})
 
 
 def restore_motions(kept: Iterable[tuple[Any, Any, float]]) -> None:

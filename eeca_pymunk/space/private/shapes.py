@@ -64,12 +64,6 @@ def reindex(space: pymunk.Space, bodies: Iterable[Any]) -> None:
         move(c, body)
 
 
-def reindex_uncorrected(space: pymunk.Space, bodies: Sequence[Any]) -> None:
-    """`forget_corrections`, then `reindex`."""
-    forget_corrections(bodies)
-    reindex(space, bodies)
-
-
 def forget_corrections(bodies: Iterable[Any]) -> None:
     """Clear pymunk's corrections of overlaps of bodies, given as `pointers`. pymunk stores each as a velocity, applies
     it when it moves the body next, and then sets it to 0; a move over dt = 0 therefore only clears it."""

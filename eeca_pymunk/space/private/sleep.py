@@ -42,9 +42,8 @@ def stop_woken(bodies: Iterable[pymunk.Body]) -> Callable[[], None]:
 def unmoved(bodies: Iterable[pymunk.Body]) -> Callable[[], bool]:
     """A function that returns whether all of these bodies still have their present poses, and velocity and spin 0."""
     pointers = [body._body for body in bodies]
-    position, angle, velocity, spin = (
-        lib.cpBodyGetPosition, lib.cpBodyGetAngle, lib.cpBodyGetVelocity, lib.cpBodyGetAngularVelocity,
-    )  # fmt: skip
+    position, angle = lib.cpBodyGetPosition, lib.cpBodyGetAngle
+    velocity, spin = lib.cpBodyGetVelocity, lib.cpBodyGetAngularVelocity
 
     def pose(pointer: Any) -> tuple[float, float, float]:
         p = position(pointer)

@@ -14,6 +14,7 @@ from functools import partial
 from typing import Any
 
 import pymunk
+from pymunk._chipmunk_cffi import ffi, lib
 
 from . import arbiters as private_arbiters
 from . import batch as private_batch
@@ -23,11 +24,6 @@ from . import shapes as private_shapes
 from . import sleep as private_sleep
 from . import versions as private_versions
 from .versions import REQUIRED
-
-try:
-    from pymunk._chipmunk_cffi import ffi, lib
-except ImportError as error:  # pragma: no cover - needs another pymunk
-    raise ImportError(f"pymunk {pymunk.version} has no pymunk._chipmunk_cffi: pip install '{REQUIRED}'") from error
 
 # Functions of a handler, in the order in which pymunk calls them.
 PHASES = ("_begin", "_pre_solve", "_post_solve", "_separate")
@@ -45,8 +41,8 @@ _OF_LIBRARY = (
 CONTENTS = "_add_shape", "_add_body", "_remove_shape", "_remove_body"
 LINKS = "_add_constraint", "_remove_constraint"
 _OF_SPACE = (
-    "_space", "_bodies", "_shapes", "_constraints", "_handlers", "_get_arbiters", "_locked", "_add_later",
-    "_remove_later", "_removed_shapes", "_post_step_callbacks", *CONTENTS, *LINKS,
+    "_space", "_bodies", "_handlers", "_get_arbiters", "_locked", "_add_later", "_remove_later", "_removed_shapes",
+    "_post_step_callbacks", *CONTENTS, *LINKS,
 )  # fmt: skip
 _OF_BODY = ("_body", "_velocity_func", "_position_func")
 _TYPES = (*private_batch.TYPES, *private_arbiters.TYPES)
@@ -99,13 +95,7 @@ def arbiters(space: pymunk.Space) -> list[pymunk.Arbiter]:
 
 def differing_arbiters(space: pymunk.Space) -> list[pymunk.Arbiter]:
     """Those of `arbiters` whose values may differ from those that follow from their shapes."""
-    own = lib.cpShapeGetSensor, lib.cpShapeGetElasticity, lib.cpShapeGetFriction
-    return [pymunk.Arbiter(one, space) for one in space._get_arbiters() if private_versions.may_differ(one, *own)]
-
-
-def decision(arbiter: pymunk.Arbiter) -> tuple[Any, ...]:
-    """The values of an arbiter that functions may change, for comparison."""
-    return private_versions.decision(arbiter._arbiter, lib.cpShapeGetSensor)
+    return [pymunk.Arbiter(one, space) for one in space._get_arbiters() if private_versions.may_differ(one)]
 
 
 def pointers(bodies: Iterable[pymunk.Body]) -> list[Any]:

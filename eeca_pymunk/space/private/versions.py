@@ -19,6 +19,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pymunk
+from pymunk._chipmunk_cffi import lib
 
 REQUIRED = "pymunk>=6.9,<8"
 # Whether functions of handlers decide by their return values.
@@ -52,32 +53,30 @@ def decide(raw: Any, takes_place: bool) -> None:
         raw.processCollision = int(takes_place)
 
 
-def decision(raw: Any, sensor: Callable[[Any], bool]) -> tuple[Any, ...]:
-    """The values of a Chipmunk arbiter that functions may change: whether the collision takes place, whether shapes are
-    sensors, restitution, friction, surface velocity."""
-    surface, takes_place = raw.surface_vr, True if BY_RETURN else raw.processCollision
+def decision(arbiter: pymunk.Arbiter) -> tuple[Any, ...]:
+    """The values of an arbiter that functions may change, for comparison: whether the collision takes place, whether
+    shapes are sensors, restitution, friction, surface velocity."""
+    raw, sensor = arbiter._arbiter, lib.cpShapeGetSensor
+    takes_place, surface = True if BY_RETURN else raw.processCollision, raw.surface_vr
     return takes_place, sensor(raw.a), sensor(raw.b), raw.e, raw.u, surface.x, surface.y
 
 
-def may_differ(
-    raw: Any, sensor: Callable[[Any], bool], elasticity: Callable[[Any], float], friction: Callable[[Any], float]
-) -> bool:  # fmt: skip
-    """Whether values of a Chipmunk arbiter may differ from those that follow from its shapes. The other arguments
-    return these values of a Chipmunk shape. Always true under pymunk 6, whose arbiters lack `processCollision`."""
-    a, b, surface = raw.a, raw.b, raw.surface_vr
-    if BY_RETURN or not raw.processCollision or sensor(a) or sensor(b):
+def may_differ(raw: Any) -> bool:
+    """Whether values of a Chipmunk arbiter may differ from those that follow from its shapes. Always true under
+    pymunk 6, whose arbiters lack `processCollision`."""
+    a, b, surface, elasticity, friction = raw.a, raw.b, raw.surface_vr, lib.cpShapeGetElasticity, lib.cpShapeGetFriction
+    if BY_RETURN or not raw.processCollision or lib.cpShapeGetSensor(a) or lib.cpShapeGetSensor(b):
         return True
     products = raw.e == elasticity(a) * elasticity(b) and raw.u == friction(a) * friction(b)
     return not products or surface.x != 0.0 or surface.y != 0.0
 
 
-def to_return(value: Any, function: Callable[..., Any], phase: str) -> bool | None:
-    """What a wrapper of a handler's function returns to pymunk, if the function has returned `value`.
+def to_return(value: Any, function: Callable[..., Any]) -> bool | None:
+    """What a wrapper of a handler's `begin` or `pre_solve` returns to pymunk, if the function has returned `value`.
 
-    pymunk 7 ignores return values. pymunk 6 expects a bool from `begin` and `pre_solve`; for other values it warns, and
-    the collision takes place.
+    pymunk 7 ignores return values. pymunk 6 expects a bool; for other values it warns, and the collision takes place.
     """
-    if not BY_RETURN or phase not in ("_begin", "_pre_solve"):
+    if not BY_RETURN:
         return None
     if isinstance(value, bool):
         return value
