@@ -315,7 +315,7 @@ MUTATIONS = (
     Mutation("corners: those that come near while the nearest closes do not count", "prediction/axes.py",
              "return bottom - reach, top + reach", "return bottom, top",
              "prediction/test_many_corners.py", "left_out"),
-    Mutation("cycles: rows count as dependent", "joints/redundancy.py",
+    Mutation("cycles: rows count as dependent", "joints/step.py",
              "return not independent", "return True",
              "joints/test_redundancy.py", "which_rows"),
     Mutation("sides: a remembered normal is not used", "geometry/sides.py",

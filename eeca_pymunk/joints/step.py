@@ -16,6 +16,7 @@ from ..model.joint_steps import ELASTIC, HALVED, LINEAR, POSES, SPEEDS, JointLed
 from ..model.joints import (
     APART,
     DEPENDENT,
+    DUAL,
     GIVES_WAY,
     INDEPENDENT,
     LEFT_APART,
@@ -27,16 +28,17 @@ from ..model.joints import (
     Workspace,
 )
 from ..model.parameters.joints import NEARLY_HELD, TAUT
+from ..newton.dual import are_independent, factor_dual
 from ..newton.motion import save
 from ..newton.rows import start_joint
 from ..newton.solve import drop_impulses
+from ..newton.systems import assemble, first_iterate
 from .bounds import closes_on_limit, standing
 from .closing import close_joints, farthest
 from .correct import fitting_loss, project
 from .gains import take_gain
 from .ladder import climb, limit_work
 from .ledger import add_part, clear_ledger
-from .redundancy import rows_depend
 from .start import bounded_targets, compute_rows, read_joints
 from .unheld import step_linearly
 
@@ -70,6 +72,19 @@ def is_taut(W: Workspace, h: float) -> bool:
             if 0.25 * abs(h) * max(turn * W.J.LOCAL[i].mobility[2], per * W.J.LOCAL[i].mobility[0]) > TAUT:
                 return True
     return False
+
+
+@nonallocating
+def rows_depend(W: Workspace) -> bool:
+    """Whether rows that act depend on one another, or nearly so (`..newton.dual.are_independent`), at the present
+    poses. Most cycles of joints, as in linkages and rings, have no redundant row: their impulses are unique, and a step
+    begins with those of the last one."""
+    first_iterate(W, SPEEDS, 2.0)
+    assemble(W, SPEEDS, 2.0, 0.0, True, DUAL, True)
+    independent = factor_dual(W, False, 0.0) and are_independent(W)
+    for k in range(W.joints):
+        W.J.HINGE[k].scale[0] = 0.0  # a step scales rows by its first iterate
+    return not independent
 
 
 @nonallocating
