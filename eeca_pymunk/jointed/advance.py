@@ -10,16 +10,19 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
+from ..joints.workspace import workspace
 from ..model.contacts import Bounded, Columns, Row
 from ..model.islands import Island
+from ..model.joint_steps import STEP
 from ..model.joints import INDEPENDENT, Joints
 from ..model.parameters.joints import ARM_ERROR, ARM_ITERATIONS
 from ..model.scene import Scene
+from ..newton.response import prepare_response
 from ..rows.build import push_contact
 from ..rows.inplace import copy
 from .bounded_rows import fill_rows, let_slip, list_rows, note_rows
 from .columns import fill_group
-from .component import ready_in_step, step_component
+from .component import step_component
 from .gathered import find_places, gather_component, lead_component, rewind_joints
 from .groups import Groups
 
@@ -129,7 +132,7 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
             size = find_places(A, J, s, INDEX)
             let_slip(J, s, True, few)
             first = list_rows(A, J, B, s, h, motion.MEAN)
-            if ready_in_step(J, s, h):
+            if prepare_response(workspace(J, s), STEP, h):
                 PUSH = np.empty((size, 3))
                 fill_group(J, groups, C, g, INDEX, ROWS, m, PUSH, 2)
                 fill_rows(J, groups, B, g, first, INDEX, PUSH)

@@ -12,13 +12,14 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
+from ..joints.workspace import workspace
 from ..model.contacts import Bounded
 from ..model.joints import BOUNDED, PRESCRIBED, Joints
 from ..model.parameters.joints import BOUNDED_SWEEPS, MOTOR_OFF
 from ..model.scene import Scene
 from ..newton.entries import acting_rows, interval_of, is_limit
+from ..newton.response import respond
 from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, bounded_rate, room_for_rows, sweep_bounded, weigh_rows
-from .component import answer
 from .groups import Groups
 
 
@@ -111,7 +112,8 @@ def list_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float, V: FloatArray) 
 
 @nonallocating
 def fill_rows(J: Joints, groups: Groups, B: Bounded, g: int, first: int, INDEX: IntArray, PUSH: FloatArray) -> None:
-    """Compute the columns of the rows of B from `first` on, which are those of group g, whose component is `ready`."""
+    """Compute the columns of the rows of B from `first` on, which are those of group g, whose component is prepared
+    (`..newton.response`)."""
     s = groups.COMPONENT[g]
     for i in range(first, B.USED[0]):
         PUSH[:] = 0.0
@@ -119,7 +121,7 @@ def fill_rows(J: Joints, groups: Groups, B: Bounded, g: int, first: int, INDEX: 
             if B.END[i, end] >= 0:
                 for c in range(3):
                     PUSH[INDEX[B.END[i, end]], c] += B.ROW[i, 3 * end + c]
-        answer(J, s, PUSH)
+        respond(workspace(J, s), PUSH)
         at = B.AT[i]
         for w in range(groups.FIRST[g], groups.FIRST[g + 1]):
             q = groups.BODY[w]

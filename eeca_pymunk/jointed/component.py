@@ -11,12 +11,11 @@ from ..joints.correct import project
 from ..joints.start import springs_of
 from ..joints.step import take_step
 from ..joints.workspace import workspace
-from ..model.joint_steps import POSES, SPEEDS, STEP
+from ..model.joint_steps import POSES, SPEEDS
 from ..model.joints import Joints, Workspace
 from ..model.parameters.joints import COMPONENT_WORK, COMPONENT_WORK_BODY, CORRECTION_JOINTS
 from ..model.scene import Scene
 from ..newton.entries import acts
-from ..newton.response import prepare_response, respond
 from ..newton.rows import unit_of
 from .gathered import gather_component, number_of
 
@@ -105,24 +104,3 @@ def close_at_poses(
         if passed != 0 and passed != link.side:
             return math.inf
     return stored
-
-
-@nonallocating
-def ready_in_step(J: Joints, s: int, h: float) -> bool:
-    """Prepare the response of component s to impulses over the step h that `step_component` has just taken: the scratch
-    is at its start again. False if there is none."""
-    return prepare_response(workspace(J, s), STEP, h)
-
-
-@nonallocating
-def ready_at_poses(J: Joints, s: int) -> bool:
-    """Prepare the response of component s to impulses at the instant and the poses that `gather_component` has put into
-    the scratch. False if there is none."""
-    return prepare_response(workspace(J, s), SPEEDS, 2.0)
-
-
-@nonallocating
-def answer(J: Joints, s: int, PUSH: FloatArray) -> None:
-    """Replace the impulses PUSH (bodies of the component, 3) by the changes of velocity that they cause in component s,
-    which `ready_in_step` or `ready_at_poses` has prepared."""
-    respond(workspace(J, s), PUSH)

@@ -13,18 +13,21 @@ from ..contacts.correction import admissible, least_of, turn_by, unturn
 from ..contacts.works import work_of_forces
 from ..islands.depths import left_to_lift
 from ..islands.payment import payment
+from ..joints.workspace import workspace
 from ..model.contacts import Columns, JointedProblem, Row
+from ..model.joint_steps import SPEEDS
 from ..model.joints import Joints
 from ..model.parameters.intervals import CORRECTION_ROUND_OFF
 from ..model.parameters.joints import JOINTED_CORRECTION_SWEEPS
 from ..model.scene import Scene
+from ..newton.response import prepare_response
 from ..rows.bounded import room_for_rows
 from ..rows.build import normal_rate
 from ..rows.inplace import copy
 from ..rows.lifting import lift_above_walls
 from .advance import Interval
 from .columns import fill_group, set_effective_masses
-from .component import close_at_poses, ready_at_poses
+from .component import close_at_poses
 from .gathered import find_places, gather_component
 from .groups import is_free
 
@@ -50,7 +53,7 @@ def fill_at_end(
     isle, motion, s = interval.isle, interval.motion, interval.groups.COMPONENT[g]
     gather_component(A, J, s, motion.END, motion.V, np.zeros_like(isle.V), isle.IM, isle.II, end, interval.h)
     size = find_places(A, J, s, INDEX)
-    if not ready_at_poses(J, s):
+    if not prepare_response(workspace(J, s), SPEEDS, 2.0):
         return False
     fill_group(J, interval.groups, C, g, INDEX, ROWS, m, np.empty((size, 3)), 1)
     return True
