@@ -24,7 +24,7 @@ from .lifting import fill_at_end, raise_gaps
 
 
 @kernel
-def project_velocities(A: Scene, J: Joints, interval: Interval, L: FloatArray, end: float, scale: float) -> FloatArray:
+def project_velocities(A: Scene, J: Joints, interval: Interval, L: FloatArray, scale: float) -> FloatArray:
     """Project the velocities at the end of a lossy interval onto the joints of the components that contacts push.
 
     Bodies that land have velocities there which violate joints. The midpoint rule would change the sign of this
@@ -35,7 +35,7 @@ def project_velocities(A: Scene, J: Joints, interval: Interval, L: FloatArray, e
     Returns:
         (m,) normal impulses that keep contacts from closing, which are in the ledger.
     """
-    isle, groups, ROWS, m, motion = interval.isle, interval.groups, interval.ROWS, interval.m, interval.motion
+    isle, groups, ROWS, motion, _, m, _, t, h, _ = interval
     NOTHING = np.zeros_like(isle.V)
     PUSHED = np.zeros(len(groups.COMPONENT) + 1, np.int64)  # one more, for GROUP -1
     for i in range(m):
@@ -51,7 +51,7 @@ def project_velocities(A: Scene, J: Joints, interval: Interval, L: FloatArray, e
         if PUSHED[g + 1] == 0 or C.bounded_joints == C.end_joint - C.first_joint:
             continue
         payer = s if payer < 0 else payer
-        length = gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, end, interval.h)
+        length = gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, t + h, h)
         fit_speeds(J, s, length)
         J.STEPPED[s].projected += fitting_loss(workspace(J, s), J.STEPPED[s])
         for w in range(C.end_body - C.first_body):
@@ -68,14 +68,12 @@ def project_velocities(A: Scene, J: Joints, interval: Interval, L: FloatArray, e
             pushing += 1
             fastest = max(fastest, -normal_rate(ROWS[i], motion.V))
     if fastest > FIT_CLOSING * scale:
-        return stop_closing(A, J, interval, end, PUSHING[:pushing], FIT_RESIDUAL * fastest, payer)
+        return stop_closing(A, J, interval, PUSHING[:pushing], FIT_RESIDUAL * fastest, payer)
     return np.zeros(m)
 
 
 @kernel
-def stop_closing(
-    A: Scene, J: Joints, interval: Interval, end: float, PUSHING: IntArray, fine: float, payer: int
-) -> FloatArray:
+def stop_closing(A: Scene, J: Joints, interval: Interval, PUSHING: IntArray, fine: float, payer: int) -> FloatArray:
     """Normal impulses mu (m,), 0 <= mu _|_ u + G S G^T mu >= 0, on the contacts PUSHING, whose rates are u, with S the
     response of components at one instant: velocities that fit the joints still do, and contacts do not close. Energy
     changes by mu.(u + G S G^T mu / 2) <= 0, also if sweeps end early. Component `payer` has the loss in its ledger."""
@@ -92,7 +90,7 @@ def stop_closing(
         s = groups.COMPONENT[g]
         if s < 0 or HIT[g] == 0:
             continue
-        if not fill_at_end(A, J, interval, C, g, INDEX, KEEP, pushing, end):
+        if not fill_at_end(A, J, interval, C, g, INDEX, KEEP, pushing):
             return np.zeros(m)
     set_effective_masses(groups, C, KEEP, pushing)
     RATES = np.empty(pushing)

@@ -30,6 +30,7 @@ from .columns import fill_group, set_effective_masses
 from .component import close_at_poses
 from .gathered import find_places, gather_component
 from .groups import is_free
+from .losses import lost
 
 
 @kernel
@@ -46,12 +47,13 @@ def raise_gaps(
 
 @kernel
 def fill_at_end(
-    A: Scene, J: Joints, interval: Interval, C: Columns, g: int, INDEX: IntArray, ROWS: Rows[Row], m: int, end: float
+    A: Scene, J: Joints, interval: Interval, C: Columns, g: int, INDEX: IntArray, ROWS: Rows[Row], m: int
 ) -> bool:  # fmt: skip
     """Compute the columns C of the normal impulses of m contacts on group g, a component, at the poses and the instant
     at the end of an interval; False if there is no response. INDEX (k,): scratch."""
     isle, motion, s = interval.isle, interval.motion, interval.groups.COMPONENT[g]
-    gather_component(A, J, s, motion.END, motion.V, np.zeros_like(isle.V), isle.IM, isle.II, end, interval.h)
+    t, h = interval.t, interval.h
+    gather_component(A, J, s, motion.END, motion.V, np.zeros_like(isle.V), isle.IM, isle.II, t + h, h)
     size = find_places(A, J, s, INDEX)
     if not prepare_response(workspace(J, s), SPEEDS, 2.0):
         return False
@@ -60,14 +62,12 @@ def fill_at_end(
 
 
 @kernel
-def lift_island(
-    A: Scene, J: Joints, interval: Interval, L: FloatArray, root: int, end: float, lost: float
-) -> None:  # fmt: skip
-    """Correct penetration at the end of an island's motion under impulses L (m, 2) of its contacts, which have `lost`
-    energy in it."""
+def lift_island(A: Scene, J: Joints, interval: Interval, L: FloatArray, root: int) -> None:
+    """Correct penetration at the end of an island's motion under impulses L (m, 2) of its contacts."""
     isle, groups, ROWS, motion, _, m, n, _, _, _ = interval
-    budget, payable = payment(A, isle, ROWS, L, motion.V, n, m, lost, A.RESTING[root].lost, False, True)
-    spent = correct_overlaps(A, J, interval, end, budget)
+    loss = lost(interval, L)
+    budget, payable = payment(A, isle, ROWS, L, motion.V, n, m, loss, A.RESTING[root].lost, False, True)
+    spent = correct_overlaps(A, J, interval, budget)
     paid, one = min(spent, payable), J.STEPPED[groups.JOINTED[0]]
     one.lifted += paid
     one.supports += spent - paid
@@ -86,7 +86,7 @@ def keep_centre(D: FloatArray, IM: FloatArray, n: int) -> None:
 
 
 @kernel
-def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget: float) -> float:
+def correct_overlaps(A: Scene, J: Joints, interval: Interval, budget: float) -> float:
     """Move the poses at the end of an island's motion out of each other, at a cost of at most `budget`, not at all if
     that is below 0; returns the cost.
 
@@ -94,14 +94,14 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget
     errors of second order are then closed. A free island keeps its centre of mass and its angular momentum: velocities
     at the end rotate by what the displacements have changed of it.
     """
-    isle, groups, ROWS, motion, C, m, n, _, h, _ = interval
+    isle, groups, ROWS, motion, C, m, n, t, h, _ = interval
     V, WAY, END = motion.V, motion.WAY, motion.END
     GAPS, deepest = np.empty(m), 0.0
     for i in range(m):
         GAPS[i] = ROWS[i].gap + normal_rate(ROWS[i], WAY)
         deepest = min(deepest, GAPS[i])
     size = least_of(isle.EXTENT, n)
-    if deepest >= -left_to_lift(A, end) * size or not budget >= 0.0:
+    if deepest >= -left_to_lift(A, t + h) * size or not budget >= 0.0:
         return 0.0
     INDEX = np.full(len(isle.IM), -1, np.int64)
     for g in range(len(groups.COMPONENT)):
@@ -109,7 +109,7 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget
         # The columns of the interval, in which stiff springs resist, so that D hardly strains them; but bounded rows
         # prescribe speeds at its end.
         if s >= 0 and J.COMPONENT[s].bounded_joints > 0:
-            fill_at_end(A, J, interval, C, g, INDEX, ROWS, m, end)
+            fill_at_end(A, J, interval, C, g, INDEX, ROWS, m)
     KEEP = ROWS[:m].copy()
     set_effective_masses(groups, C, KEEP, m)
     D = np.zeros_like(V)
@@ -134,7 +134,7 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget
                 for c in range(3):
                     moves = max(moves, abs(D[groups.BODY[w], c]))
             if s >= 0 and moves > 0.0:
-                STORED[g] = close_at_poses(A, J, s, END, NEW, V, isle.IM, isle.II, end, h)
+                STORED[g] = close_at_poses(A, J, s, END, NEW, V, isle.IM, isle.II, t + h, h)
                 spent += STORED[g]
         spent -= work_of_forces(isle.ACC, isle.IM, isle.II, n, NEW - END)
         turn, x, y, spin, inertia = unturn(NEW, NEW - END, V, isle.IM, isle.II, ALL, 0.0)

@@ -35,7 +35,7 @@ from .groups import find_groups
 from .ledger import has_work_for, work_left
 from .lengths import excess, forced_deeper, too_deep_on_way, within_sagitta
 from .lifting import lift_island
-from .losses import lost, slip_of
+from .losses import slip_of
 from .press import GIVEN_UP, SOLVED, solve_contacts
 from .press_laws import few_act
 from .rest import rest_if_still
@@ -211,8 +211,8 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     # Corrected at the end of the interval: within a short one, paths would be steep.
     WHERE, HELD = motion.END.copy(), np.zeros(m)
     if not conserves(ROWS, m):
-        lift_island(A, J, interval, L, root, t + h, lost(interval, L))
-        HELD = project_velocities(A, J, interval, L, t + h, slow + pull * h)
+        lift_island(A, J, interval, L, root)
+        HELD = project_velocities(A, J, interval, L, slow + pull * h)
     local.clear_places(A, MINE)
     first = COUNT.pushes
     local.open_interval(A, root, isle, contacts, motion.V, m, t, h)
