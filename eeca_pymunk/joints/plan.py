@@ -30,17 +30,11 @@ def root(parent: IntArray, i: int) -> int:
 
 
 @kernel
-def find_components(
-    bodies: Rows[Body], joint: Rows[Joint], parent: IntArray, component_of: IntArray, joints: int
-) -> int:
-    """Number the components in the order of their first joints; how many there are.
-
-    Out: `parent` (bodies,), a forest as of `root`, and component_of (joints,), -1 for a joint that moves none of its
-    bodies.
-    """
-    for i in range(len(parent)):
-        parent[i] = i
-    for j in range(joints):
+def find_components(bodies: Rows[Body], joint: Rows[Joint]) -> tuple[int, IntArray]:
+    """Number the components in the order of their first joints: how many there are, and (joints,) that of each joint,
+    -1 if it moves none of its bodies."""
+    parent, component_of = np.arange(len(bodies)), np.empty(len(joint), np.int64)
+    for j in range(len(joint)):
         a, b = joint[j].body[0], joint[j].body[1]
         if movable(bodies, a) and movable(bodies, b) and moves_body(bodies, joint[j]):
             p, q = root(parent, a), root(parent, b)
@@ -48,7 +42,7 @@ def find_components(
                 parent[max(p, q)] = min(p, q)
     number = np.full(len(parent), -1, np.int64)
     count = 0
-    for j in range(joints):
+    for j in range(len(joint)):
         a, b = joint[j].body[0], joint[j].body[1]
         component_of[j] = -1
         if moves_body(bodies, joint[j]):
@@ -57,7 +51,7 @@ def find_components(
                 number[top] = count
                 count += 1
             component_of[j] = number[top]
-    return count
+    return count, component_of
 
 
 @kernel
@@ -76,11 +70,12 @@ def moves_body(bodies: Rows[Body], joint: Joint) -> bool:
 
 
 @kernel
-def find_turning(bodies: Rows[Body], joint: Rows[Joint], joints: int, turns: IntArray, cayley: IntArray) -> None:
-    """Set turns (bodies,) to 1 for bodies that joints turn, and cayley (bodies,) to 1 for those of them that turn by 2
-    atan(chi/2) (`..model.joint_steps.BodyStep`): bodies held off their centre, and bodies whose angle a joint binds to
-    such a body's. Both arrays are 0 before."""
-    for j in range(joints):
+def find_turning(bodies: Rows[Body], joint: Rows[Joint]) -> tuple[IntArray, IntArray]:
+    """(bodies,) 1 for bodies that joints turn, and (bodies,) 1 for those of them that turn by 2 atan(chi/2)
+    (`..model.joint_steps.BodyStep`): bodies held off their centre, and bodies whose angle a joint binds to such a
+    body's; else 0."""
+    turns, cayley = np.zeros(len(bodies), np.int64), np.zeros(len(bodies), np.int64)
+    for j in range(len(joint)):
         a, b, kind = joint[j].body[0], joint[j].body[1], joint[j].kind
         off_a = kind == GROOVE or (kind < GEAR and (joint[j].anchor_a[0] != 0.0 or joint[j].anchor_a[1] != 0.0))
         off_b = kind < GEAR and (joint[j].anchor_b[0] != 0.0 or joint[j].anchor_b[1] != 0.0)
@@ -93,11 +88,12 @@ def find_turning(bodies: Rows[Body], joint: Rows[Joint], joints: int, turns: Int
     changed = True
     while changed:
         changed = False
-        for j in range(joints):
+        for j in range(len(joint)):
             a, b = joint[j].body[0], joint[j].body[1]
             if joint[j].kind >= GEAR and turns[a] == 1 and turns[b] == 1 and cayley[a] != cayley[b]:
                 cayley[a] = cayley[b] = 1
                 changed = True
+    return turns, cayley
 
 
 @kernel
@@ -145,10 +141,8 @@ def make_plan(
     """Fill in `component` (joints,), `member` (2 joints,), `link` (joints,), and OF (n,), which is -1, the component of
     each body that joints may move; how many components there are."""
     joints = len(joint)
-    parent, component_of = np.empty(len(bodies), np.int64), np.empty(joints, np.int64)
-    count = find_components(bodies, joint, parent, component_of, joints)
-    turns, cayley = np.zeros(len(bodies), np.int64), np.zeros(len(bodies), np.int64)
-    find_turning(bodies, joint, joints, turns, cayley)
+    count, component_of = find_components(bodies, joint)
+    turns, cayley = find_turning(bodies, joint)
     room = np.zeros(count + 1, np.int64)
     for j in range(joints):
         if component_of[j] >= 0:
