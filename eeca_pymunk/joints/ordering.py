@@ -12,12 +12,11 @@ from ..rows.dissection import neighbours
 
 
 @kernel
-def order_nodes(start: IntArray, near: IntArray, nodes: int, order: IntArray) -> None:
-    """Write the reverse Cuthill-McKee order of a graph to `order` (nodes,), from a node far out, ties by number.
-
-    Args:
-        start, near: of `..rows.dissection.neighbours`.
-    """
+def order_nodes(start: IntArray, near: IntArray) -> IntArray:
+    """The reverse Cuthill-McKee order (nodes,) of a graph (`..rows.dissection.neighbours`), from a node far out, ties
+    by number."""
+    nodes = len(start) - 1
+    order = np.empty(nodes, np.int64)
     level = np.empty(nodes, np.int64)
     placed = np.zeros(nodes, np.int64)
     count = 0
@@ -53,9 +52,8 @@ def order_nodes(start: IntArray, near: IntArray, nodes: int, order: IntArray) ->
             else:
                 first = order[tail - 1]
     for x in range(nodes // 2):
-        keep = order[x]
-        order[x] = order[nodes - 1 - x]
-        order[nodes - 1 - x] = keep
+        order[x], order[nodes - 1 - x] = order[nodes - 1 - x], order[x]
+    return order
 
 
 @kernel
@@ -86,8 +84,7 @@ def order_unknowns(
                 EDGE[edges, 0], EDGE[edges, 1] = u, v
                 edges += 1
     start, near = neighbours(EDGE, edges, nodes)
-    order = np.empty(nodes, np.int64)
-    order_nodes(start, near, nodes, order)
+    order = order_nodes(start, near)
     first = np.zeros(bodies + joints, np.int64)
     total = 0
     for x in range(nodes):
@@ -140,8 +137,7 @@ def order_rows(component: Rows[Component], member: Rows[ComponentBody], link: Ro
                     other = link[j0 + (other >> 1)].following[other & 1]
                 one = link[j0 + (one >> 1)].following[one & 1]
     start, near = neighbours(EDGE, edges, joints)
-    order = np.empty(joints, np.int64)
-    order_nodes(start, near, joints, order)
+    order = order_nodes(start, near)
     total, band = 0, 1
     for x in range(joints):
         link[j0 + order[x]].first_dual = total
