@@ -12,7 +12,7 @@ from ..newton.entries import acts
 from ..newton.motion import go_back, save
 from ..newton.rows import joint_rows, shared_part, shares_point
 from .bounds import hold_passed, limit_gap, passed_side
-from .correct import KEPT, NOW, fitting_loss, kinetic_of, kinetic_of_change, project, restore_speeds, speeds_fit
+from .correct import CHANGE, KEPT, NOW, fitting_loss, kinetic_of, project, restore_speeds, speeds_fit
 from .frame import move_apart, work_of_shift
 from .lock import lock_energy
 from .start import closing_share, compute_rows, springs_of
@@ -154,7 +154,7 @@ def fit_speeds(W: Workspace, left: float) -> bool:
     if speeds_fit(W):
         return False
     project(W, SPEEDS)
-    if kinetic_of_change(W) <= left * kinetic_of(W, KEPT):
+    if kinetic_of(W, CHANGE) <= left * kinetic_of(W, KEPT):
         restore_speeds(W)
         return False
     return True
