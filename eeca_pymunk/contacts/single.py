@@ -8,24 +8,11 @@ from __future__ import annotations
 import math
 
 from ..compiled import inlined, nonallocating
-from ..compiled.records import Rows
 from ..geometry.flight import move_to, pose
 from ..geometry.gap import gap, gap_at, gap_round_off
-from ..model.bodies import Body
 from ..model.contacts import Impulse
 from ..model.scene import Scene
 from ..pairs.rules import barred, far_apart, law
-
-
-@nonallocating
-def kinetic(BODY: Rows[Body], i: int) -> float:
-    """Kinetic energy of body i; 0 for bodies that impulses do not move."""
-    if BODY[i].inv_mass == 0.0:
-        return 0.0
-    vx, vy, spin = BODY[i].vx, BODY[i].vy, BODY[i].spin
-    return 0.5 * (vx * vx + vy * vy) / BODY[i].inv_mass + (
-        0.5 * spin * spin / BODY[i].inv_inertia if BODY[i].inv_inertia > 0.0 else 0.0
-    )
 
 
 @nonallocating
@@ -67,7 +54,7 @@ def alone(A: Scene, i: int, other: int, t: float) -> bool:
 
 
 @nonallocating
-def note(
+def log_impulse(
     row: Impulse, a: int, b: int, t: float, lam: float, beta: float, nx: float, ny: float, px: float, py: float,
     change: float, gap: float,
 ) -> None:  # fmt: skip
@@ -133,5 +120,5 @@ def strike_disk(A: Scene, i: int, o: int, t: float) -> None:
         A.STATE[j].version += 1
         A.STATE[j].events += 1
     PAR.restitution += 0.5 * lam * (1.0 - e) * max(-u, 0.0)
-    note(A.LOG[A.COUNT.logged], i, o, t, lam, beta, nx, ny, px, py, lam * free, math.nan)
+    log_impulse(A.LOG[A.COUNT.logged], i, o, t, lam, beta, nx, ny, px, py, lam * free, math.nan)
     A.COUNT.logged += 1
