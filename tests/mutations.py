@@ -264,7 +264,7 @@ MUTATIONS = (
     Mutation("homotopies: slip against the friction", "rows/pivots.py", "-1.0 if slides > 0.0 else 1.0",
              "1.0 if slides > 0.0 else -1.0", "rows/test_homotopy.py", "without_impulses"),
     Mutation("homotopies: a state left by the side it was entered", "rows/homotopy.py",
-             "way = 1.0 if margin(tableau, m, changed, number, 1) > 0.0 else -1.0", "way = -1.0",
+             "sense = 1.0 if margin(tableau, m, changed, number, 1) > 0.0 else -1.0", "sense = -1.0",
              "rows/test_homotopy.py", "without_impulses"),
     Mutation("joints: what presses is taut", "joints/step.py", "turn = -(rax", "turn = (rax",
              "jointed/test_taut.py", "pulls_hard"),

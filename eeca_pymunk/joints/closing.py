@@ -130,7 +130,7 @@ def close_joints(W: Workspace, h: float, ledger: JointLedger) -> bool:
         turned = work_of_shift(W) if own else 0.0
         # Closing what a step left apart is paid from the motion.
         locked = lock_energy(W, cost - turned, ledger) if own and cost > turned else 0.0
-        # Contradictory rows are not closed.
+        # Rows that contradict one another are not closed, nor those whose closing the motion cannot pay.
         if not farthest(W) <= before or (own and locked < cost - turned - 1e-9 * abs(cost)):
             go_back(W)
             compute_rows(W)

@@ -108,7 +108,7 @@ def write_joints(W: Workspace, h: float, loose: int) -> None:
             tooth, phase = joint[j].tooth, joint[j].tooth_phase
             turned = local[link[k].body[1]].pose[2] - local[link[k].body[0]].pose[2]
             notch = np.floor((turned - phase) / tooth) * tooth + phase
-            if (notch - joint[j].notch) * tooth > 1e-12 * tooth * tooth:
+            if (notch - joint[j].notch) * tooth > 1e-12 * tooth * tooth:  # farther on, by more than round-off
                 joint[j].notch = notch
                 joint[j].side = 0
 
