@@ -34,11 +34,9 @@ from .losses import lost
 
 
 @kernel
-def raise_gaps(
-    problem: JointedProblem, n: int, GAPS: FloatArray, D: FloatArray, tolerance: float
-) -> FloatArray:  # fmt: skip
-    """Displacements D (k, 3) = Y mu with 0 <= mu _|_ g + G D >= 0, for contacts that are not left out; returns mu
-    (m,)."""
+def raise_gaps(problem: JointedProblem, n: int, GAPS: FloatArray, D: FloatArray, tolerance: float) -> FloatArray:
+    """Displacements D (k, 3) = Y mu with 0 <= mu _|_ g + G D >= 0, for contacts that are not left out, whose GAPS
+    (m,) become infinite; returns mu (m,)."""
     for i in range(problem.m):
         if problem.C.LEFT_OUT[i] != 0:
             GAPS[i] = np.inf

@@ -40,9 +40,7 @@ GIVEN_UP, UNSOLVED, SOLVED = -1, 0, 1  # what becomes of the contacts of an inte
 
 
 @kernel
-def solve_gently(
-    A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, free: bool, quick: float
-) -> None:  # fmt: skip
+def solve_gently(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, free: bool, quick: float) -> None:
     """Impulses L (m, 2) by sweeps that begin at 0, about the motion without impulses; none if these are excessive for
     bodies of the speed `quick`; and the motion under them."""
     isle, groups, ROWS, _, C, m, n, _, _, _ = interval

@@ -6,7 +6,7 @@ from __future__ import annotations
 from ..arrays import FloatArray, IntArray
 from ..compiled import nonallocating
 from ..compiled.records import Rows
-from ..model.contacts import Edge, Row
+from ..model.contacts import Edge, Problem, Row
 from .build import push_contact
 
 
@@ -44,12 +44,11 @@ def cone_edges(
 
 
 @nonallocating
-def add_impulses(
-    G: Rows[Row], EDGE: Rows[Edge], steps: bool, K: int, IM: FloatArray, II: FloatArray, V: FloatArray
-) -> None:
-    """Add M^-1 sum g x over all K edges to the velocities V (k, 3); with dx in place of x if `steps`."""
-    for e in range(K):
-        push_contact(G[e], IM, II, EDGE[e].dx if steps else EDGE[e].x, 0.0, V)
+def add_impulses(edges: Problem, EDGE: Rows[Edge], steps: bool, V: FloatArray) -> None:
+    """Add M^-1 sum g x over all edges, the rows of `edges`, to the velocities V (k, 3); with dx in place of x if
+    `steps`."""
+    for e in range(edges.m):
+        push_contact(edges.ROWS[e], edges.IM, edges.II, EDGE[e].dx if steps else EDGE[e].x, 0.0, V)
 
 
 @nonallocating

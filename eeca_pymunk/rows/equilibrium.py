@@ -28,7 +28,7 @@ from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, zeros
 from ..model.contacts import EDGE as EDGE_KIND
-from ..model.contacts import ROW, Edge, Problem, Row
+from ..model.contacts import ROW, Edge, Problem
 from ..model.parameters.impulses import PROXIMAL_STATICS
 from ..model.parameters.rest import STATICS_START, STATICS_STEP, STATICS_SUM
 from .build import normal_rate
@@ -103,7 +103,7 @@ def newton_step(
         product = x * s - centre + (EDGE[e].dx * EDGE[e].ds if second else 0.0)
         EDGE[e].ds = product
         EDGE[e].dx = G[e].k_n * (dual + product / x)
-    add_impulses(G, EDGE, True, K, edges.IM, edges.II, V)
+    add_impulses(edges, EDGE, True, V)
     for i in range(n):
         for c in range(3):
             f[place[i], c] = PROXIMAL_STATICS * (V[i, c] - LEFT[i, c]) / SCALE[i, c] if SCALE[i, c] > 0.0 else 0.0
@@ -150,15 +150,12 @@ def update_iterate(EDGE: Rows[Edge], K: int, Y: FloatArray, DY: FloatArray, prim
 
 
 @nonallocating
-def leave(
-    G: Rows[Row], EDGE: Rows[Edge], K: int, IM: FloatArray, II: FloatArray, START: FloatArray, EXTENT: FloatArray,
-    n: int, LEFT: FloatArray,
-) -> float:  # fmt: skip
-    """Set LEFT (k, 3), the velocities that the impulses x of the K edges leave of START; the speed of the fastest point
-    of the first n bodies."""
+def leave(edges: Problem, EDGE: Rows[Edge], START: FloatArray, EXTENT: FloatArray, LEFT: FloatArray) -> float:
+    """Set LEFT (k, 3), the velocities that the impulses x of the edges leave of START; the speed of the fastest point
+    of the bodies that impulses move."""
     copy(LEFT, START)
-    add_impulses(G, EDGE, False, K, IM, II, LEFT)
-    return fastest_point(LEFT, EXTENT, n)
+    add_impulses(edges, EDGE, False, LEFT)
+    return fastest_point(LEFT, EXTENT, edges.n)
 
 
 @nonallocating
@@ -205,16 +202,16 @@ def equilibrium(
     k = len(IM)
     OF, G, EDGE = np.empty(2 * m, np.int64), zeros(2 * m, ROW), zeros(2 * m, EDGE_KIND)
     K = cone_edges(problem.ROWS, L, IM, II, m, OF, G, EDGE)
+    edges = Problem(G, IM, II, problem.POSE, n, K)
     LEFT, Y, DY, V, f = np.empty((k, 3)), np.zeros((k, 3)), np.zeros((k, 3)), np.empty((k, 3)), np.empty((n, 3))
     if K == 0:
         return fastest_point(START, EXTENT, n) <= tolerance, 0  # without contacts START is that motion
-    speed = leave(G, EDGE, K, IM, II, START, EXTENT, n, LEFT)
+    speed = leave(edges, EDGE, START, EXTENT, LEFT)
     if speed <= tolerance:  # the guess balances
         impulses_of(problem.ROWS, EDGE, OF, K, L, m)
         return True, 0
     held, stuck = np.ones(K, np.int64), np.zeros(K, np.int64)
     SCALE, factor = roots_of(IM, II), make_factor(G, K, n, held, problem.POSE)
-    problem_of_edges = Problem(G, IM, II, problem.POSE, n, K)
     most_impulse = STATICS_SUM * n * sum_of_momenta(START, IM, II, EXTENT, n)
     free = True
     for done in range(most + 1):
@@ -224,14 +221,14 @@ def equilibrium(
         centre = mean_product(EDGE, K, 0.0, 0.0)
         if done == most or not (speed < np.inf and (centre > 0.0 or free)):
             break
-        if done > 1 and needs_more(problem_of_edges, START, Y, most_impulse):
+        if done > 1 and needs_more(edges, START, Y, most_impulse):
             break
         if done == 0 or not free:
             for e in range(K):
                 G[e].k_n = 1.0 / (EDGE[e].a_gg + (0.0 if free else EDGE[e].s / EDGE[e].x))
             assemble_blocks(G, K, n, held, stuck, SCALE, PROXIMAL_STATICS, factor)
             factor_blocks(n, factor)
-        newton_step(problem_of_edges, EDGE, SCALE, factor, LEFT, Y, f, V, DY, 0.0, False)
+        newton_step(edges, EDGE, SCALE, factor, LEFT, Y, f, V, DY, 0.0, False)
         if free:
             # Without regard to the cones, the nearest balancing impulses need one linear solve: often they are inside.
             free = moves_into_cones(EDGE, K)
@@ -240,8 +237,8 @@ def equilibrium(
                     Y[i, c] += DY[i, c]
         else:
             reduced = mean_product(EDGE, K, step_length(EDGE, K, False), step_length(EDGE, K, True)) / centre
-            newton_step(problem_of_edges, EDGE, SCALE, factor, LEFT, Y, f, V, DY, centre * reduced**3, True)
+            newton_step(edges, EDGE, SCALE, factor, LEFT, Y, f, V, DY, centre * reduced**3, True)
             update_iterate(EDGE, K, Y, DY, step_length(EDGE, K, False), step_length(EDGE, K, True))
-        speed = leave(G, EDGE, K, IM, II, START, EXTENT, n, LEFT)
+        speed = leave(edges, EDGE, START, EXTENT, LEFT)
     copy(START, Y)
     return False, done
