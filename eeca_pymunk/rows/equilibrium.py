@@ -32,7 +32,7 @@ from ..model.contacts import ROW, Edge, Problem
 from ..model.parameters.impulses import PROXIMAL_STATICS
 from ..model.parameters.rest import STATICS_START, STATICS_STEP, STATICS_SUM
 from .build import normal_rate
-from .cholesky import Factor, assemble_blocks, factor_blocks, make_factor, roots_of, solve_blocks
+from .cholesky import Factor, assemble_blocks, factor_blocks, make_factor, solve_blocks
 from .cones import add_impulses, cone_edges, impulses_of
 from .inplace import copy
 
@@ -77,8 +77,8 @@ def moves_into_cones(EDGE: Rows[Edge], K: int) -> bool:
 
 @nonallocating
 def newton_step(
-    edges: Problem, EDGE: Rows[Edge], SCALE: FloatArray, factor: Factor, LEFT: FloatArray, Y: FloatArray, f: FloatArray,
-    V: FloatArray, DY: FloatArray, centre: float, second: bool,
+    edges: Problem, EDGE: Rows[Edge], factor: Factor, LEFT: FloatArray, Y: FloatArray, f: FloatArray, V: FloatArray,
+    DY: FloatArray, centre: float, second: bool,
 ) -> None:  # fmt: skip
     """Newton's step dx, ds (fields of EDGE) and DY of
 
@@ -88,11 +88,11 @@ def newton_step(
     subtracts the product dx ds of the predictor from x s.
 
     Args:
-        edges: rows of the edges, with k_n = Theta.  SCALE: (k, 3) roots of the inverse masses, the scale of
-            the factor.  LEFT: (k, 3) velocities that the impulses x leave.  Y, DY: (k, 3) multipliers, and their step.
+        edges: rows of the edges, with k_n = Theta.  LEFT: (k, 3) velocities that the impulses x leave.
+        Y, DY: (k, 3) multipliers, and their step.
         f, V: (n, 3) and (k, 3), scratch.
     """
-    G, K, n, place = edges.ROWS, edges.m, edges.n, factor.place
+    G, K, n, place, SCALE = edges.ROWS, edges.m, edges.n, factor.place, factor.SCALE
     V[:] = 0.0
     for e in range(K):
         x, s = EDGE[e].x, EDGE[e].s
@@ -107,7 +107,7 @@ def newton_step(
     for i in range(n):
         for c in range(3):
             f[place[i], c] = PROXIMAL_STATICS * (V[i, c] - LEFT[i, c]) / SCALE[i, c] if SCALE[i, c] > 0.0 else 0.0
-    solve_blocks(n, factor, f)
+    solve_blocks(factor, f)
     for i in range(n):
         for c in range(3):
             DY[i, c] = SCALE[i, c] * f[place[i], c]
@@ -211,7 +211,7 @@ def equilibrium(
         impulses_of(problem.ROWS, EDGE, OF, K, L, m)
         return True, 0
     held, stuck = np.ones(K, np.int64), np.zeros(K, np.int64)
-    SCALE, factor = roots_of(IM, II), make_factor(G, K, n, held, problem.POSE)
+    factor = make_factor(edges, held)
     most_impulse = STATICS_SUM * n * sum_of_momenta(START, IM, II, EXTENT, n)
     free = True
     for done in range(most + 1):
@@ -226,9 +226,9 @@ def equilibrium(
         if done == 0 or not free:
             for e in range(K):
                 G[e].k_n = 1.0 / (EDGE[e].a_gg + (0.0 if free else EDGE[e].s / EDGE[e].x))
-            assemble_blocks(G, K, n, held, stuck, SCALE, PROXIMAL_STATICS, factor)
-            factor_blocks(n, factor)
-        newton_step(edges, EDGE, SCALE, factor, LEFT, Y, f, V, DY, 0.0, False)
+            assemble_blocks(edges, held, stuck, PROXIMAL_STATICS, factor)
+            factor_blocks(factor)
+        newton_step(edges, EDGE, factor, LEFT, Y, f, V, DY, 0.0, False)
         if free:
             # Without regard to the cones, the nearest balancing impulses need one linear solve: often they are inside.
             free = moves_into_cones(EDGE, K)
@@ -237,7 +237,7 @@ def equilibrium(
                     Y[i, c] += DY[i, c]
         else:
             reduced = mean_product(EDGE, K, step_length(EDGE, K, False), step_length(EDGE, K, True)) / centre
-            newton_step(edges, EDGE, SCALE, factor, LEFT, Y, f, V, DY, centre * reduced**3, True)
+            newton_step(edges, EDGE, factor, LEFT, Y, f, V, DY, centre * reduced**3, True)
             update_iterate(EDGE, K, Y, DY, step_length(EDGE, K, False), step_length(EDGE, K, True))
         speed = leave(edges, EDGE, START, EXTENT, LEFT)
     copy(START, Y)
