@@ -11,18 +11,16 @@ from .build import push_contact
 
 
 @nonallocating
-def cone_edges(
-    ROWS: Rows[Row], L: FloatArray, IM: FloatArray, II: FloatArray, m: int, OF: IntArray, G: Rows[Row], EDGE: Rows[Edge]
-) -> int:
+def cone_edges(problem: Problem, L: FloatArray, OF: IntArray, G: Rows[Row], EDGE: Rows[Edge]) -> int:
     """Write the edges of the cones of m contacts, and return their number K <= 2 m.
 
     Args:
-        ROWS: those with a target below 0 have no edges.
+        problem: contacts with a target below 0 have no edges.
         L: (m, 2) normal and tangential impulses, from which `guess` and `x` of the edges follow.
-        IM, II: inverse masses and moments of the bodies.
         OF: out, the contact of each edge.  G: out, rows of the edges, those of a contact one after the other.
         EDGE: out, with a_gg = g^T M^-1 g.
     """
+    ROWS, IM, II, _, _, m = problem
     K = 0
     for i in range(m):
         if ROWS[i].target < 0.0:
@@ -52,13 +50,13 @@ def add_impulses(edges: Problem, EDGE: Rows[Edge], steps: bool, V: FloatArray) -
 
 
 @nonallocating
-def impulses_of(ROWS: Rows[Row], EDGE: Rows[Edge], OF: IntArray, K: int, L: FloatArray, m: int) -> None:
-    """Set the normal and tangential impulses L (m, 2) of m contacts from the x of their edges."""
-    for i in range(m):
+def impulses_of(problem: Problem, EDGE: Rows[Edge], OF: IntArray, K: int, L: FloatArray) -> None:
+    """Set the normal and tangential impulses L (m, 2) of m contacts from the x of their K edges."""
+    for i in range(problem.m):
         L[i, 0] = L[i, 1] = 0.0
     for e in range(K):
         i = OF[e]
-        slope = ROWS[i].friction
+        slope = problem.ROWS[i].friction
         if e > 0 and OF[e - 1] == i:
             slope = -slope
         L[i, 0] += EDGE[e].x

@@ -159,8 +159,9 @@ def leave(edges: Problem, EDGE: Rows[Edge], START: FloatArray, EXTENT: FloatArra
 
 
 @nonallocating
-def sum_of_momenta(V: FloatArray, IM: FloatArray, II: FloatArray, EXTENT: FloatArray, n: int) -> float:
-    """The impulses that would stop n bodies one by one, those of spins at their EXTENT."""
+def sum_of_momenta(problem: Problem, V: FloatArray, EXTENT: FloatArray) -> float:
+    """The impulses that would stop the bodies one by one, those of spins at their EXTENT."""
+    _, IM, II, _, n, _ = problem
     total = 0.0
     for i in range(n):
         total += (abs(V[i, 0]) + abs(V[i, 1])) / IM[i] if IM[i] > 0.0 else 0.0
@@ -201,22 +202,22 @@ def equilibrium(
     IM, II, n, m = problem.IM, problem.II, problem.n, problem.m
     k = len(IM)
     OF, G, EDGE = np.empty(2 * m, np.int64), zeros(2 * m, ROW), zeros(2 * m, EDGE_KIND)
-    K = cone_edges(problem.ROWS, L, IM, II, m, OF, G, EDGE)
+    K = cone_edges(problem, L, OF, G, EDGE)
     edges = Problem(G, IM, II, problem.POSE, n, K)
     LEFT, Y, DY, V, f = np.empty((k, 3)), np.zeros((k, 3)), np.zeros((k, 3)), np.empty((k, 3)), np.empty((n, 3))
     if K == 0:
         return fastest_point(START, EXTENT, n) <= tolerance, 0  # without contacts START is that motion
     speed = leave(edges, EDGE, START, EXTENT, LEFT)
     if speed <= tolerance:  # the guess balances
-        impulses_of(problem.ROWS, EDGE, OF, K, L, m)
+        impulses_of(problem, EDGE, OF, K, L)
         return True, 0
     held, stuck = np.ones(K, np.int64), np.zeros(K, np.int64)
     factor = make_factor(edges, held)
-    most_impulse = STATICS_SUM * n * sum_of_momenta(START, IM, II, EXTENT, n)
+    most_impulse = STATICS_SUM * n * sum_of_momenta(problem, START, EXTENT)
     free = True
     for done in range(most + 1):
         if speed <= tolerance:
-            impulses_of(problem.ROWS, EDGE, OF, K, L, m)
+            impulses_of(problem, EDGE, OF, K, L)
             return True, done
         centre = mean_product(EDGE, K, 0.0, 0.0)
         if done == most or not (speed < np.inf and (centre > 0.0 or free)):
