@@ -158,13 +158,13 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     contacts, EXPECTED = make_contacts(p, k), np.zeros(2 * p + 1)
     ROWS, L = contacts.ROWS, contacts.L
     motion, REACH = motion_at_start(isle, k), np.empty(k)
-    slow, fast, pull = speeds(isle.V, isle.ACC, isle.EXTENT, isle.IM, n, h, REACH)
+    slow, fast, pull = speeds(isle, n, h, REACH)
     for q in range(n):
         slow = max(slow, SPACING * REACH_ROUND_OFF * isle.EXTENT[q] / h)  # tolerances must not underflow
     fast = max(slow, fast)
     m = 0
     if p > 0:
-        m = gather_contacts(A, isle, contacts, isle.POSE + 0.5 * h * isle.V, REACH, h, k == n)
+        m = gather_contacts(A, isle, contacts, REACH, h, k == n)
     # Many near contacts of which few act are dear: roughly, once the work of the step is spent.
     few = m <= COLUMN_CONTACTS or (work_left(A, J) >= 0.0 and few_act(ROWS, isle.V, m, h, pull))
     interval = Interval(isle, groups, ROWS, motion, make_columns(groups, ROWS, m), m, n, t, h, few)
