@@ -22,8 +22,8 @@ from ..rows.build import push_contact
 from ..rows.inplace import copy
 from .bounded_rows import fill_rows, let_slip, list_rows, note_rows
 from .columns import fill_group
-from .component import step_component
-from .gathered import find_places, gather_component, lead_component, rewind_joints
+from .component import step_in_scratch
+from .gathered import find_places, gather_component, lead_component, number_of, rewind_joints
 from .groups import Groups
 
 
@@ -120,7 +120,13 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
         if len(GUESS) > 0:
             lead_component(A, J, s, isle.V, ACC, GUESS, h)
         length = gather_component(A, J, s, isle.POSE, isle.V, ACC, isle.IM, isle.II, t, h)
-        step_component(A, J, s, h, length, m == 0, motion.V, motion.WAY, motion.END, motion.MID)
+        step_in_scratch(J, s, h, length, m == 0)
+        for i in range(J.COMPONENT[s].end_body - J.COMPONENT[s].first_body):
+            q, local = number_of(A, J, s, i), J.LOCAL[i]
+            for c in range(3 if q >= 0 else 0):
+                motion.V[q, c], motion.END[q, c], motion.WAY[q, c] = local.v0[c], local.pose[c], local.travel[c]
+            for c in range(2 if q >= 0 else 0):
+                motion.MID[q, c] = local.mean[c] / h
         for w in range(groups.FIRST[g], groups.FIRST[g + 1]):
             q = groups.BODY[w]
             for c in range(3):

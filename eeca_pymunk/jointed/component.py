@@ -30,25 +30,6 @@ def step_in_scratch(J: Joints, s: int, h: float, length: float, whole: bool) -> 
     J.STEPPED[s].status = take_step(workspace(J, s), h, J.TALLY.order if whole else 2, length, J.STEPPED[s])
 
 
-@nonallocating
-def step_component(
-    A: Scene, J: Joints, s: int, h: float, length: float, whole: bool, V: FloatArray, WAY: FloatArray, END: FloatArray,
-    MID: FloatArray,
-) -> None:  # fmt: skip
-    """`step_in_scratch` from what `gather_component` has put there.
-
-    V, WAY, END: (k, 3) of the island, out: velocities at the end, ways (sums of h v_m), poses at the end.
-    MID: (k, 2), out: where constant forces have acted, means of the places over time.
-    """
-    step_in_scratch(J, s, h, length, whole)
-    for i in range(J.COMPONENT[s].end_body - J.COMPONENT[s].first_body):
-        q = number_of(A, J, s, i)
-        if q >= 0:
-            for c in range(3):
-                V[q, c], END[q, c], WAY[q, c] = J.LOCAL[i].v0[c], J.LOCAL[i].pose[c], J.LOCAL[i].travel[c]
-            MID[q, 0], MID[q, 1] = J.LOCAL[i].mean[0] / h, J.LOCAL[i].mean[1] / h
-
-
 @inlined
 def size_joints(W: Workspace, length: float) -> None:
     """Units of the joints' functions in a component of size `length`."""
