@@ -15,11 +15,11 @@ from ..compiled import kernel, nonallocating
 from ..joints.workspace import workspace
 from ..model.contacts import Bounded
 from ..model.joints import BOUNDED, PRESCRIBED, Joints
-from ..model.parameters.joints import BOUNDED_SWEEPS, MOTOR_OFF
+from ..model.parameters.joints import MOTOR_OFF
 from ..model.scene import Scene
 from ..newton.entries import acting_rows, interval_of, is_limit
 from ..newton.response import respond
-from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, bounded_rate, room_for_rows, sweep_bounded, weigh_rows
+from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, bounded_rate, room_for_rows, weigh_rows
 from .groups import Groups
 
 
@@ -143,12 +143,3 @@ def with_bounded(B: Bounded, L: FloatArray, m: int) -> FloatArray:
     for i in range(B.USED[0]):
         BOTH[m + i, 0] = B.ROWS[i].now
     return BOTH
-
-
-@kernel
-def settle_bounded(B: Bounded, V: FloatArray) -> None:
-    """Sweep over the bounded rows alone, with V the velocities without the impulses of contacts: V in and out."""
-    X = with_bounded(B, np.empty((0, 2)), 0)
-    for _ in range(BOUNDED_SWEEPS if B.USED[0] > 0 else 0):
-        if sweep_bounded(B, X, 0, V) <= 0.0:
-            break
