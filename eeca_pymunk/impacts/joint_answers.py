@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..jointed.columns import fill_group, push_group
-from ..jointed.component import fit_speeds, size_joints
+from ..jointed.component import project_speeds, size_joints
 from ..jointed.gathered import find_places, gather_component
 from ..jointed.groups import Groups
 from ..joints.correct import hold_closing, keep_speeds
@@ -56,7 +56,7 @@ def answer_impact(A: Scene, J: Joints, block: Block, groups: Groups, C: Columns,
         PUSH, moved = np.zeros((size, 3)), has_prescribed_motion(workspace(J, s))
         driven = driven or moved
         if moved:
-            fit_speeds(J, s, length)
+            project_speeds(J, s, length)
             for q in range(n):
                 if groups.GROUP[q] == g:
                     for c in range(3):

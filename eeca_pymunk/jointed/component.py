@@ -38,7 +38,7 @@ def size_joints(W: Workspace, length: float) -> None:
 
 
 @nonallocating
-def fit_speeds(J: Joints, s: int, length: float) -> None:
+def project_speeds(J: Joints, s: int, length: float) -> None:
     """Project the velocities that `gather_component` has put into the scratch onto the joints and closed limits: an
     impact without bounce. The caller accounts for the loss."""
     W = workspace(J, s)

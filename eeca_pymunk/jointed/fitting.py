@@ -18,7 +18,7 @@ from ..rows.build import normal_rate
 from ..rows.inplace import add
 from .advance import Interval, apart, find_hit, join_points
 from .columns import fill_free, make_columns, set_effective_masses
-from .component import fit_speeds
+from .component import project_speeds
 from .gathered import gather_component, number_of
 from .lifting import fill_at_end, raise_gaps
 
@@ -52,7 +52,7 @@ def project_velocities(A: Scene, J: Joints, interval: Interval, L: FloatArray, s
             continue
         payer = s if payer < 0 else payer
         length = gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, t + h, h)
-        fit_speeds(J, s, length)
+        project_speeds(J, s, length)
         J.STEPPED[s].projected += fitting_loss(workspace(J, s), J.STEPPED[s])
         for w in range(C.end_body - C.first_body):
             q = number_of(A, J, s, w)
