@@ -1,6 +1,7 @@
 """Impacts of a single disk, by the closed law; which shapes touch at an instant.
 
-A is the scene, t an instant within the step, i and j rows of BODY, a, b, o and s rows of SHAPE.
+A is the scene, t an instant within the step, i and j rows of BODY, a, b, o and s rows of SHAPE. A single disk has one
+row number in both: the first COUNT.disks are those of single disks.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ def touches(A: Scene, a: int, b: int, t: float) -> bool:
     if far_apart(A, a, b, t, tolerance):
         return False
     if max(a, b) < A.COUNT.disks:
-        return True
+        return True  # their bounding circles are the disks
     return gap(A, a, b, t)[0] <= tolerance
 
 
