@@ -6,8 +6,7 @@ import numpy as np
 
 from ..arrays import IntArray
 from ..compiled import kernel
-from ..compiled.records import Rows
-from ..model.joints import CONDENSED, PIVOT, WHOLE, Component, ComponentBody, Coupling
+from ..model.joints import CONDENSED, PIVOT, WHOLE, Joints
 from ..rows.dissection import neighbours
 
 
@@ -57,14 +56,13 @@ def order_nodes(start: IntArray, near: IntArray) -> IntArray:
 
 
 @kernel
-def order_unknowns(
-    component: Rows[Component], member: Rows[ComponentBody], link: Rows[Coupling], s: int, condensed: bool
-) -> None:
+def order_unknowns(J: Joints, s: int, condensed: bool) -> None:
     """Number the unknowns of the bodies and joints of component s (`column`, `first_row`); set the number of unknowns,
     the half-width of the band, and the number of unknowns outside the matrix (`impulses`).
 
     In a condensed system only bodies are nodes, and joints are the edges between them.
     """
+    component, member, link = J.COMPONENT, J.JOINED, J.COUPLING
     b0, b1, j0, j1 = component[s].first_body, component[s].end_body, component[s].first_joint, component[s].end_joint
     bodies, joints = b1 - b0, j1 - j0
     nodes = bodies if condensed else bodies + joints
@@ -108,9 +106,10 @@ def order_unknowns(
 
 
 @kernel
-def order_rows(component: Rows[Component], member: Rows[ComponentBody], link: Rows[Coupling], s: int) -> None:
+def order_rows(J: Joints, s: int) -> None:
     """Number the unknowns of the joints of component s in a system of rows alone, in which joints on one body are
     coupled; set its size and band, and the lists of the joints on each body."""
+    component, member, link = J.COMPONENT, J.JOINED, J.COUPLING
     b0, b1, j0, j1 = component[s].first_body, component[s].end_body, component[s].first_joint, component[s].end_joint
     joints = j1 - j0
     for i in range(b0, b1):

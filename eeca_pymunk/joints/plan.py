@@ -14,7 +14,7 @@ from ..compiled import kernel
 from ..compiled.records import Rows, empty
 from ..model import joints as model
 from ..model.bodies import BODIES, Body
-from ..model.joints import GEAR, GROOVE, Component, ComponentBody, Coupling, Joint
+from ..model.joints import GEAR, GROOVE, Joint, Joints
 from ..model.parameters.joints import CONDENSE_BAND, MOST_BOUNDED
 from ..newton.rows import row_count
 from .ordering import order_rows, order_unknowns
@@ -97,30 +97,29 @@ def find_turning(bodies: Rows[Body], joint: Rows[Joint]) -> tuple[IntArray, IntA
 
 
 @kernel
-def mark_actions(
-    joint: Rows[Joint], member: Rows[ComponentBody], link: Rows[Coupling], component: Rows[Component], s: int
-) -> None:
+def mark_actions(J: Joints, s: int) -> None:
     """Mark the bodies of component s that its joints push, and those on which they exert torques."""
-    for i in range(component[s].first_body, component[s].end_body):
-        member[i].acted = 0
-    for k in range(component[s].first_joint, component[s].end_joint):
-        j, kind = link[k].joint, link[k].kind
+    link, C = J.COUPLING, J.COMPONENT[s]
+    for i in range(C.first_body, C.end_body):
+        J.JOINED[i].acted = 0
+    for k in range(C.first_joint, C.end_joint):
+        joint, kind = J.JOINT[link[k].joint], link[k].kind
         for end in range(2):
-            one = member[component[s].first_body + link[k].body[end]]
-            anchor = joint[j].anchor_a if end == 0 else joint[j].anchor_b
+            one = J.JOINED[C.first_body + link[k].body[end]]
+            anchor = joint.anchor_a if end == 0 else joint.anchor_b
             off = anchor[0] != 0.0 or anchor[1] != 0.0 or (kind == GROOVE and end == 0)
             one.acted |= model.FORCES_ON if kind < GEAR else 0
             one.acted |= model.TORQUES_ON if kind >= GEAR or off else 0
 
 
 @kernel
-def mark_joints(joint: Rows[Joint], link: Rows[Coupling], component: Rows[Component], s: int) -> tuple[bool, bool]:
+def mark_joints(J: Joints, s: int) -> tuple[bool, bool]:
     """Mark the joints of component s whose impulses are bounded, and set what the component has of them. Returns
     whether a disc bounds two impulses of a joint, and whether all joints hold exactly, those with limits included."""
-    one, discs, hard, rows = component[s], False, True, 0
+    link, one, discs, hard, rows = J.COUPLING, J.COMPONENT[s], False, True, 0
     one.bounded_joints = one.driven = 0
     for k in range(one.first_joint, one.end_joint):
-        motor, limited = link[k].kind == model.MOTOR, joint[link[k].joint].bounded != 0
+        motor, limited = link[k].kind == model.MOTOR, J.JOINT[link[k].joint].bounded != 0
         bounded = motor or (limited and link[k].kind not in (model.SPRING, model.ROTARY_SPRING))
         link[k].bounded = model.BOUNDED if bounded else 0
         if bounded:
@@ -134,13 +133,10 @@ def mark_joints(joint: Rows[Joint], link: Rows[Coupling], component: Rows[Compon
 
 
 @kernel
-def make_plan(
-    bodies: Rows[Body], joint: Rows[Joint], component: Rows[Component], member: Rows[ComponentBody],
-    link: Rows[Coupling], OF: IntArray,
-) -> int:  # fmt: skip
-    """Fill in `component` (joints,), `member` (2 joints,), `link` (joints,), and OF (n,), which is -1, the component of
-    each body that joints may move; how many components there are."""
-    joints = len(joint)
+def make_plan(bodies: Rows[Body], J: Joints) -> int:
+    """Fill in COMPONENT, JOINED, COUPLING, and OF, which is -1, of J, whose joints are between `bodies`; how many
+    components there are."""
+    joint, component, member, link, joints = J.JOINT, J.COMPONENT, J.JOINED, J.COUPLING, len(J.JOINT)
     count, component_of = find_components(bodies, joint)
     turns, cayley = find_turning(bodies, joint)
     room = np.zeros(count + 1, np.int64)
@@ -170,41 +166,38 @@ def make_plan(
                     freedoms = 3 if turns[body] == 1 else 2
                     member[used].freedoms = freedoms if movable(bodies, body) else 0
                     if movable(bodies, body):
-                        OF[body] = s
+                        J.OF[body] = s
                     used += 1
                 link[k].body[end] = place[body] - component[s].first_body
         component[s].end_body = used
-        discs, hard = mark_joints(joint, link, component, s)
-        order_unknowns(component, member, link, s, False)
+        discs, hard = mark_joints(J, s)
+        order_unknowns(J, s, False)
         if component[s].band > CONDENSE_BAND and not discs:  # which couple two impulses: no condensed system has that
-            order_unknowns(component, member, link, s, True)
-        order_rows(component, member, link, s)
+            order_unknowns(J, s, True)
+        order_rows(J, s)
         cost = component[s].unknowns * component[s].band ** 2
         pays = 0 < component[s].dual_size * component[s].dual_band ** 2 <= cost
-        mark_actions(joint, member, link, component, s)
+        mark_actions(J, s)
         component[s].dual_for = model.NOTHING if not pays else model.STEPS if hard else model.INSTANTS
-        component[s].loops = cycles(bodies, link, member, component, s, False)
-        component[s].knots = cycles(bodies, link, member, component, s, True)
+        component[s].loops = cycles(bodies, J, s, False)
+        component[s].knots = cycles(bodies, J, s, True)
     return count
 
 
 @kernel
-def cycles(
-    bodies: Rows[Body], link: Rows[Coupling], member: Rows[ComponentBody], component: Rows[Component], s: int,
-    bounded: bool,
-) -> int:  # fmt: skip
+def cycles(bodies: Rows[Body], J: Joints, s: int, bounded: bool) -> int:
     """Number of joints of component s that close a cycle in the graph of joints of points, or in that of joints of
     angles; all bodies that nothing moves, or nothing turns, are one node. Without cycles rows are independent,
     including limits: those of points by their effect on places, those of angles on angles. bounded: whether
     bounded rows count."""
-    b0, n = component[s].first_body, component[s].end_body - component[s].first_body
+    link, C, count = J.COUPLING, J.COMPONENT[s], 0
+    n = C.end_body - C.first_body
     parent, ends = np.arange(2 * (n + 1)), np.empty(2, np.int64)
-    count = 0
-    for k in range(component[s].first_joint, component[s].end_joint):
+    for k in range(C.first_joint, C.end_joint):
         if link[k].rows == 0 or (link[k].bounded != 0 and not bounded):
             continue
         for end in range(2):
-            body = bodies[member[b0 + link[k].body[end]].body]
+            body = bodies[J.JOINED[C.first_body + link[k].body[end]].body]
             if link[k].kind >= GEAR:
                 ends[end] = n + 1 + (link[k].body[end] if body.inv_inertia > 0.0 else n)
             else:
