@@ -85,12 +85,12 @@ def stop_closing(A: Scene, J: Joints, interval: Interval, PUSHING: IntArray, fin
         join_points(KEEP[i], along, across)  # which have moved apart
     C = make_columns(groups, KEEP, pushing)
     fill_free(groups, C, KEEP, isle.IM, isle.II, pushing)
-    INDEX, HIT = np.full(len(isle.IM), -1, np.int64), find_hit(groups, KEEP, pushing)
+    HIT = find_hit(groups, KEEP, pushing)
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
         if s < 0 or HIT[g] == 0:
             continue
-        if not fill_at_end(A, J, interval, C, g, INDEX, KEEP, pushing):
+        if not fill_at_end(A, J, interval, C, g, KEEP, pushing):
             return np.zeros(m)
     set_effective_masses(groups, C, KEEP, pushing)
     RATES = np.empty(pushing)

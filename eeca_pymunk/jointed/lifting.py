@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..contacts.correction import admissible, least_of, turn_by, unturn
@@ -44,18 +44,16 @@ def raise_gaps(problem: JointedProblem, n: int, GAPS: FloatArray, D: FloatArray,
 
 
 @kernel
-def fill_at_end(
-    A: Scene, J: Joints, interval: Interval, C: Columns, g: int, INDEX: IntArray, ROWS: Rows[Row], m: int
-) -> bool:  # fmt: skip
+def fill_at_end(A: Scene, J: Joints, interval: Interval, C: Columns, g: int, ROWS: Rows[Row], m: int) -> bool:
     """Compute the columns C of the normal impulses of m contacts on group g, a component, at the poses and the instant
-    at the end of an interval; False if there is no response. INDEX (k,): scratch."""
-    isle, motion, s = interval.isle, interval.motion, interval.groups.COMPONENT[g]
-    t, h = interval.t, interval.h
+    at the end of an interval; False if there is no response."""
+    isle, groups, _, motion, _, _, _, t, h, _ = interval
+    s, INDEX = groups.COMPONENT[g], np.empty(len(isle.IM), np.int64)
     gather_component(A, J, s, motion.END, motion.V, np.zeros_like(isle.V), isle.IM, isle.II, t + h, h)
     size = find_places(A, J, s, INDEX)
     if not prepare_response(workspace(J, s), SPEEDS, 2.0):
         return False
-    fill_group(J, interval.groups, C, g, INDEX, ROWS, m, np.empty((size, 3)), 1)
+    fill_group(J, groups, C, g, INDEX, ROWS, m, np.empty((size, 3)), 1)
     return True
 
 
@@ -101,13 +99,12 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, budget: float) -> 
     size = least_of(isle.EXTENT, n)
     if deepest >= -left_to_lift(A, t + h) * size or not budget >= 0.0:
         return 0.0
-    INDEX = np.full(len(isle.IM), -1, np.int64)
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
         # The columns of the interval, in which stiff springs resist, so that D hardly strains them; but bounded rows
         # prescribe speeds at its end.
         if s >= 0 and J.COMPONENT[s].bounded_joints > 0:
-            fill_at_end(A, J, interval, C, g, INDEX, ROWS, m)
+            fill_at_end(A, J, interval, C, g, ROWS, m)
     KEEP = ROWS[:m].copy()
     set_effective_masses(groups, C, KEEP, m)
     D = np.zeros_like(V)
