@@ -158,7 +158,7 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
 
 
 @nonallocating
-def apart(row: Row, PLACE: FloatArray) -> tuple[float, float]:
+def separation(row: Row, PLACE: FloatArray) -> tuple[float, float]:
     """The distance d + r_b - r_a of the points of a contact on both bodies, along n and along -t, with bodies at PLACE
     (k, 2 or more): d leads from the centre of body a to that of b. Arms are r = arm_t n - arm_n t."""
     x, y = PLACE[row.b, 0] - PLACE[row.a, 0], PLACE[row.b, 1] - PLACE[row.a, 1]
@@ -168,7 +168,7 @@ def apart(row: Row, PLACE: FloatArray) -> tuple[float, float]:
 
 @nonallocating
 def join_points(row: Row, along: float, across: float) -> None:
-    """Change the arms of a contact so that its points, which are so far `apart`, become one: the middle, or the point
+    """Change the arms of a contact so that its points, whose `separation` this is, become one: the middle, or the point
     of a disk (arm_n = 0), on which the normal impulse still exerts no torque."""
     part = 0.0 if row.arm_na == 0.0 else 1.0 if row.arm_nb == 0.0 else 0.5
     row.arm_na += part * across
@@ -179,11 +179,11 @@ def join_points(row: Row, along: float, across: float) -> None:
 
 @nonallocating
 def points_apart(interval: Interval, i: int) -> tuple[float, float, float]:
-    """How far the two points of contact i of a free island are `apart` at the mean places of its bodies, along n and
-    along -t, and over the size of bodies and places. 0 if they are farther apart than the smaller body is large."""
+    """The `separation` of contact i of a free island at the mean places of its bodies, and its amount over the size of
+    bodies and places. 0 if that is farther than the smaller body is large."""
     isle, row, MID = interval.isle, interval.ROWS[i], interval.motion.MID
     a, b = row.a, row.b
-    along, across = apart(row, MID)
+    along, across = separation(row, MID)
     off, size = abs(along) + abs(across), min(isle.EXTENT[a], isle.EXTENT[b])
     if not off <= size:
         return 0.0, 0.0, 0.0

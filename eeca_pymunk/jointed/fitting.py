@@ -16,7 +16,7 @@ from ..model.scene import Scene
 from ..rows.bounded import room_for_rows
 from ..rows.build import normal_rate
 from ..rows.inplace import add
-from .advance import Interval, apart, find_hit, join_points
+from .advance import Interval, find_hit, join_points, separation
 from .columns import fill_free, make_columns, set_effective_masses
 from .component import project_speeds
 from .gathered import gather_component, number_of
@@ -81,7 +81,7 @@ def stop_closing(A: Scene, J: Joints, interval: Interval, PUSHING: IntArray, fin
     pushing, KEEP = len(PUSHING), ROWS[: len(PUSHING)].copy()
     for i in range(pushing):
         KEEP[i] = ROWS[PUSHING[i]]
-        along, across = apart(KEEP[i], motion.END)
+        along, across = separation(KEEP[i], motion.END)
         join_points(KEEP[i], along, across)  # which have moved apart
     C = make_columns(groups, KEEP, pushing)
     fill_free(groups, C, KEEP, isle.IM, isle.II, pushing)

@@ -24,7 +24,7 @@ from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_WAY, SAGITTA
 from ..model.scene import Scene
 from ..pairs.rules import barred, far_apart
 from ..rows.build import normal_rate
-from .advance import Interval, apart
+from .advance import Interval, separation
 
 _CUBIC = 4.0 / 27.0  # largest value of s^2 (1 - s)
 
@@ -113,7 +113,7 @@ def points_part(interval: Interval, L: FloatArray) -> float:
     for z in range(interval.m):
         a, b = ROWS[z].a, ROWS[z].b
         if L[z, 0] != 0.0 and isle.IM[a] > 0.0 and isle.IM[b] > 0.0:
-            along, across = apart(ROWS[z], MID)
+            along, across = separation(ROWS[z], MID)
             far = max(far, (abs(along) + abs(across)) / (INTERVAL_WAY * min(isle.EXTENT[a], isle.EXTENT[b])))
     return far
 

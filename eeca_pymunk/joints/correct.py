@@ -95,7 +95,7 @@ def fitting_loss(W: Workspace, ledger: JointLedger) -> float:
 
 @nonallocating
 def keep_speeds(W: Workspace) -> None:
-    """Store the velocities before they are projected."""
+    """Store the velocities before they are projected, whose impulses become 0."""
     for i in range(W.bodies):
         for c in range(3):
             W.J.LOCAL[i].v_kept[c] = W.J.LOCAL[i].v0[c]
