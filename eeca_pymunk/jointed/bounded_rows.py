@@ -35,7 +35,7 @@ def let_slip(J: Joints, s: int, slips: bool, limits: bool) -> None:
     are solved with contacts, and, if `limits`, those of limits that act."""
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         link = J.COUPLING[k]
-        if link.bounded != 0 and J.JOINT[link.joint].max_force < 1e300 and J.COMPONENT[s].bounded > 0:
+        if link.bounded != 0 and J.JOINT[link.joint].bounded != 0 and J.COMPONENT[s].bounded > 0:
             link.bounded = PRESCRIBED if slips else BOUNDED
         elif limits and is_exact_limit(J, k):
             link.bounded = PRESCRIBED if slips and link.side != 0 else 0
