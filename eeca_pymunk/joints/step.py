@@ -67,9 +67,9 @@ def is_taut(W: Workspace, h: float) -> bool:
                 per = hinge[k].lam[0] / length
             fx, fy, per = per * dx, per * dy, max(-per, 0.0)
         for end in range(2):
-            i = link[k].body[0] if end == 0 else link[k].body[1]
+            body = W.J.LOCAL[link[k].body[end]]
             turn = -(rax * fx + ray * fy) if end == 0 else rbx * fx + rby * fy
-            if 0.25 * abs(h) * max(turn * W.J.LOCAL[i].mobility[2], per * W.J.LOCAL[i].mobility[0]) > TAUT:
+            if 0.25 * abs(h) * max(turn * body.mobility[2], per * body.mobility[0]) > TAUT:
                 return True
     return False
 
