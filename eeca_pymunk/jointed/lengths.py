@@ -14,8 +14,9 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
-from ..contacts.memory import key_of, shapes_of
+from ..contacts.memory import shapes_of
 from ..geometry.flight import fastest, norm
+from ..geometry.sides import pair_of
 from ..geometry.widths import depth_limit, smaller
 from ..islands.depths import closes_too_far, too_deep_at_end
 from ..model.joints import Joints
@@ -41,9 +42,9 @@ def may_meet_others(A: Scene, i: int, way: float, t: float, h: float, KEY: IntAr
             b = A.BODY[A.LINK[o].owner]
             if barred(A, s, o) or far_apart(A, s, o, t, 2.0 * (way + fastest(b) * h + A.PAR.pulled * h * h)):
                 continue
-            known = False
+            pair, known = pair_of(A, s, o), False
             for z in range(m):
-                known = known or KEY[z] >> 1 == key_of(A, s, o) >> 1
+                known = known or KEY[z] >> 1 == pair
             if not known:
                 return True
     return False
