@@ -303,8 +303,6 @@ MUTATIONS = (
              "if -u <= A.PAR.pulled * dt:", "if -u < 0.0:", "islands/test_penetration.py", "fly_on"),
     Mutation("sorting: the other way", "rows/inplace.py", "A[j - gap] > value", "A[j - gap] < value",
              "rows/test_inplace.py", "sorted"),
-    Mutation("adding: the table is copied", "rows/inplace.py", "TO[i, k] += MORE[i, k]", "TO[i, k] = MORE[i, k]",
-             "rows/test_inplace.py", "added"),
     Mutation("lock: no scale", "rows/energy.py", "s = large / q", "s = 1.0", "rows/test_blocks.py", "debt"),
     Mutation("lock: factor 1/2 of the paper's closures", "energy/balance.py",
              "0.5 * np.bincount(island, lam * (A @ lam)", "np.bincount(island, lam * (A @ lam)",

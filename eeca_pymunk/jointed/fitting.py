@@ -15,7 +15,6 @@ from ..model.parameters.joints import FIT_CLOSING, FIT_ENERGY, FIT_RESIDUAL
 from ..model.scene import Scene
 from ..rows.bounded import room_for_rows
 from ..rows.build import normal_rate
-from ..rows.inplace import add
 from .advance import Interval, find_hit, join_points, separation
 from .columns import fill_free, make_columns, set_effective_masses
 from .component import project_speeds
@@ -103,7 +102,9 @@ def stop_closing(A: Scene, J: Joints, interval: Interval, PUSHING: IntArray, fin
         HELD[PUSHING[i]] = MU[i]
         if MU[i] > 0.0:
             loss -= MU[i] * (RATES[i] + 0.5 * normal_rate(KEEP[i], D))
-    add(motion.V, D)
+    for q in range(len(D)):
+        for c in range(3):
+            motion.V[q, c] += D[q, c]
     gained = kinetic_energy(motion.V, isle.IM, isle.II, n) - before
     if abs(gained + loss) > FIT_ENERGY * before:
         # Supports move.
