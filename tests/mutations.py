@@ -295,7 +295,7 @@ MUTATIONS = (
     Mutation("ledger: errors of answers at impacts", "impacts/joint_impact.py",
              "FREE[q, c] + s * (", "FREE[q, c] + (", "impacts/test_joint_impact.py", "response"),
     Mutation("ledger: what a limit costs that moves", "joints/correct.py",
-             "total += 0.5 * (local[i].v0[c] - local", "total += 1.0 * (local[i].v0[c] - local",
+             "lost = kinetic_of(W, CHANGE)", "lost = 2.0 * kinetic_of(W, CHANGE)",
              "jointed/test_supports.py", "stopped"),
     Mutation("intervals: the closing of linear rows is real", "islands/depths.py",
              "last, deep = pair, min(deep, known)", "last = pair", "islands/test_depths.py", "poses"),
