@@ -29,15 +29,12 @@ from .turning import follow_rotation, spin_of_wall, way_about
 
 
 @kernel
-def gather_contacts(
-    A: Scene, isle: Island, contacts: IslandContacts, MIDDLE: FloatArray, REACH: FloatArray, h: float, free: bool
-) -> int:  # fmt: skip
+def gather_contacts(A: Scene, isle: Island, contacts: IslandContacts, REACH: FloatArray, h: float, free: bool) -> int:
     """Write the ROWS of all contacts of an island's pairs whose gap is at most the sum of both bodies' REACH.
 
     Args:
         h: length of the interval.  isle, contacts: the island, and its contacts, out.
-        MIDDLE: (k, 3) poses predicted for h/2.  REACH: (k,) length.
-        free: whether impulses move all k bodies.
+        REACH: (k,) length.  free: whether impulses move all k bodies.
 
     Returns:
         The number of rows, two at most for each pair.
@@ -45,7 +42,7 @@ def gather_contacts(
     SHAPE, LINK = A.SHAPE, A.LINK
     POSE, PAIRS, ROWS = isle.POSE, isle.PAIRS, contacts.ROWS
     NOW, THEN = empty(2, CONTACT_POINT), empty(2, CONTACT_POINT)
-    m, half = 0, 0.5 * h
+    m, half, MIDDLE = 0, 0.5 * h, isle.POSE + 0.5 * h * isle.V
     for c in range(len(PAIRS)):
         s, r, a, b = PAIRS[c, 0], PAIRS[c, 1], PAIRS[c, 2], PAIRS[c, 3]
         small = min(SHAPE[s].extent, SHAPE[r].extent)

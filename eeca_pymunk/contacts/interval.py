@@ -62,16 +62,14 @@ def recall(A: Scene, ROWS: Rows[Row], m: int, h: float, whole: bool, L: FloatArr
 
 
 @nonallocating
-def speeds(
-    V: FloatArray, ACC: FloatArray, EXTENT: FloatArray, IM: FloatArray, n: int, h: float, REACH: FloatArray
-) -> tuple[float, float, float]:
+def speeds(isle: Island, n: int, h: float, REACH: FloatArray) -> tuple[float, float, float]:
     """Root mean square over the n bodies of the speed of their fastest points, the largest such speed, and the largest
     acceleration |a| of a point. Sets REACH (k,), a bound of how far points of bodies move in h.
 
     Speeds in a free island are relative to its centre of mass. Where nothing accelerates, those of bodies that impulses
     do not move count, too: bodies at rest that something moves into will be as fast.
     """
-    x, y = 0.0, 0.0
+    V, ACC, EXTENT, IM, x, y = isle.V, isle.ACC, isle.EXTENT, isle.IM, 0.0, 0.0
     if len(IM) == n:
         mass = 0.0
         for i in range(n):
@@ -121,9 +119,9 @@ def begin_contacts(A: Scene, isle: Island, contacts: IslandContacts, n: int, h: 
     k = len(isle.IM)
     clear_report(contacts.OUT[0])
     REACH = np.empty(k)
-    slow, fast, pull = speeds(isle.V, isle.ACC, isle.EXTENT, isle.IM, n, h, REACH)
+    slow, fast, pull = speeds(isle, n, h, REACH)
     REACH = np.maximum(REACH, least)
-    m = gather_contacts(A, isle, contacts, isle.POSE + 0.5 * h * isle.V, REACH, h, k == n)
+    m = gather_contacts(A, isle, contacts, REACH, h, k == n)
     if not table_has_room(A, m):
         return Begun(-1, np.empty(0), slow, fast, pull)
     copy(contacts.VN, isle.V + h * isle.ACC)

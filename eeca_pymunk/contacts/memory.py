@@ -48,19 +48,22 @@ def table_has_room(A: Scene, contacts: int) -> bool:
 
 
 @nonallocating
-def remember_force(
-    KEYS: IntArray, FORCES: Rows[Force], COUNT: Count, key: int, normal: float, tangential: float, load: float,
-    length: float, stamp: float,
-) -> None:  # fmt: skip
-    """Write a contact's forces (mass length/time²) over an interval of this length. The table must have a free row."""
+def row_for(KEYS: IntArray, COUNT: Count, key: int) -> int:
+    """Row of a key in KEYS (c,), which gets one if it has none: there must be a free one then."""
     row = find(KEYS, key)
     if row < 0:
         row = -1 - row
         KEYS[row] = key
         COUNT.remembered += 1
-    force = FORCES[row]
+    return row
+
+
+@nonallocating
+def remember_force(A: Scene, key: int, normal: float, tangential: float, load: float, length: float) -> None:
+    """Write a contact's forces (mass length/time²) over an interval of this length."""
+    force = A.FORCES[row_for(A.KEYS, A.COUNT, key)]
     force.normal, force.tangential, force.load = normal, tangential, load
-    force.length, force.stamp = length, stamp
+    force.length, force.stamp = length, A.PAR.stamp
 
 
 @nonallocating
@@ -71,7 +74,7 @@ def remember_loads(A: Scene, ROWS: Rows[Row], L: FloatArray, m: int, h: float) -
         if L[i, 0] > 0.0:
             stopped = max(max(ROWS[i].target, 0.0) - ROWS[i].un, 0.0) * ROWS[i].k_n
             load = max(L[i, 0] - stopped, 0.0)
-            remember_force(A.KEYS, A.FORCES, A.COUNT, ROWS[i].key, L[i, 0] / h, L[i, 1] / h, load / h, h, A.PAR.stamp)
+            remember_force(A, ROWS[i].key, L[i, 0] / h, L[i, 1] / h, load / h, h)
 
 
 @nonallocating
@@ -83,8 +86,4 @@ def copy_recent(
     KEYS_2[:] = -1
     for row in range(len(KEYS)):
         if KEYS[row] >= 0 and FORCES[row].stamp >= stamp:
-            force = FORCES[row]
-            remember_force(
-                KEYS_2, FORCES_2, COUNT, KEYS[row], force.normal, force.tangential, force.load, force.length,
-                force.stamp,
-            )  # fmt: skip
+            FORCES_2[row_for(KEYS_2, COUNT, KEYS[row])] = FORCES[row]

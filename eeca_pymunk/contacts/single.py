@@ -1,6 +1,7 @@
 """Impacts of a single disk, by the closed law; which shapes touch at an instant.
 
-A is the scene, t an instant within the step, i and j rows of BODY, a, b, o and s rows of SHAPE.
+A is the scene, t an instant within the step, i and j rows of BODY, a, b, o and s rows of SHAPE. A single disk has one
+row number in both: the first COUNT.disks are those of single disks.
 """
 
 from __future__ import annotations
@@ -8,24 +9,11 @@ from __future__ import annotations
 import math
 
 from ..compiled import inlined, nonallocating
-from ..compiled.records import Rows
 from ..geometry.flight import move_to, pose
 from ..geometry.gap import gap, gap_at, gap_round_off
-from ..model.bodies import Body
 from ..model.contacts import Impulse
 from ..model.scene import Scene
 from ..pairs.rules import barred, far_apart, law
-
-
-@nonallocating
-def kinetic(BODY: Rows[Body], i: int) -> float:
-    """Kinetic energy of body i; 0 for bodies that impulses do not move."""
-    if BODY[i].inv_mass == 0.0:
-        return 0.0
-    vx, vy, spin = BODY[i].vx, BODY[i].vy, BODY[i].spin
-    return 0.5 * (vx * vx + vy * vy) / BODY[i].inv_mass + (
-        0.5 * spin * spin / BODY[i].inv_inertia if BODY[i].inv_inertia > 0.0 else 0.0
-    )
 
 
 @nonallocating
@@ -35,7 +23,7 @@ def touches(A: Scene, a: int, b: int, t: float) -> bool:
     if far_apart(A, a, b, t, tolerance):
         return False
     if max(a, b) < A.COUNT.disks:
-        return True
+        return True  # their bounding circles are the disks
     return gap(A, a, b, t)[0] <= tolerance
 
 
@@ -67,7 +55,7 @@ def alone(A: Scene, i: int, other: int, t: float) -> bool:
 
 
 @nonallocating
-def note(
+def log_impulse(
     row: Impulse, a: int, b: int, t: float, lam: float, beta: float, nx: float, ny: float, px: float, py: float,
     change: float, gap: float,
 ) -> None:  # fmt: skip
@@ -133,5 +121,5 @@ def strike_disk(A: Scene, i: int, o: int, t: float) -> None:
         A.STATE[j].version += 1
         A.STATE[j].events += 1
     PAR.restitution += 0.5 * lam * (1.0 - e) * max(-u, 0.0)
-    note(A.LOG[A.COUNT.logged], i, o, t, lam, beta, nx, ny, px, py, lam * free, math.nan)
+    log_impulse(A.LOG[A.COUNT.logged], i, o, t, lam, beta, nx, ny, px, py, lam * free, math.nan)
     A.COUNT.logged += 1

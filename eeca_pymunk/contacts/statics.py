@@ -19,8 +19,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
-from ..compiled.records import Rows
-from ..model.contacts import Problem, Row
+from ..model.contacts import Problem
 from ..model.parameters.rest import (
     REST_CANDIDATE_LARGE,
     REST_SPEED,
@@ -33,10 +32,11 @@ from ..rows.inplace import copy
 
 
 @nonallocating
-def set_motionless(ROWS: Rows[Row], V: FloatArray, n: int, m: int, close: float) -> bool:
+def set_motionless(problem: Problem, V: FloatArray, close: float) -> bool:
     """Set targets and velocities of the rows to 0, those without motion. Returns False if a surface or one of the fixed
     bodies, from n on, moves; some rows may be changed then. close: length/time; a contact whose gap would have to close
     faster keeps its target, which is below 0, and so exerts no static force."""
+    ROWS, _, _, _, n, m = problem
     for i in range(n, len(V)):
         if V[i, 0] != 0.0 or V[i, 1] != 0.0 or V[i, 2] != 0.0:
             return False
@@ -74,7 +74,7 @@ def find_static_forces(
     """
     n = problem.n
     VN[:] = 0.0
-    if not set_motionless(problem.ROWS, V, n, problem.m, min(rest_speed, REST_CANDIDATE_LARGE) * change):
+    if not set_motionless(problem, V, min(rest_speed, REST_CANDIDATE_LARGE) * change):
         return False, 0
     PULL, START = FREE - V, FREE - V
     for i in range(n):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..compiled.records import Rows
+from ..model.bodies import Body
 from ..model.contacts import Row
 
 
@@ -67,3 +68,14 @@ def gained_energy(V: FloatArray, BEFORE: FloatArray, IM: FloatArray, II: FloatAr
             if mobility > 0.0:
                 total += 0.5 * (V[q, c] - BEFORE[q, c]) * (V[q, c] + BEFORE[q, c]) / mobility
     return total
+
+
+@nonallocating
+def kinetic(BODY: Rows[Body], i: int) -> float:
+    """Kinetic energy of body i; 0 for bodies that impulses do not move."""
+    if BODY[i].inv_mass == 0.0:
+        return 0.0
+    vx, vy, spin = BODY[i].vx, BODY[i].vy, BODY[i].spin
+    return 0.5 * (vx * vx + vy * vy) / BODY[i].inv_mass + (
+        0.5 * spin * spin / BODY[i].inv_inertia if BODY[i].inv_inertia > 0.0 else 0.0
+    )

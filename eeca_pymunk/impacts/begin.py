@@ -6,7 +6,7 @@ import math
 
 from ..arrays import IntArray
 from ..compiled import nonallocating
-from ..contacts.single import kinetic
+from ..contacts.works import kinetic
 from ..geometry.flight import has_velocity
 from ..geometry.sides import forget_pair, forget_sides
 from ..islands.accounting import flag_pairs

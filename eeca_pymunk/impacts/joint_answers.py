@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..jointed.columns import fill_group, push_group
-from ..jointed.component import answer, fit_speeds, ready_at_poses, size_joints
+from ..jointed.component import project_speeds, size_joints
 from ..jointed.gathered import find_places, gather_component
 from ..jointed.groups import Groups
 from ..joints.correct import hold_closing, keep_speeds
@@ -19,8 +19,10 @@ from ..joints.frame import has_prescribed_motion
 from ..joints.start import compute_rows
 from ..joints.workspace import workspace
 from ..model.contacts import Columns
+from ..model.joint_steps import SPEEDS
 from ..model.joints import Joints
 from ..model.scene import Scene
+from ..newton.response import prepare_response, respond
 from .simultaneous import Block
 
 
@@ -54,12 +56,12 @@ def answer_impact(A: Scene, J: Joints, block: Block, groups: Groups, C: Columns,
         PUSH, moved = np.zeros((size, 3)), has_prescribed_motion(workspace(J, s))
         driven = driven or moved
         if moved:
-            fit_speeds(J, s, length)
+            project_speeds(J, s, length)
             for q in range(n):
                 if groups.GROUP[q] == g:
                     for c in range(3):
                         V[q, c] = J.LOCAL[INDEX[q]].v0[c]
-        if not ready_at_poses(J, s):
+        if not prepare_response(workspace(J, s), SPEEDS, 2.0):
             continue
         fill_group(J, groups, C, g, INDEX, ROWS, len(ROWS), PUSH, 2)
         if not moved:
@@ -79,12 +81,12 @@ def put_momenta(block: Block, groups: Groups, g: int, n: int, V: FloatArray, IND
 
 @nonallocating
 def keep_allowed(J: Joints, block: Block, groups: Groups, g: int, n: int, INDEX: IntArray, PUSH: FloatArray) -> None:
-    """Project the velocities of group g, whose component is `ready`, onto those that joints allow, by M^-1 G^T times
-    impulses of joints."""
+    """Project the velocities of group g, whose component is prepared (`..newton.response`), onto those that
+    joints allow, by M^-1 G^T times impulses of joints."""
     V = block.V
     PUSH[:] = 0.0
     put_momenta(block, groups, g, n, V, INDEX, PUSH)
-    answer(J, groups.COMPONENT[g], PUSH)
+    respond(workspace(J, groups.COMPONENT[g]), PUSH)
     for q in range(n):
         if groups.GROUP[q] == g:
             for c in range(3):
@@ -105,13 +107,13 @@ def add_joint_impulses(
             continue
         gather_component(A, J, s, block.POSE, FREE, np.zeros_like(FREE), block.IM, block.II, t, 0.0)
         PUSH = np.zeros((find_places(A, J, s, INDEX), 3))
-        if not ready_at_poses(J, s):
+        if not prepare_response(workspace(J, s), SPEEDS, 2.0):
             continue
         if not has_prescribed_motion(workspace(J, s)):
             put_momenta(block, groups, g, len(FREE), FREE, INDEX, PUSH)
         for i in range(len(ROWS)):
             push_group(groups, g, INDEX, ROWS[i], L[i, 0], L[i, 1], PUSH)
-        answer(J, s, PUSH)
+        respond(workspace(J, s), PUSH)
         W = workspace(J, s)
         for k in range(W.joints):
             for r in range(W.link[k].rows):

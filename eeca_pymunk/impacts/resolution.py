@@ -12,7 +12,7 @@ from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, zeros
 from ..contacts.counts import looks_of, note_lock, note_unmet, spend
 from ..contacts.memory import shapes_of
-from ..contacts.single import note
+from ..contacts.single import log_impulse
 from ..contacts.works import external_work
 from ..geometry.sides import pair_of
 from ..islands.building import join_reachable
@@ -55,7 +55,7 @@ def finish_block(
     for z in range(len(ROWS)):
         if L[z, 0] > 0.0:
             a, b = shapes_of(A, ROWS[z])
-            note(
+            log_impulse(
                 A.LOG[COUNT.logged], a, b, t, L[z, 0], L[z, 1], ROWS[z].nx, ROWS[z].ny,
                 block.POINTS[z, 0], block.POINTS[z, 1], L[z, 0] / ROWS[z].k_n, math.nan,
             )  # fmt: skip

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..arrays import IntArray
 from ..compiled import Table, kernel, nonallocating
-from ..contacts.memory import key_of, remember_force, table_has_room
+from ..contacts.memory import key_of, row_for, table_has_room
 from ..geometry.sides import keep_sides, shapes_of_pair
 from ..islands.accounting import flag_pairs
 from ..islands.at_rest import disturb
@@ -143,9 +143,7 @@ def take_forces(P: Scene, A: Scene, SHAPES: IntArray) -> None:
         a, b = shapes_of_pair(k, P.KEYS[row] >> 1)
         if same_pair(SHAPES, a, b):
             force, key = P.FORCES[row], key_of(A, SHAPES[a], SHAPES[b]) | P.KEYS[row] & 1
-            remember_force(
-                A.KEYS, A.FORCES, A.COUNT, key, force.normal, force.tangential, force.load, force.length, force.stamp
-            )
+            A.FORCES[row_for(A.KEYS, A.COUNT, key)] = force
 
 
 @kernel

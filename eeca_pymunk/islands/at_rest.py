@@ -12,7 +12,8 @@ from __future__ import annotations
 
 from ..compiled import nonallocating
 from ..contacts.memory import find, key_of
-from ..contacts.single import kinetic, note
+from ..contacts.single import log_impulse
+from ..contacts.works import kinetic
 from ..model.bodies import AT_REST, AWAKE, CHANGED
 from ..model.contacts import LASTED
 from ..model.parameters.rest import REST_RETRY
@@ -187,7 +188,7 @@ def log_contact(A: Scene, c: int, part: float, duration: float) -> None:
     """Log this part of the impulse of contact c of an interval, over this time from the start of the interval on."""
     pushed, COUNT = A.PUSHED[c], A.COUNT
     if COUNT.logged < A.LOG.shape[0]:
-        note(
+        log_impulse(
             A.LOG[COUNT.logged], A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, pushed.start + 0.5 * duration,
             part * pushed.normal + pushed.held, part * pushed.tangential, pushed.nx, pushed.ny, pushed.px, pushed.py,
             part * pushed.change, pushed.gap,

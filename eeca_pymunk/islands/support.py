@@ -131,9 +131,7 @@ def remember_forces(A: Scene, c: int) -> None:
     if find(A.KEYS, key) >= 0 or table_has_room(A, 1):
         pushed = A.PUSHED[c]
         force = pushed.normal / pushed.length
-        remember_force(
-            A.KEYS, A.FORCES, A.COUNT, key, force, pushed.tangential / pushed.length, force, pushed.length, A.PAR.stamp
-        )
+        remember_force(A, key, force, pushed.tangential / pushed.length, force, pushed.length)
 
 
 @nonallocating

@@ -4,12 +4,12 @@ In: an island of a scene (`..islands`), the arrays of its joints (`..joints`), a
 until the interval ends, joints and contacts with their impulses.
 
 Open first `solve.py`, the interval of an island, with `lengths.py`, how long it may be, `press.py`, its contacts,
-`advance.py`, the motion under their impulses, and `bounded_rows.py`, bounded impulses of joints; `alone.py` is the
-interval of a component that is near no other shape. `meet.py` finds the instant at which islands meet, on their
+`advance.py`, the motion under their impulses, and `bounded_rows.py`, bounded impulses of joints; `alone.py` is
+the interval of a component that is near no other shape. `meet.py` finds the instant at which islands meet, on their
 `paths.py`; `ends.py` ends or shortens intervals. `ledger.py` accounts for joints, `losses.py` for what contacts lose.
-`component.py` steps one component (`gathered.py`) and finds its response to impulses, which `groups.py` and
-`columns.py` store (laws of contacts with it: `..rows.laws`), and `secant.py` updates. `fitting.py` projects velocities
-onto joints after an interval, `lifting.py` corrects penetration, `rest.py` puts islands to rest. `..model.joints` names
-the arrays. A *free* island has no contact or joint with a body that impulses do not move. A scene without joints calls
-nothing of this room.
+`component.py` steps one component (`gathered.py`). Its responses to impulses (`..newton.response`) are the columns of
+contacts (`columns.py`) over groups of bodies (`groups.py`), which `secant.py` updates; `..rows.laws` solves with them.
+`fitting.py` projects velocities onto joints after an interval, `lifting.py` corrects penetration, `rest.py` puts
+islands to rest. `..model.joints` names the arrays. A *free* island has no contact or joint with a body that impulses
+do not move. A scene without joints calls nothing of this room.
 """

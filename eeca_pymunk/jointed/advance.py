@@ -10,17 +10,20 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
+from ..joints.workspace import workspace
 from ..model.contacts import Bounded, Columns, Row
 from ..model.islands import Island
+from ..model.joint_steps import STEP
 from ..model.joints import INDEPENDENT, Joints
 from ..model.parameters.joints import ARM_ERROR, ARM_ITERATIONS
 from ..model.scene import Scene
+from ..newton.response import prepare_response
 from ..rows.build import push_contact
 from ..rows.inplace import copy
 from .bounded_rows import fill_rows, let_slip, list_rows, note_rows
 from .columns import fill_group
-from .component import ready_in_step, step_component
-from .gathered import find_places, gather_component, lead_component, rewind_joints
+from .component import step_in_scratch
+from .gathered import find_places, gather_component, lead_component, number_of, rewind_joints
 from .groups import Groups
 
 
@@ -117,7 +120,13 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
         if len(GUESS) > 0:
             lead_component(A, J, s, isle.V, ACC, GUESS, h)
         length = gather_component(A, J, s, isle.POSE, isle.V, ACC, isle.IM, isle.II, t, h)
-        step_component(A, J, s, h, length, m == 0, motion.V, motion.WAY, motion.END, motion.MID)
+        step_in_scratch(J, s, h, length, m == 0)
+        for i in range(J.COMPONENT[s].end_body - J.COMPONENT[s].first_body):
+            q, local = number_of(A, J, s, i), J.LOCAL[i]
+            for c in range(3 if q >= 0 else 0):
+                motion.V[q, c], motion.END[q, c], motion.WAY[q, c] = local.v0[c], local.pose[c], local.travel[c]
+            for c in range(2 if q >= 0 else 0):
+                motion.MID[q, c] = local.mean[c] / h
         for w in range(groups.FIRST[g], groups.FIRST[g + 1]):
             q = groups.BODY[w]
             for c in range(3):
@@ -129,7 +138,7 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
             size = find_places(A, J, s, INDEX)
             let_slip(J, s, True, few)
             first = list_rows(A, J, B, s, h, motion.MEAN)
-            if ready_in_step(J, s, h):
+            if prepare_response(workspace(J, s), STEP, h):
                 PUSH = np.empty((size, 3))
                 fill_group(J, groups, C, g, INDEX, ROWS, m, PUSH, 2)
                 fill_rows(J, groups, B, g, first, INDEX, PUSH)
@@ -149,7 +158,7 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
 
 
 @nonallocating
-def apart(row: Row, PLACE: FloatArray) -> tuple[float, float]:
+def separation(row: Row, PLACE: FloatArray) -> tuple[float, float]:
     """The distance d + r_b - r_a of the points of a contact on both bodies, along n and along -t, with bodies at PLACE
     (k, 2 or more): d leads from the centre of body a to that of b. Arms are r = arm_t n - arm_n t."""
     x, y = PLACE[row.b, 0] - PLACE[row.a, 0], PLACE[row.b, 1] - PLACE[row.a, 1]
@@ -159,7 +168,7 @@ def apart(row: Row, PLACE: FloatArray) -> tuple[float, float]:
 
 @nonallocating
 def join_points(row: Row, along: float, across: float) -> None:
-    """Change the arms of a contact so that its points, which are so far `apart`, become one: the middle, or the point
+    """Change the arms of a contact so that its points, whose `separation` this is, become one: the middle, or the point
     of a disk (arm_n = 0), on which the normal impulse still exerts no torque."""
     part = 0.0 if row.arm_na == 0.0 else 1.0 if row.arm_nb == 0.0 else 0.5
     row.arm_na += part * across
@@ -170,11 +179,11 @@ def join_points(row: Row, along: float, across: float) -> None:
 
 @nonallocating
 def points_apart(interval: Interval, i: int) -> tuple[float, float, float]:
-    """How far the two points of contact i of a free island are `apart` at the mean places of its bodies, along n and
-    along -t, and over the size of bodies and places. 0 if they are farther apart than the smaller body is large."""
+    """The `separation` of contact i of a free island at the mean places of its bodies, and its amount over the size of
+    bodies and places. 0 if that is farther than the smaller body is large."""
     isle, row, MID = interval.isle, interval.ROWS[i], interval.motion.MID
     a, b = row.a, row.b
-    along, across = apart(row, MID)
+    along, across = separation(row, MID)
     off, size = abs(along) + abs(across), min(isle.EXTENT[a], isle.EXTENT[b])
     if not off <= size:
         return 0.0, 0.0, 0.0

@@ -12,13 +12,14 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
+from ..joints.workspace import workspace
 from ..model.contacts import Bounded
 from ..model.joints import BOUNDED, PRESCRIBED, Joints
-from ..model.parameters.joints import BOUNDED_SWEEPS, MOTOR_OFF
+from ..model.parameters.joints import MOTOR_OFF
 from ..model.scene import Scene
 from ..newton.entries import acting_rows, interval_of, is_limit
-from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, bounded_rate, room_for_rows, sweep_bounded, weigh_rows
-from .component import answer
+from ..newton.response import respond
+from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, bounded_rate, room_for_rows, weigh_rows
 from .groups import Groups
 
 
@@ -34,7 +35,7 @@ def let_slip(J: Joints, s: int, slips: bool, limits: bool) -> None:
     are solved with contacts, and, if `limits`, those of limits that act."""
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         link = J.COUPLING[k]
-        if link.bounded != 0 and J.JOINT[link.joint].max_force < 1e300 and J.COMPONENT[s].bounded > 0:
+        if link.bounded != 0 and J.JOINT[link.joint].bounded != 0 and J.COMPONENT[s].bounded > 0:
             link.bounded = PRESCRIBED if slips else BOUNDED
         elif limits and is_exact_limit(J, k):
             link.bounded = PRESCRIBED if slips and link.side != 0 else 0
@@ -111,7 +112,8 @@ def list_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float, V: FloatArray) 
 
 @nonallocating
 def fill_rows(J: Joints, groups: Groups, B: Bounded, g: int, first: int, INDEX: IntArray, PUSH: FloatArray) -> None:
-    """Compute the columns of the rows of B from `first` on, which are those of group g, whose component is `ready`."""
+    """Compute the columns of the rows of B from `first` on, which are those of group g, whose component is prepared
+    (`..newton.response`)."""
     s = groups.COMPONENT[g]
     for i in range(first, B.USED[0]):
         PUSH[:] = 0.0
@@ -119,7 +121,7 @@ def fill_rows(J: Joints, groups: Groups, B: Bounded, g: int, first: int, INDEX: 
             if B.END[i, end] >= 0:
                 for c in range(3):
                     PUSH[INDEX[B.END[i, end]], c] += B.ROW[i, 3 * end + c]
-        answer(J, s, PUSH)
+        respond(workspace(J, s), PUSH)
         at = B.AT[i]
         for w in range(groups.FIRST[g], groups.FIRST[g + 1]):
             q = groups.BODY[w]
@@ -141,12 +143,3 @@ def with_bounded(B: Bounded, L: FloatArray, m: int) -> FloatArray:
     for i in range(B.USED[0]):
         BOTH[m + i, 0] = B.ROWS[i].now
     return BOTH
-
-
-@kernel
-def settle_bounded(B: Bounded, V: FloatArray) -> None:
-    """Sweep over the bounded rows alone, with V the velocities without the impulses of contacts: V in and out."""
-    X = with_bounded(B, np.empty((0, 2)), 0)
-    for _ in range(BOUNDED_SWEEPS if B.USED[0] > 0 else 0):
-        if sweep_bounded(B, X, 0, V) <= 0.0:
-            break

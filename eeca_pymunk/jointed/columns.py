@@ -11,11 +11,12 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
+from ..joints.workspace import workspace
 from ..model.contacts import Columns, Row
 from ..model.joints import Joints
+from ..newton.response import respond
 from ..rows.build import invert
 from ..rows.columns import put_free_body
-from .component import answer
 from .groups import Groups, least_mobility
 
 
@@ -77,7 +78,8 @@ def push_group(groups: Groups, g: int, INDEX: IntArray, row: Row, lam: float, be
 def fill_group(
     J: Joints, groups: Groups, C: Columns, g: int, INDEX: IntArray, ROWS: Rows[Row], m: int, PUSH: FloatArray, ways: int
 ) -> None:
-    """Compute the columns' entries on the bodies of group g, whose component is ready (`component.answer`).
+    """Compute the columns' entries on the bodies of group g, whose component is prepared
+    (`..newton.response`).
 
     Args:
         INDEX: (k,) places of bodies in the scratch of their component.  PUSH: (bodies of the component, 3) scratch.
@@ -90,7 +92,7 @@ def fill_group(
         for tangent in range(ways):
             PUSH[:] = 0.0
             push_group(groups, g, INDEX, ROWS[i], 1.0 - tangent, float(tangent), PUSH)
-            answer(J, s, PUSH)
+            respond(workspace(J, s), PUSH)
             D = C.N if tangent == 0 else C.T
             for w in range(C.AT[i], C.AT[i + 1]):
                 if groups.GROUP[C.BODY[w]] == g:

@@ -11,12 +11,11 @@ from ..joints.correct import hold_passed_by, project
 from ..joints.start import compute_rows, springs_of
 from ..joints.step import take_step
 from ..joints.workspace import workspace
-from ..model.joint_steps import POSES, SPEEDS, STEP
+from ..model.joint_steps import POSES, SPEEDS
 from ..model.joints import Joints, Workspace
 from ..model.parameters.joints import COMPONENT_WORK, COMPONENT_WORK_BODY, CORRECTION_JOINTS
 from ..model.scene import Scene
 from ..newton.entries import acts
-from ..newton.response import prepare_response, respond
 from ..newton.rows import unit_of
 from .gathered import gather_component, number_of
 
@@ -31,25 +30,6 @@ def step_in_scratch(J: Joints, s: int, h: float, length: float, whole: bool) -> 
     J.STEPPED[s].status = take_step(workspace(J, s), h, J.TALLY.order if whole else 2, length, J.STEPPED[s])
 
 
-@nonallocating
-def step_component(
-    A: Scene, J: Joints, s: int, h: float, length: float, whole: bool, V: FloatArray, WAY: FloatArray, END: FloatArray,
-    MID: FloatArray,
-) -> None:  # fmt: skip
-    """`step_in_scratch` from what `gather_component` has put there.
-
-    V, WAY, END: (k, 3) of the island, out: velocities at the end, ways (sums of h v_m), poses at the end.
-    MID: (k, 2), out: where constant forces have acted, means of the places over time.
-    """
-    step_in_scratch(J, s, h, length, whole)
-    for i in range(J.COMPONENT[s].end_body - J.COMPONENT[s].first_body):
-        q = number_of(A, J, s, i)
-        if q >= 0:
-            for c in range(3):
-                V[q, c], END[q, c], WAY[q, c] = J.LOCAL[i].v0[c], J.LOCAL[i].pose[c], J.LOCAL[i].travel[c]
-            MID[q, 0], MID[q, 1] = J.LOCAL[i].mean[0] / h, J.LOCAL[i].mean[1] / h
-
-
 @inlined
 def size_joints(W: Workspace, length: float) -> None:
     """Units of the joints' functions in a component of size `length`."""
@@ -58,7 +38,7 @@ def size_joints(W: Workspace, length: float) -> None:
 
 
 @nonallocating
-def fit_speeds(J: Joints, s: int, length: float) -> None:
+def project_speeds(J: Joints, s: int, length: float) -> None:
     """Project the velocities that `gather_component` has put into the scratch onto the joints and closed limits: an
     impact without bounce. The caller accounts for the loss."""
     W = workspace(J, s)
@@ -119,24 +99,3 @@ def passes_limit(
     size_joints(W, length)
     compute_rows(W)
     return hold_passed_by(W, least / length)
-
-
-@nonallocating
-def ready_in_step(J: Joints, s: int, h: float) -> bool:
-    """Prepare the response of component s to impulses over the step h that `step_component` has just taken: the scratch
-    is at its start again. False if there is none."""
-    return prepare_response(workspace(J, s), STEP, h)
-
-
-@nonallocating
-def ready_at_poses(J: Joints, s: int) -> bool:
-    """Prepare the response of component s to impulses at the instant and the poses that `gather_component` has put into
-    the scratch. False if there is none."""
-    return prepare_response(workspace(J, s), SPEEDS, 2.0)
-
-
-@nonallocating
-def answer(J: Joints, s: int, PUSH: FloatArray) -> None:
-    """Replace the impulses PUSH (bodies of the component, 3) by the changes of velocity that they cause in component s,
-    which `ready_in_step` or `ready_at_poses` has prepared."""
-    respond(workspace(J, s), PUSH)

@@ -15,16 +15,15 @@ from ..model.parameters.joints import FIT_CLOSING, FIT_ENERGY, FIT_RESIDUAL
 from ..model.scene import Scene
 from ..rows.bounded import room_for_rows
 from ..rows.build import normal_rate
-from ..rows.inplace import add
-from .advance import Interval, apart, find_hit, join_points
+from .advance import Interval, find_hit, join_points, separation
 from .columns import fill_free, make_columns, set_effective_masses
-from .component import fit_speeds
+from .component import project_speeds
 from .gathered import gather_component, number_of
 from .lifting import fill_at_end, raise_gaps
 
 
 @kernel
-def project_velocities(A: Scene, J: Joints, interval: Interval, L: FloatArray, end: float, scale: float) -> FloatArray:
+def project_velocities(A: Scene, J: Joints, interval: Interval, L: FloatArray, scale: float) -> FloatArray:
     """Project the velocities at the end of a lossy interval onto the joints of the components that contacts push.
 
     Bodies that land have velocities there which violate joints. The midpoint rule would change the sign of this
@@ -35,7 +34,7 @@ def project_velocities(A: Scene, J: Joints, interval: Interval, L: FloatArray, e
     Returns:
         (m,) normal impulses that keep contacts from closing, which are in the ledger.
     """
-    isle, groups, ROWS, m, motion = interval.isle, interval.groups, interval.ROWS, interval.m, interval.motion
+    isle, groups, ROWS, motion, _, m, _, t, h, _ = interval
     NOTHING = np.zeros_like(isle.V)
     PUSHED = np.zeros(len(groups.COMPONENT) + 1, np.int64)  # one more, for GROUP -1
     for i in range(m):
@@ -51,8 +50,8 @@ def project_velocities(A: Scene, J: Joints, interval: Interval, L: FloatArray, e
         if PUSHED[g + 1] == 0 or C.bounded_joints == C.end_joint - C.first_joint:
             continue
         payer = s if payer < 0 else payer
-        length = gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, end, interval.h)
-        fit_speeds(J, s, length)
+        length = gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, t + h, h)
+        project_speeds(J, s, length)
         J.STEPPED[s].projected += fitting_loss(workspace(J, s), J.STEPPED[s])
         for w in range(C.end_body - C.first_body):
             q = number_of(A, J, s, w)
@@ -68,14 +67,12 @@ def project_velocities(A: Scene, J: Joints, interval: Interval, L: FloatArray, e
             pushing += 1
             fastest = max(fastest, -normal_rate(ROWS[i], motion.V))
     if fastest > FIT_CLOSING * scale:
-        return stop_closing(A, J, interval, end, PUSHING[:pushing], FIT_RESIDUAL * fastest, payer)
+        return stop_closing(A, J, interval, PUSHING[:pushing], FIT_RESIDUAL * fastest, payer)
     return np.zeros(m)
 
 
 @kernel
-def stop_closing(
-    A: Scene, J: Joints, interval: Interval, end: float, PUSHING: IntArray, fine: float, payer: int
-) -> FloatArray:
+def stop_closing(A: Scene, J: Joints, interval: Interval, PUSHING: IntArray, fine: float, payer: int) -> FloatArray:
     """Normal impulses mu (m,), 0 <= mu _|_ u + G S G^T mu >= 0, on the contacts PUSHING, whose rates are u, with S the
     response of components at one instant: velocities that fit the joints still do, and contacts do not close. Energy
     changes by mu.(u + G S G^T mu / 2) <= 0, also if sweeps end early. Component `payer` has the loss in its ledger."""
@@ -83,16 +80,16 @@ def stop_closing(
     pushing, KEEP = len(PUSHING), ROWS[: len(PUSHING)].copy()
     for i in range(pushing):
         KEEP[i] = ROWS[PUSHING[i]]
-        along, across = apart(KEEP[i], motion.END)
+        along, across = separation(KEEP[i], motion.END)
         join_points(KEEP[i], along, across)  # which have moved apart
     C = make_columns(groups, KEEP, pushing)
     fill_free(groups, C, KEEP, isle.IM, isle.II, pushing)
-    INDEX, HIT = np.full(len(isle.IM), -1, np.int64), find_hit(groups, KEEP, pushing)
+    HIT = find_hit(groups, KEEP, pushing)
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
         if s < 0 or HIT[g] == 0:
             continue
-        if not fill_at_end(A, J, interval, C, g, INDEX, KEEP, pushing, end):
+        if not fill_at_end(A, J, interval, C, g, KEEP, pushing):
             return np.zeros(m)
     set_effective_masses(groups, C, KEEP, pushing)
     RATES = np.empty(pushing)
@@ -105,7 +102,9 @@ def stop_closing(
         HELD[PUSHING[i]] = MU[i]
         if MU[i] > 0.0:
             loss -= MU[i] * (RATES[i] + 0.5 * normal_rate(KEEP[i], D))
-    add(motion.V, D)
+    for q in range(len(D)):
+        for c in range(3):
+            motion.V[q, c] += D[q, c]
     gained = kinetic_energy(motion.V, isle.IM, isle.II, n) - before
     if abs(gained + loss) > FIT_ENERGY * before:
         # Supports move.

@@ -18,7 +18,7 @@ from .ledger import has_work_for, work_left
 
 @nonallocating
 def save_joints(J: Joints, s: int) -> None:
-    """Save the joints of component s, at the start of an interval."""
+    """Save the joints of component s, at the start of an interval, and forget what is known of its rows and parts."""
     J.COMPONENT[s].parts, J.COMPONENT[s].dependence = 0, UNTESTED
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         j = J.COUPLING[k].joint
@@ -95,7 +95,8 @@ def some_refused(J: Joints, groups: Groups) -> bool:
 
 @nonallocating
 def rewind_joints(J: Joints, s: int) -> None:
-    """Restore what a step of component s changes in its joints, but for impulses, with which the next solve begins."""
+    """Restore what a step of component s changes in its joints, but for impulses, accelerations and parts of the step,
+    with which the next solve begins."""
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         j = J.COUPLING[k].joint
         if J.COUPLING[k].kind == RATCHET:
@@ -131,7 +132,8 @@ def gather_component(
 ) -> float:  # fmt: skip
     """Write the bodies of component s to its scratch; its size, the length relative to which errors are measured.
 
-    Bodies that joints move have the rows A.PLACE in the arrays of the island; others are read at instant t.
+    Bodies that joints move have the rows A.PLACE in the arrays of the island; others are read at instant t. ACC:
+    accelerations without joints, any array where velocities or poses are projected, which does not depend on them.
     """
     C = J.COMPONENT[s]
     for i in range(C.end_body - C.first_body):

@@ -14,8 +14,9 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
-from ..contacts.memory import key_of, shapes_of
+from ..contacts.memory import shapes_of
 from ..geometry.flight import fastest, norm
+from ..geometry.sides import pair_of
 from ..geometry.widths import depth_limit, smaller
 from ..islands.depths import closes_too_far, too_deep_at_end
 from ..model.joints import Joints
@@ -24,7 +25,7 @@ from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_WAY, SAGITTA
 from ..model.scene import Scene
 from ..pairs.rules import barred, far_apart
 from ..rows.build import normal_rate
-from .advance import Interval, apart
+from .advance import Interval, separation
 
 _CUBIC = 4.0 / 27.0  # largest value of s^2 (1 - s)
 
@@ -41,9 +42,9 @@ def may_meet_others(A: Scene, i: int, way: float, t: float, h: float, KEY: IntAr
             b = A.BODY[A.LINK[o].owner]
             if barred(A, s, o) or far_apart(A, s, o, t, 2.0 * (way + fastest(b) * h + A.PAR.pulled * h * h)):
                 continue
-            known = False
+            pair, known = pair_of(A, s, o), False
             for z in range(m):
-                known = known or KEY[z] >> 1 == key_of(A, s, o) >> 1
+                known = known or KEY[z] >> 1 == pair
             if not known:
                 return True
     return False
@@ -113,7 +114,7 @@ def points_part(interval: Interval, L: FloatArray) -> float:
     for z in range(interval.m):
         a, b = ROWS[z].a, ROWS[z].b
         if L[z, 0] != 0.0 and isle.IM[a] > 0.0 and isle.IM[b] > 0.0:
-            along, across = apart(ROWS[z], MID)
+            along, across = separation(ROWS[z], MID)
             far = max(far, (abs(along) + abs(across)) / (INTERVAL_WAY * min(isle.EXTENT[a], isle.EXTENT[b])))
     return far
 

@@ -6,18 +6,21 @@ import math
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..contacts.correction import admissible, least_of, turn_by, unturn
 from ..contacts.works import work_of_forces
 from ..islands.depths import left_to_lift
 from ..islands.payment import payment
+from ..joints.workspace import workspace
 from ..model.contacts import Columns, JointedProblem, Row
+from ..model.joint_steps import SPEEDS
 from ..model.joints import Joints
 from ..model.parameters.intervals import CORRECTION_ROUND_OFF
 from ..model.parameters.joints import COLUMN_CONTACTS, IMPACT_LIMITS, JOINTED_CORRECTION_SWEEPS, JOINTED_LIFT_ERROR
 from ..model.scene import Scene
+from ..newton.response import prepare_response
 from ..rows.bounded import room_for_rows
 from ..rows.build import normal_rate
 from ..rows.columns import breach
@@ -27,18 +30,18 @@ from ..rows.inplace import copy
 from ..rows.lifting import keep_walls, lift
 from .advance import Interval
 from .columns import count_operations, fill_group, set_effective_masses
-from .component import close_at_poses, passes_limit, ready_at_poses
+from .component import close_at_poses, passes_limit
 from .gathered import find_places, gather_component
 from .groups import is_free
+from .losses import lost
 
 
 @kernel
-def raise_gaps(
-    problem: JointedProblem, n: int, GAPS: FloatArray, D: FloatArray, tolerance: float
-) -> FloatArray:  # fmt: skip
-    """Displacements D (k, 3) = Y mu with 0 <= mu _|_ g + G D >= 0, for contacts that are not left out; returns mu
-    (m,). Where a light body in a corner is joined to one a thousand times heavier, sweeps have not come far: of few
-    contacts this is the law of contacts without friction, with targets -g, and solved as such."""
+def raise_gaps(problem: JointedProblem, n: int, GAPS: FloatArray, D: FloatArray, tolerance: float) -> FloatArray:
+    """Displacements D (k, 3) = Y mu with 0 <= mu _|_ g + G D >= 0, for contacts that are not left out, whose GAPS
+    (m,) become infinite; returns mu (m,). Where a light body in a corner is joined to one a thousand times heavier,
+    sweeps have not come far: of few contacts this is the law of contacts without friction, with targets -g, and solved
+    as such."""
     ROWS, m, MU = problem.ROWS, problem.m, np.zeros(problem.m)
     for i in range(m):
         if problem.C.LEFT_OUT[i] != 0:
@@ -60,29 +63,26 @@ def raise_gaps(
 
 
 @kernel
-def fill_at_end(
-    A: Scene, J: Joints, interval: Interval, C: Columns, g: int, INDEX: IntArray, ROWS: Rows[Row], m: int, end: float
-) -> bool:  # fmt: skip
+def fill_at_end(A: Scene, J: Joints, interval: Interval, C: Columns, g: int, ROWS: Rows[Row], m: int) -> bool:
     """Compute the columns C of the normal impulses of m contacts on group g, a component, at the poses and the instant
-    at the end of an interval; False if there is no response. INDEX (k,): scratch."""
-    isle, motion, s = interval.isle, interval.motion, interval.groups.COMPONENT[g]
-    gather_component(A, J, s, motion.END, motion.V, np.zeros_like(isle.V), isle.IM, isle.II, end, interval.h)
+    at the end of an interval; False if there is no response."""
+    isle, groups, _, motion, _, _, _, t, h, _ = interval
+    s, INDEX = groups.COMPONENT[g], np.empty(len(isle.IM), np.int64)
+    gather_component(A, J, s, motion.END, motion.V, np.zeros_like(isle.V), isle.IM, isle.II, t + h, h)
     size = find_places(A, J, s, INDEX)
-    if not ready_at_poses(J, s):
+    if not prepare_response(workspace(J, s), SPEEDS, 2.0):
         return False
-    fill_group(J, interval.groups, C, g, INDEX, ROWS, m, np.empty((size, 3)), 1)
+    fill_group(J, groups, C, g, INDEX, ROWS, m, np.empty((size, 3)), 1)
     return True
 
 
 @kernel
-def lift_island(
-    A: Scene, J: Joints, interval: Interval, L: FloatArray, root: int, end: float, lost: float
-) -> None:  # fmt: skip
-    """Correct penetration at the end of an island's motion under impulses L (m, 2) of its contacts, which have `lost`
-    energy in it."""
+def lift_island(A: Scene, J: Joints, interval: Interval, L: FloatArray, root: int) -> None:
+    """Correct penetration at the end of an island's motion under impulses L (m, 2) of its contacts."""
     isle, groups, ROWS, motion, _, m, n, _, _, _ = interval
-    budget, payable = payment(A, isle, ROWS, L, motion.V, n, m, lost, A.RESTING[root].lost, False, True)
-    spent = correct_overlaps(A, J, interval, end, budget)
+    loss = lost(interval, L)
+    budget, payable = payment(A, isle, ROWS, L, motion.V, n, m, loss, A.RESTING[root].lost, False, True)
+    spent = correct_overlaps(A, J, interval, budget)
     paid, one = min(spent, payable), J.STEPPED[groups.JOINTED[0]]
     one.lifted += paid
     one.supports += spent - paid
@@ -101,7 +101,7 @@ def keep_centre(D: FloatArray, IM: FloatArray, n: int) -> None:
 
 
 @kernel
-def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget: float) -> float:
+def correct_overlaps(A: Scene, J: Joints, interval: Interval, budget: float) -> float:
     """Move the poses at the end of an island's motion out of each other, at a cost of at most `budget`, not at all if
     that is below 0; returns the cost.
 
@@ -110,22 +110,21 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget
     its centre of mass and its angular momentum: velocities at the end rotate by what the displacements have changed of
     it.
     """
-    isle, groups, ROWS, motion, C, m, n, _, h, _ = interval
+    isle, groups, ROWS, motion, C, m, n, t, h, _ = interval
     V, WAY, END = motion.V, motion.WAY, motion.END
     GAPS, deepest = np.empty(m), 0.0
     for i in range(m):
         GAPS[i] = ROWS[i].gap + normal_rate(ROWS[i], WAY)
         deepest = min(deepest, GAPS[i])
     size = least_of(isle.EXTENT, n)
-    if deepest >= -left_to_lift(A, end) * size or not budget >= 0.0:
+    if deepest >= -left_to_lift(A, t + h) * size or not budget >= 0.0:
         return 0.0
-    INDEX = np.full(len(isle.IM), -1, np.int64)
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
         # The columns of the interval, in which stiff springs resist, so that D hardly strains them; but bounded rows
         # prescribe speeds at its end.
         if s >= 0 and J.COMPONENT[s].bounded_joints > 0:
-            fill_at_end(A, J, interval, C, g, INDEX, ROWS, m, end)
+            fill_at_end(A, J, interval, C, g, ROWS, m)
     D = np.zeros_like(V)
     for _ in range(IMPACT_LIMITS):
         KEEP, D[:] = ROWS[:m].copy(), 0.0
@@ -135,8 +134,8 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget
         again = False
         for g in range(len(groups.COMPONENT)):
             s = groups.COMPONENT[g]
-            if s >= 0 and passes_limit(A, J, s, END, D, isle.IM, isle.II, end, h, JOINTED_LIFT_ERROR * -deepest):
-                again = fill_at_end(A, J, interval, C, g, INDEX, ROWS, m, end) or again
+            if s >= 0 and passes_limit(A, J, s, END, D, isle.IM, isle.II, t + h, h, JOINTED_LIFT_ERROR * -deepest):
+                again = fill_at_end(A, J, interval, C, g, ROWS, m) or again
         if not again:
             break
     free = is_free(isle, groups, n, J)
@@ -159,7 +158,7 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, end: float, budget
                 for c in range(3):
                     moves = max(moves, abs(D[groups.BODY[w], c]))
             if s >= 0 and moves > 0.0:
-                STORED[g] = close_at_poses(A, J, s, END, NEW, V, isle.IM, isle.II, end, h)
+                STORED[g] = close_at_poses(A, J, s, END, NEW, V, isle.IM, isle.II, t + h, h)
                 spent += STORED[g]
         spent -= work_of_forces(isle.ACC, isle.IM, isle.II, n, NEW - END)
         turn, x, y, spin, inertia = unturn(NEW, NEW - END, V, isle.IM, isle.II, ALL, 0.0)

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..model.contacts import Bounded, Row
 from ..model.joints import Joints
-from ..model.parameters.joints import PRESS_LOCKS
+from ..model.parameters.joints import BOUNDED_SWEEPS, PRESS_LOCKS
 from ..model.scene import Scene
+from ..rows.bounded import sweep_bounded
 from ..rows.build import normal_rate, slip_rate
 from ..rows.columns import push_columns
 from ..rows.energy import loss_of_scaled
 from .advance import Interval, advance_aligned, farthest_apart
-from .bounded_rows import settle_bounded
+from .bounded_rows import with_bounded
 
 
 @nonallocating
@@ -46,12 +49,22 @@ def work_error(interval: Interval, L: FloatArray, slow: float, pull: float, know
 
 
 @kernel
+def without_contacts(interval: Interval, L: FloatArray, B: Bounded) -> FloatArray:
+    """Velocities (k, 3) of the motion without the impulses L of contacts, by the columns; bounded impulses follow by
+    sweeps over their rows alone."""
+    V, X = interval.motion.MEAN.copy(), with_bounded(B, np.empty((0, 2)), 0)
+    push_columns(interval.C, L, interval.m, -1.0, V)
+    for _ in range(BOUNDED_SWEEPS if B.USED[0] > 0 else 0):
+        if sweep_bounded(B, X, 0, V) <= 0.0:
+            break
+    return V
+
+
+@kernel
 def scale_of_loss(interval: Interval, L: FloatArray, B: Bounded, more: float) -> tuple[float, float]:
     """Factor s of impulses L with which contacts lose `more` energy than with s = 1, from the slope p - 2 q of their
     loss there, 0 if that does not grow with less impulses; and by how much velocities then change."""
-    FREE = interval.motion.MEAN.copy()
-    push_columns(interval.C, L, interval.m, -1.0, FREE)
-    settle_bounded(B, FREE)
+    FREE = without_contacts(interval, L, B)
     p, q = loss_of_scaled(interval.ROWS, L, interval.motion.MEAN, FREE, interval.m)
     slope = p - 2.0 * q
     s = 1.0 + more / slope if slope < 0.0 else 0.0

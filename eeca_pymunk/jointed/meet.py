@@ -217,4 +217,4 @@ def locate_impact(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float,
     fits = find_apart_before(A, J, S)
     if S.rate >= 0.0 and S.t - S.least <= A.PAR.instant:
         fits = find_later(A, J, S)
-    return end_meeting(A, J, SEARCH, fits)
+    return end_meeting(A, J, SEARCH, fits)  # the array itself: S is only valid as long as it is used

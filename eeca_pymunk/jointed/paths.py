@@ -20,7 +20,7 @@ from ..model.scene import Scene
 from ..pairs.rules import barred, far_apart
 from ..prediction.impact_times import time_of_impact
 from ..prediction.work import look_work
-from .component import fit_speeds
+from .component import project_speeds
 from .ends import under_way
 from .gathered import gather_alone
 
@@ -38,7 +38,7 @@ def allowed_velocity(A: Scene, J: Joints, i: int, t: float) -> tuple[float, floa
         W, first = workspace(J, s), J.COMPONENT[s].first_body
         length = gather_alone(A, J, s, t, 0.0)
         release_limits(W)
-        fit_speeds(J, s, length)
+        project_speeds(J, s, length)
         for w in range(W.bodies):
             if J.JOINED[first + w].body == i:
                 return J.LOCAL[w].v0[0], J.LOCAL[w].v0[1], J.LOCAL[w].v0[2]

@@ -23,16 +23,15 @@ from ..model.parameters import joints
 from ..model.parameters.events import RESOLUTION
 from ..model.scene import Scene
 from ..rows.build import rates
-from ..rows.columns import push_columns
 from ..rows.gentle import excessive, sweep_gently
 from ..rows.inplace import copy
 from ..rows.laws import give_slips, take_slips
 from .advance import Interval, advance, advance_aligned, align, farthest_apart
-from .bounded_rows import make_bounded, settle_bounded, with_bounded
+from .bounded_rows import make_bounded, with_bounded
 from .columns import count_operations, fill_free, set_effective_masses
 from .gathered import some_give, some_refused, some_taut
 from .groups import is_free
-from .losses import lock_jointed, lost, scale_of_loss, work_error
+from .losses import lock_jointed, lost, scale_of_loss, without_contacts, work_error
 from .press_laws import aims, manner_of, solve_laws
 from .secant import fit_columns
 
@@ -40,9 +39,7 @@ GIVEN_UP, UNSOLVED, SOLVED = -1, 0, 1  # what becomes of the contacts of an inte
 
 
 @kernel
-def solve_gently(
-    A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, free: bool, quick: float
-) -> None:  # fmt: skip
+def solve_gently(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, free: bool, quick: float) -> None:
     """Impulses L (m, 2) by sweeps that begin at 0, about the motion without impulses; none if these are excessive for
     bodies of the speed `quick`; and the motion under them."""
     isle, groups, ROWS, _, C, m, n, _, _, _ = interval
@@ -68,12 +65,8 @@ def solve_gently(
 def accelerations(interval: Interval, L: FloatArray, B: Bounded) -> tuple[FloatArray, float]:
     """Accelerations (k, 3) of the bodies without contacts: those of the motion, less the effect of its impulses L by
     the columns; and the largest of any point."""
-    isle, motion, h = interval.isle, interval.motion, interval.h
-    EFFECT = motion.MEAN.copy()
-    push_columns(interval.C, L, interval.m, -1.0, EFFECT)
-    settle_bounded(B, EFFECT)
-    EFFECT = (EFFECT - isle.V) / h
-    return EFFECT, farthest_apart(EFFECT, np.zeros_like(EFFECT), isle.EXTENT, interval.n)
+    EFFECT = (without_contacts(interval, L, B) - interval.isle.V) / interval.h
+    return EFFECT, farthest_apart(EFFECT, np.zeros_like(EFFECT), interval.isle.EXTENT, interval.n)
 
 
 @kernel

@@ -14,7 +14,6 @@ from ..model.contacts import JointedProblem, Row
 from ..model.joints import Joints
 from ..model.parameters import joints
 from ..model.parameters.impulses import WEDGED
-from ..model.parameters.intervals import LARGE_ISLAND
 from ..model.scene import Scene
 from ..rows.build import conserves, normal_rate, rubs
 from ..rows.columns import push_column
@@ -59,8 +58,7 @@ def manner_of(A: Scene, interval: Interval) -> Manner:
     if interval.few:
         return Manner(False, True, joints.OUTER, joints.PRESS_SWEEPS_FEW)
     rounds = joints.OUTER_PART if before_end(A, interval.t + interval.h) else joints.OUTER_MANY
-    most = sweeps_of(interval.n, interval.t) if interval.n >= LARGE_ISLAND else joints.PRESS_SWEEPS
-    return Manner(False, False, rounds, most)
+    return Manner(False, False, rounds, sweeps_of(interval.n, interval.t))
 
 
 @nonallocating

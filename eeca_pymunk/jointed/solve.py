@@ -35,34 +35,26 @@ from .groups import find_groups
 from .ledger import has_work_for, work_left
 from .lengths import excess, forced_deeper, too_deep_on_way, within_sagitta
 from .lifting import lift_island
-from .losses import lost, slip_of
+from .losses import slip_of
 from .press import GIVEN_UP, SOLVED, solve_contacts
 from .press_laws import few_act
 from .rest import rest_if_still
 
 
 @kernel
-def residual_of(interval: Interval, L: FloatArray) -> float:
-    """The largest velocity by which impulses L (m, 2) and the motion under them break the laws of contacts, with
-    Coulomb's friction (`take_slips`). Joints hold in any case."""
-    ROWS, C, m = interval.ROWS, interval.C, interval.m
-    SLIP = take_slips(ROWS, m)
-    worst = breach(JointedProblem(ROWS, C, room_for_rows(0, 0), m), L, interval.motion.MEAN)
-    give_slips(ROWS, m, SLIP)
-    return worst
-
-
-@kernel
 def note_residual(A: Scene, interval: Interval, L: FloatArray, solved: bool, tolerance: float) -> None:
     """Report a contact that joints force deeper, with its velocities, present and allowed; else, if the laws of
-    contacts are not `solved`, the velocity by which they are broken, if above `tolerance`."""
+    contacts, with Coulomb's friction alone (`take_slips`), are not `solved`, the velocity by which they are broken, if
+    above `tolerance`. Joints hold in any case."""
     ROWS, h, z = interval.ROWS, interval.h, forced_deeper(A, interval)
     if z >= 0:
         a, b = shapes_of(A, ROWS[z])
         most = max(ROWS[z].gap + depth_limit(A, a, b), 0.0) / h
         note_unmet(A, CONTACTS, a, b, -normal_rate(ROWS[z], interval.motion.WAY) / h, most)
     elif not solved and interval.m > 0:
-        residual = residual_of(interval, L)
+        SLIP, free = take_slips(ROWS, interval.m), room_for_rows(0, 0)
+        residual = breach(JointedProblem(ROWS, interval.C, free, interval.m), L, interval.motion.MEAN)
+        give_slips(ROWS, interval.m, SLIP)
         if not residual <= tolerance:
             a, b = shapes_of(A, ROWS[0])
             note_unmet(A, CONTACTS, a, b, residual, tolerance)
@@ -167,13 +159,13 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     contacts, EXPECTED = make_contacts(p, k), np.zeros(2 * p + 1)
     ROWS, L = contacts.ROWS, contacts.L
     motion, REACH = motion_at_start(isle, k), np.empty(k)
-    slow, fast, pull = speeds(isle.V, isle.ACC, isle.EXTENT, isle.IM, n, h, REACH)
+    slow, fast, pull = speeds(isle, n, h, REACH)
     for q in range(n):
         slow = max(slow, SPACING * REACH_ROUND_OFF * isle.EXTENT[q] / h)  # tolerances must not underflow
     fast = max(slow, fast)
     m = 0
     if p > 0:
-        m = gather_contacts(A, isle, contacts, isle.POSE + 0.5 * h * isle.V, REACH, h, k == n)
+        m = gather_contacts(A, isle, contacts, REACH, h, k == n)
     # Many near contacts of which few act are dear: roughly, once the work of the step is spent.
     few = m <= COLUMN_CONTACTS or (work_left(A, J) >= 0.0 and few_act(ROWS, isle.V, m, h, pull))
     interval = Interval(isle, groups, ROWS, motion, make_columns(groups, ROWS, m), m, n, t, h, few)
@@ -212,8 +204,8 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     # Corrected at the end of the interval: within a short one, paths would be steep.
     WHERE, HELD = motion.END.copy(), np.zeros(m)
     if not conserves(ROWS, m):
-        lift_island(A, J, interval, L, root, t + h, lost(interval, L))
-        HELD = project_velocities(A, J, interval, L, t + h, slow + pull * h)
+        lift_island(A, J, interval, L, root)
+        HELD = project_velocities(A, J, interval, L, slow + pull * h)
     local.clear_places(A, MINE)
     first = COUNT.pushes
     local.open_interval(A, root, isle, contacts, motion.V, m, t, h)

@@ -40,7 +40,8 @@ def limit_gap(W: Workspace, k: int, side: int) -> float:
 
 @inlined
 def stand(W: Workspace, k: int, side: int) -> None:
-    """Let joint k stand on its bound at this side. It may be apart at one side only."""
+    """Let joint k stand on its bound at this side. A `target` that leaves it apart at the other side ends: it is that
+    of the bound on which it stands."""
     last = W.link[k].rows - 1
     if side * W.J.HINGE[k].target[last] < 0.0:
         W.J.HINGE[k].target[last] = 0.0

@@ -12,7 +12,7 @@ from ..newton.entries import acts
 from ..newton.motion import go_back, save
 from ..newton.rows import joint_rows, shared_part, shares_point
 from .bounds import hold_passed, limit_gap, passed_side
-from .correct import KEPT, NOW, fitting_loss, kinetic_of, kinetic_of_change, project, restore_speeds, speeds_fit
+from .correct import CHANGE, KEPT, NOW, fitting_loss, kinetic_of, project, restore_speeds, speeds_fit
 from .frame import move_apart, work_of_shift
 from .lock import lock_energy
 from .start import closing_share, compute_rows, springs_of
@@ -130,7 +130,7 @@ def close_joints(W: Workspace, h: float, ledger: JointLedger) -> bool:
         turned = work_of_shift(W) if own else 0.0
         # Closing what a step left apart is paid from the motion.
         locked = lock_energy(W, cost - turned, ledger) if own and cost > turned else 0.0
-        # Contradictory rows are not closed.
+        # Rows that contradict one another are not closed, nor those whose closing the motion cannot pay.
         if not farthest(W) <= before or (own and locked < cost - turned - 1e-9 * abs(cost)):
             go_back(W)
             compute_rows(W)
@@ -154,7 +154,7 @@ def fit_speeds(W: Workspace, left: float) -> bool:
     if speeds_fit(W):
         return False
     project(W, SPEEDS)
-    if kinetic_of_change(W) <= left * kinetic_of(W, KEPT):
+    if kinetic_of(W, CHANGE) <= left * kinetic_of(W, KEPT):
         restore_speeds(W)
         return False
     return True

@@ -15,7 +15,7 @@ from .bounds import inactive, limit_gap, limit_gap_rate, stand
 from .frame import has_prescribed_motion, work_of_change
 from .lock import restore_momenta
 
-NOW, KEPT, SAVED = 0, 1, 2  # velocities of a kinetic energy
+NOW, KEPT, SAVED, CHANGE = 0, 1, 2, 3  # velocities of a kinetic energy
 
 
 @nonallocating
@@ -66,24 +66,14 @@ def project(W: Workspace, what: int) -> None:
 @nonallocating
 def kinetic_of(W: Workspace, which: int) -> float:
     """Kinetic energy in the directions that joints can move, of the velocities v0 (NOW), `v_kept` (KEPT) or
-    `saved_velocity` (SAVED)."""
+    `saved_velocity` (SAVED), or of the CHANGE from `v_kept` to v0."""
     local, total = W.J.LOCAL, 0.0
     for i in range(W.bodies):
-        velocity = local[i].v0 if which == NOW else local[i].v_kept if which == KEPT else local[i].saved_velocity
+        velocity = local[i].v_kept if which == KEPT else local[i].saved_velocity if which == SAVED else local[i].v0
         for c in range(3):
             if local[i].mobility[c] > 0.0:
-                total += 0.5 * velocity[c] ** 2 / local[i].mobility[c]
-    return total
-
-
-@nonallocating
-def kinetic_of_change(W: Workspace) -> float:
-    """(1/2) dv.M dv of the change of velocities from `v_kept` to `v0`."""
-    local, total = W.J.LOCAL, 0.0
-    for i in range(W.bodies):
-        for c in range(3):
-            if local[i].mobility[c] > 0.0:
-                total += 0.5 * (local[i].v0[c] - local[i].v_kept[c]) ** 2 / local[i].mobility[c]
+                v = velocity[c] - local[i].v_kept[c] if which == CHANGE else velocity[c]
+                total += 0.5 * v**2 / local[i].mobility[c]
     return total
 
 
@@ -97,7 +87,7 @@ def fitting_loss(W: Workspace, ledger: JointLedger) -> float:
     gained = kinetic_of(W, NOW) - kinetic_of(W, KEPT)
     if not has_prescribed_motion(W):
         return -gained
-    lost = kinetic_of_change(W)
+    lost = kinetic_of(W, CHANGE)
     ledger.supports += gained + lost
     ledger.carried += work_of_change(W)
     return lost
@@ -105,7 +95,7 @@ def fitting_loss(W: Workspace, ledger: JointLedger) -> float:
 
 @nonallocating
 def keep_speeds(W: Workspace) -> None:
-    """Store the velocities before they are projected."""
+    """Store the velocities before they are projected, whose impulses become 0."""
     for i in range(W.bodies):
         for c in range(3):
             W.J.LOCAL[i].v_kept[c] = W.J.LOCAL[i].v0[c]

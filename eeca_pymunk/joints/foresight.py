@@ -80,8 +80,7 @@ def predict_part(W: Workspace, part: int, piece: float, cold: bool) -> None:
     for k in range(W.joints):
         j = link[k].joint
         for c in range(6):
-            i = link[k].body[0] if c < 3 else link[k].body[1]
-            W.J.LOCAL[i].lead[c % 3] = extrapolate(joint[j].past_led, c, w0, w1, w2, w3, w4, w5)
+            W.J.LOCAL[link[k].body[c // 3]].lead[c % 3] = extrapolate(joint[j].past_led, c, w0, w1, w2, w3, w4, w5)
         for r in range(0 if cold else link[k].rows):
             W.J.HINGE[k].lam[r] = piece * extrapolate(joint[j].past_push, r, w0, w1, w2, w3, w4, w5)
 
@@ -93,8 +92,7 @@ def store(W: Workspace, at: int, piece: float) -> None:
     for k in range(W.joints):
         j = link[k].joint
         for c in range(6):
-            i = link[k].body[0] if c < 3 else link[k].body[1]
-            joint[j].past_led[c, at] = W.J.LOCAL[i].lead[c % 3]
+            joint[j].past_led[c, at] = W.J.LOCAL[link[k].body[c // 3]].lead[c % 3]
         for r in range(link[k].rows):
             joint[j].past_push[r, at] = W.J.HINGE[k].lam[r] / piece
 

@@ -140,15 +140,16 @@ def compliance_on(rung: int, h: float, yields: bool, before: float) -> float:
 
 
 @nonallocating
-def take_parts(W: Workspace, h: float, length: float, rung: int, parts: int, give: float, cold: bool) -> int:
+def take_parts(W: Workspace, h: float, length: float, rung: int, compliance: float, cold: bool) -> int:
     """Take the step h in the parts of a rung: TAKEN, FAILED if one of them fails, or CONTRADICTED if exact joints
     contradict one another at its start. Energies are added to PART_LEDGER.
 
     Args:
-        length: size of the component.  give: compliance of joints over the square of a part.
+        length: size of the component.  compliance: of joints, time².
         cold: rows are redundant, and those without bounds begin without impulse.
     """
-    before = h
+    parts, before = int(PARTS_ON[rung]), h
+    give = compliance / (h / parts) ** 2
     for p in range(parts):
         if parts > 1:
             W.J.COMPONENT[W.s].parts = 0
@@ -188,9 +189,9 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
         dear = progress.length > FINAL and RESOLUTION * (progress.effort - begun) > progress.budget
         if (progress.length == LONG or dear) and WHOLE_STEP < rung < ELASTIC_RUNG:
             break
-        parts, compliance = int(PARTS_ON[rung]), compliance_on(rung, h, yields, first.compliance)
+        compliance = compliance_on(rung, h, yields, first.compliance)
         clear_ledger(W.J.PART_LEDGER)
-        outcome = take_parts(W, h, length, rung, parts, compliance / (h / parts) ** 2, cold)
+        outcome = take_parts(W, h, length, rung, compliance, cold)
         if outcome == TAKEN and (rung >= ELASTIC_RUNG or repaid(W, h, length, own)):
             first.compliance = compliance
             return EXACT if rung <= WHOLE_STEP else HALVED if rung < ELASTIC_RUNG else ELASTIC

@@ -6,18 +6,16 @@ import numpy as np
 
 from ..arrays import IntArray
 from ..compiled import kernel
-from ..compiled.records import Rows
-from ..model.joints import CONDENSED, PIVOT, WHOLE, Component, ComponentBody, Coupling
+from ..model.joints import CONDENSED, PIVOT, WHOLE, Joints
 from ..rows.dissection import neighbours
 
 
 @kernel
-def order_nodes(start: IntArray, near: IntArray, nodes: int, order: IntArray) -> None:
-    """Write the reverse Cuthill-McKee order of a graph to `order` (nodes,), from a node far out, ties by number.
-
-    Args:
-        start, near: of `..rows.dissection.neighbours`.
-    """
+def order_nodes(start: IntArray, near: IntArray) -> IntArray:
+    """The reverse Cuthill-McKee order (nodes,) of a graph (`..rows.dissection.neighbours`), from a node far out, ties
+    by number."""
+    nodes = len(start) - 1
+    order = np.empty(nodes, np.int64)
     level = np.empty(nodes, np.int64)
     placed = np.zeros(nodes, np.int64)
     count = 0
@@ -53,20 +51,18 @@ def order_nodes(start: IntArray, near: IntArray, nodes: int, order: IntArray) ->
             else:
                 first = order[tail - 1]
     for x in range(nodes // 2):
-        keep = order[x]
-        order[x] = order[nodes - 1 - x]
-        order[nodes - 1 - x] = keep
+        order[x], order[nodes - 1 - x] = order[nodes - 1 - x], order[x]
+    return order
 
 
 @kernel
-def order_unknowns(
-    component: Rows[Component], member: Rows[ComponentBody], link: Rows[Coupling], s: int, condensed: bool
-) -> None:
+def order_unknowns(J: Joints, s: int, condensed: bool) -> None:
     """Number the unknowns of the bodies and joints of component s (`column`, `first_row`); set the number of unknowns,
     the half-width of the band, and the number of unknowns outside the matrix (`impulses`).
 
     In a condensed system only bodies are nodes, and joints are the edges between them.
     """
+    component, member, link = J.COMPONENT, J.JOINED, J.COUPLING
     b0, b1, j0, j1 = component[s].first_body, component[s].end_body, component[s].first_joint, component[s].end_joint
     bodies, joints = b1 - b0, j1 - j0
     nodes = bodies if condensed else bodies + joints
@@ -86,8 +82,7 @@ def order_unknowns(
                 EDGE[edges, 0], EDGE[edges, 1] = u, v
                 edges += 1
     start, near = neighbours(EDGE, edges, nodes)
-    order = np.empty(nodes, np.int64)
-    order_nodes(start, near, nodes, order)
+    order = order_nodes(start, near)
     first = np.zeros(bodies + joints, np.int64)
     total = 0
     for x in range(nodes):
@@ -111,9 +106,10 @@ def order_unknowns(
 
 
 @kernel
-def order_rows(component: Rows[Component], member: Rows[ComponentBody], link: Rows[Coupling], s: int) -> None:
+def order_rows(J: Joints, s: int) -> None:
     """Number the unknowns of the joints of component s in a system of rows alone, in which joints on one body are
     coupled; set its size and band, and the lists of the joints on each body."""
+    component, member, link = J.COMPONENT, J.JOINED, J.COUPLING
     b0, b1, j0, j1 = component[s].first_body, component[s].end_body, component[s].first_joint, component[s].end_joint
     joints = j1 - j0
     for i in range(b0, b1):
@@ -140,8 +136,7 @@ def order_rows(component: Rows[Component], member: Rows[ComponentBody], link: Ro
                     other = link[j0 + (other >> 1)].following[other & 1]
                 one = link[j0 + (one >> 1)].following[one & 1]
     start, near = neighbours(EDGE, edges, joints)
-    order = np.empty(joints, np.int64)
-    order_nodes(start, near, joints, order)
+    order = order_nodes(start, near)
     total, band = 0, 1
     for x in range(joints):
         link[j0 + order[x]].first_dual = total

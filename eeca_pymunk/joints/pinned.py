@@ -61,8 +61,7 @@ def hold(table: Table, joints: Table) -> bool:
         for s in range(len(LINK)):
             if SHAPE[s].friction > 0.0:
                 spins[LINK[s].owner] = WHOLLY
-        turns, cayley = np.zeros(len(bodies), np.int64), np.zeros(len(bodies), np.int64)
-        find_turning(bodies, J.JOINT, len(J.JOINT), turns, cayley)
+        turns, _ = find_turning(bodies, J.JOINT)
         kinds, welds = np.zeros(len(bodies), np.int64), np.full((len(bodies), 3), -1, np.int64)
         for i in range(len(bodies)):
             spins[i] = spins[i] if turns[i] == 0 else FREE

@@ -14,7 +14,7 @@ from ..compiled import kernel
 from ..compiled.records import Rows, empty
 from ..model import joints as model
 from ..model.bodies import BODIES, Body
-from ..model.joints import GEAR, GROOVE, Component, ComponentBody, Coupling, Joint
+from ..model.joints import GEAR, GROOVE, Joint, Joints
 from ..model.parameters.joints import CONDENSE_BAND, MOST_BOUNDED
 from ..newton.rows import row_count
 from .ordering import order_rows, order_unknowns
@@ -30,17 +30,11 @@ def root(parent: IntArray, i: int) -> int:
 
 
 @kernel
-def find_components(
-    bodies: Rows[Body], joint: Rows[Joint], parent: IntArray, component_of: IntArray, joints: int
-) -> int:
-    """Number the components in the order of their first joints; how many there are.
-
-    Out: `parent` (bodies,), a forest as of `root`, and component_of (joints,), -1 for a joint that moves none of its
-    bodies.
-    """
-    for i in range(len(parent)):
-        parent[i] = i
-    for j in range(joints):
+def find_components(bodies: Rows[Body], joint: Rows[Joint]) -> tuple[int, IntArray]:
+    """Number the components in the order of their first joints: how many there are, and (joints,) that of each joint,
+    -1 if it moves none of its bodies."""
+    parent, component_of = np.arange(len(bodies)), np.empty(len(joint), np.int64)
+    for j in range(len(joint)):
         a, b = joint[j].body[0], joint[j].body[1]
         if movable(bodies, a) and movable(bodies, b) and moves_body(bodies, joint[j]):
             p, q = root(parent, a), root(parent, b)
@@ -48,7 +42,7 @@ def find_components(
                 parent[max(p, q)] = min(p, q)
     number = np.full(len(parent), -1, np.int64)
     count = 0
-    for j in range(joints):
+    for j in range(len(joint)):
         a, b = joint[j].body[0], joint[j].body[1]
         component_of[j] = -1
         if moves_body(bodies, joint[j]):
@@ -57,7 +51,7 @@ def find_components(
                 number[top] = count
                 count += 1
             component_of[j] = number[top]
-    return count
+    return count, component_of
 
 
 @kernel
@@ -76,11 +70,12 @@ def moves_body(bodies: Rows[Body], joint: Joint) -> bool:
 
 
 @kernel
-def find_turning(bodies: Rows[Body], joint: Rows[Joint], joints: int, turns: IntArray, cayley: IntArray) -> None:
-    """Set turns (bodies,) to 1 for bodies that joints turn, and cayley (bodies,) to 1 for those of them that turn by 2
-    atan(chi/2) (`..model.joint_steps.BodyStep`): bodies held off their centre, and bodies whose angle a joint binds to
-    such a body's. Both arrays are 0 before."""
-    for j in range(joints):
+def find_turning(bodies: Rows[Body], joint: Rows[Joint]) -> tuple[IntArray, IntArray]:
+    """(bodies,) 1 for bodies that joints turn, and (bodies,) 1 for those of them that turn by 2 atan(chi/2)
+    (`..model.joint_steps.BodyStep`): bodies held off their centre, and bodies whose angle a joint binds to such a
+    body's; else 0."""
+    turns, cayley = np.zeros(len(bodies), np.int64), np.zeros(len(bodies), np.int64)
+    for j in range(len(joint)):
         a, b, kind = joint[j].body[0], joint[j].body[1], joint[j].kind
         off_a = kind == GROOVE or (kind < GEAR and (joint[j].anchor_a[0] != 0.0 or joint[j].anchor_a[1] != 0.0))
         off_b = kind < GEAR and (joint[j].anchor_b[0] != 0.0 or joint[j].anchor_b[1] != 0.0)
@@ -93,38 +88,38 @@ def find_turning(bodies: Rows[Body], joint: Rows[Joint], joints: int, turns: Int
     changed = True
     while changed:
         changed = False
-        for j in range(joints):
+        for j in range(len(joint)):
             a, b = joint[j].body[0], joint[j].body[1]
             if joint[j].kind >= GEAR and turns[a] == 1 and turns[b] == 1 and cayley[a] != cayley[b]:
                 cayley[a] = cayley[b] = 1
                 changed = True
+    return turns, cayley
 
 
 @kernel
-def mark_actions(
-    joint: Rows[Joint], member: Rows[ComponentBody], link: Rows[Coupling], component: Rows[Component], s: int
-) -> None:
+def mark_actions(J: Joints, s: int) -> None:
     """Mark the bodies of component s that its joints push, and those on which they exert torques."""
-    for i in range(component[s].first_body, component[s].end_body):
-        member[i].acted = 0
-    for k in range(component[s].first_joint, component[s].end_joint):
-        j, kind = link[k].joint, link[k].kind
+    link, C = J.COUPLING, J.COMPONENT[s]
+    for i in range(C.first_body, C.end_body):
+        J.JOINED[i].acted = 0
+    for k in range(C.first_joint, C.end_joint):
+        joint, kind = J.JOINT[link[k].joint], link[k].kind
         for end in range(2):
-            one = member[component[s].first_body + link[k].body[end]]
-            anchor = joint[j].anchor_a if end == 0 else joint[j].anchor_b
+            one = J.JOINED[C.first_body + link[k].body[end]]
+            anchor = joint.anchor_a if end == 0 else joint.anchor_b
             off = anchor[0] != 0.0 or anchor[1] != 0.0 or (kind == GROOVE and end == 0)
             one.acted |= model.FORCES_ON if kind < GEAR else 0
             one.acted |= model.TORQUES_ON if kind >= GEAR or off else 0
 
 
 @kernel
-def mark_joints(joint: Rows[Joint], link: Rows[Coupling], component: Rows[Component], s: int) -> tuple[bool, bool]:
+def mark_joints(J: Joints, s: int) -> tuple[bool, bool]:
     """Mark the joints of component s whose impulses are bounded, and set what the component has of them. Returns
     whether a disc bounds two impulses of a joint, and whether all joints hold exactly, those with limits included."""
-    one, discs, hard, rows = component[s], False, True, 0
+    link, one, discs, hard, rows = J.COUPLING, J.COMPONENT[s], False, True, 0
     one.bounded_joints = one.driven = 0
     for k in range(one.first_joint, one.end_joint):
-        motor, limited = link[k].kind == model.MOTOR, joint[link[k].joint].bounded != 0
+        motor, limited = link[k].kind == model.MOTOR, J.JOINT[link[k].joint].bounded != 0
         bounded = motor or (limited and link[k].kind not in (model.SPRING, model.ROTARY_SPRING))
         link[k].bounded = model.BOUNDED if bounded else 0
         if bounded:
@@ -138,17 +133,12 @@ def mark_joints(joint: Rows[Joint], link: Rows[Coupling], component: Rows[Compon
 
 
 @kernel
-def make_plan(
-    bodies: Rows[Body], joint: Rows[Joint], component: Rows[Component], member: Rows[ComponentBody],
-    link: Rows[Coupling], OF: IntArray,
-) -> int:  # fmt: skip
-    """Fill in `component` (joints,), `member` (2 joints,), `link` (joints,), and OF (n,), which is -1, the component of
-    each body that joints may move; how many components there are."""
-    joints = len(joint)
-    parent, component_of = np.empty(len(bodies), np.int64), np.empty(joints, np.int64)
-    count = find_components(bodies, joint, parent, component_of, joints)
-    turns, cayley = np.zeros(len(bodies), np.int64), np.zeros(len(bodies), np.int64)
-    find_turning(bodies, joint, joints, turns, cayley)
+def make_plan(bodies: Rows[Body], J: Joints) -> int:
+    """Fill in COMPONENT, JOINED, COUPLING, and OF, which is -1, of J, whose joints are between `bodies`; how many
+    components there are."""
+    joint, component, member, link, joints = J.JOINT, J.COMPONENT, J.JOINED, J.COUPLING, len(J.JOINT)
+    count, component_of = find_components(bodies, joint)
+    turns, cayley = find_turning(bodies, joint)
     room = np.zeros(count + 1, np.int64)
     for j in range(joints):
         if component_of[j] >= 0:
@@ -176,41 +166,38 @@ def make_plan(
                     freedoms = 3 if turns[body] == 1 else 2
                     member[used].freedoms = freedoms if movable(bodies, body) else 0
                     if movable(bodies, body):
-                        OF[body] = s
+                        J.OF[body] = s
                     used += 1
                 link[k].body[end] = place[body] - component[s].first_body
         component[s].end_body = used
-        discs, hard = mark_joints(joint, link, component, s)
-        order_unknowns(component, member, link, s, False)
+        discs, hard = mark_joints(J, s)
+        order_unknowns(J, s, False)
         if component[s].band > CONDENSE_BAND and not discs:  # which couple two impulses: no condensed system has that
-            order_unknowns(component, member, link, s, True)
-        order_rows(component, member, link, s)
+            order_unknowns(J, s, True)
+        order_rows(J, s)
         cost = component[s].unknowns * component[s].band ** 2
         pays = 0 < component[s].dual_size * component[s].dual_band ** 2 <= cost
-        mark_actions(joint, member, link, component, s)
+        mark_actions(J, s)
         component[s].dual_for = model.NOTHING if not pays else model.STEPS if hard else model.INSTANTS
-        component[s].loops = cycles(bodies, link, member, component, s, False)
-        component[s].knots = cycles(bodies, link, member, component, s, True)
+        component[s].loops = cycles(bodies, J, s, False)
+        component[s].knots = cycles(bodies, J, s, True)
     return count
 
 
 @kernel
-def cycles(
-    bodies: Rows[Body], link: Rows[Coupling], member: Rows[ComponentBody], component: Rows[Component], s: int,
-    bounded: bool,
-) -> int:  # fmt: skip
+def cycles(bodies: Rows[Body], J: Joints, s: int, bounded: bool) -> int:
     """Number of joints of component s that close a cycle in the graph of joints of points, or in that of joints of
     angles; all bodies that nothing moves, or nothing turns, are one node. Without cycles rows are independent,
     including limits: those of points by their effect on places, those of angles on angles. bounded: whether
     bounded rows count."""
-    b0, n = component[s].first_body, component[s].end_body - component[s].first_body
+    link, C, count = J.COUPLING, J.COMPONENT[s], 0
+    n = C.end_body - C.first_body
     parent, ends = np.arange(2 * (n + 1)), np.empty(2, np.int64)
-    count = 0
-    for k in range(component[s].first_joint, component[s].end_joint):
+    for k in range(C.first_joint, C.end_joint):
         if link[k].rows == 0 or (link[k].bounded != 0 and not bounded):
             continue
         for end in range(2):
-            body = bodies[member[b0 + link[k].body[end]].body]
+            body = bodies[J.JOINED[C.first_body + link[k].body[end]].body]
             if link[k].kind >= GEAR:
                 ends[end] = n + 1 + (link[k].body[end] if body.inv_inertia > 0.0 else n)
             else:

@@ -16,6 +16,7 @@ from ..model.joint_steps import ELASTIC, HALVED, LINEAR, POSES, SPEEDS, JointLed
 from ..model.joints import (
     APART,
     DEPENDENT,
+    DUAL,
     GIVES_WAY,
     INDEPENDENT,
     LEFT_APART,
@@ -27,16 +28,17 @@ from ..model.joints import (
     Workspace,
 )
 from ..model.parameters.joints import NEARLY_HELD, TAUT
+from ..newton.dual import are_independent, factor_dual
 from ..newton.motion import save
 from ..newton.rows import start_joint
 from ..newton.solve import drop_impulses
+from ..newton.systems import assemble, first_iterate
 from .bounds import closes_on_limit, standing
 from .closing import close_joints, farthest
 from .correct import fitting_loss, project
 from .gains import take_gain
 from .ladder import climb, limit_work
 from .ledger import add_part, clear_ledger
-from .redundancy import rows_depend
 from .start import bounded_targets, compute_rows, read_joints
 from .unheld import step_linearly
 
@@ -65,11 +67,24 @@ def is_taut(W: Workspace, h: float) -> bool:
                 per = hinge[k].lam[0] / length
             fx, fy, per = per * dx, per * dy, max(-per, 0.0)
         for end in range(2):
-            i = link[k].body[0] if end == 0 else link[k].body[1]
+            body = W.J.LOCAL[link[k].body[end]]
             turn = -(rax * fx + ray * fy) if end == 0 else rbx * fx + rby * fy
-            if 0.25 * abs(h) * max(turn * W.J.LOCAL[i].mobility[2], per * W.J.LOCAL[i].mobility[0]) > TAUT:
+            if 0.25 * abs(h) * max(turn * body.mobility[2], per * body.mobility[0]) > TAUT:
                 return True
     return False
+
+
+@nonallocating
+def rows_depend(W: Workspace) -> bool:
+    """Whether rows that act depend on one another, or nearly so (`..newton.dual.are_independent`), at the present
+    poses. Most cycles of joints, as in linkages and rings, have no redundant row: their impulses are unique, and a step
+    begins with those of the last one."""
+    first_iterate(W, SPEEDS, 2.0)
+    assemble(W, SPEEDS, 2.0, 0.0, True, DUAL, True)
+    independent = factor_dual(W, False, 0.0) and are_independent(W)
+    for k in range(W.joints):
+        W.J.HINGE[k].scale[0] = 0.0  # a step scales rows by its first iterate
+    return not independent
 
 
 @nonallocating
@@ -93,7 +108,7 @@ def write_joints(W: Workspace, h: float, loose: int) -> None:
             tooth, phase = joint[j].tooth, joint[j].tooth_phase
             turned = local[link[k].body[1]].pose[2] - local[link[k].body[0]].pose[2]
             notch = np.floor((turned - phase) / tooth) * tooth + phase
-            if (notch - joint[j].notch) * tooth > 1e-12 * tooth * tooth:
+            if (notch - joint[j].notch) * tooth > 1e-12 * tooth * tooth:  # farther on, by more than round-off
                 joint[j].notch = notch
                 joint[j].side = 0
 

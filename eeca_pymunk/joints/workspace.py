@@ -83,7 +83,7 @@ def plan_components(table: Table, joints: Table) -> int:
     J.TALLY.order = 4
     if J.JOINT.shape[0] > 0:
         hold(table, joints)
-        J.TALLY.components = make_plan(together(A.BODY, J.PARTNER), J.JOINT, J.COMPONENT, J.JOINED, J.COUPLING, J.OF)
+        J.TALLY.components = make_plan(together(A.BODY, J.PARTNER), J)
     if not measure_plan(J):
         release_held(table, joints)
         return -1

@@ -91,7 +91,7 @@ class Component(Record):
     dual_band: int
     dual_for: int  # what its dual system is taken for: NOTHING, INSTANTS (POSES, SPEEDS) or STEPS too
     taut: int  # 1 if impulses of the last step pull so hard that this one begins with them (`..joints.step`)
-    dependence: int  # of its rows at the present start: UNTESTED, INDEPENDENT, DEPENDENT (`..joints.redundancy`)
+    dependence: int  # of its rows at the present start: UNTESTED, INDEPENDENT, DEPENDENT (`..joints.step.rows_depend`)
     bounded: int  # most rows of bounded impulses that may act, if few enough to be solved with contacts; else 0
     bounded_joints: int  # its motors, and joints with a finite max_force
     driven: int  # 1 if it has a motor of unlimited force

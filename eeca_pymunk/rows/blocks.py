@@ -96,7 +96,6 @@ def resolve(
     without impulses. Returns the change of velocity in the last sweep; OUT: numbers of sweeps and direct solves."""
     taken, worst = sweep_conjugate(problem, L, V, tolerance, first)
     OUT[0].sweeps = taken
-    OUT[0].direct = 0
     if worst <= tolerance:
         return worst
     least = worst

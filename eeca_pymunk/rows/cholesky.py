@@ -13,8 +13,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
-from ..compiled.records import Rows
-from ..model.contacts import Row
+from ..model.contacts import Problem
 from ..model.parameters.impulses import FACTOR_LEAST
 from .dissection import contact_neighbours, dissect, pattern
 
@@ -22,10 +21,12 @@ from .dissection import contact_neighbours, dissect, pattern
 class Factor(NamedTuple):
     """A symmetric matrix in blocks of one body, and its factor in the same memory.
 
-    place (n,): position of a body in the order of elimination. rows: of the blocks below the diagonal, those of column
-    j at columns[j] : columns[j + 1]. DIAGONAL (n, 3, 3), BELOW (len(rows), 3, 3): the blocks.
+    SCALE (k, 3): roots of the inverse masses and moments. place (n,): position of a body in the order of elimination.
+    rows: of the blocks below the diagonal, those of column j at columns[j] : columns[j + 1]. DIAGONAL (n, 3, 3), BELOW
+    (len(rows), 3, 3): the blocks.
     """
 
+    SCALE: FloatArray
     place: IntArray
     columns: IntArray
     rows: IntArray
@@ -34,32 +35,26 @@ class Factor(NamedTuple):
 
 
 @kernel
-def make_factor(ROWS: Rows[Row], m: int, n: int, used: IntArray, POSE: FloatArray) -> Factor:
-    """Room for the factor of n bodies at POSE (k, 3) with the contacts with used[i] != 0, and its order."""
-    start, other = contact_neighbours(ROWS, m, n, used)
-    place = np.empty(n, np.int64)
-    dissect(POSE, n, start, other, place)
-    columns, rows = pattern(n, start, other, place)
-    return Factor(place, columns, rows, np.empty((n, 3, 3)), np.empty((len(rows), 3, 3)))
-
-
-@kernel
-def roots_of(IM: FloatArray, II: FloatArray) -> FloatArray:
-    """The scale (k, 3) of rows: roots of the inverse masses and moments."""
+def make_factor(problem: Problem, used: IntArray) -> Factor:
+    """Room for the factor of the bodies of a problem with the contacts with used[i] != 0, its order, and its scale."""
+    ROWS, IM, II, POSE, n, m = problem
     SCALE = np.empty((len(IM), 3))
     for i in range(len(IM)):
         SCALE[i, 0] = SCALE[i, 1] = math.sqrt(IM[i])
         SCALE[i, 2] = math.sqrt(II[i])
-    return SCALE
+    start, other = contact_neighbours(ROWS, m, n, used)
+    place = np.empty(n, np.int64)
+    dissect(POSE, n, start, other, place)
+    columns, rows = pattern(n, start, other, place)
+    return Factor(SCALE, place, columns, rows, np.empty((n, 3, 3)), np.empty((len(rows), 3, 3)))
 
 
 @kernel
-def assemble_blocks(
-    ROWS: Rows[Row], m: int, n: int, held: IntArray, stuck: IntArray, SCALE: FloatArray, R: float, factor: Factor
-) -> None:
+def assemble_blocks(problem: Problem, held: IntArray, stuck: IntArray, R: float, factor: Factor) -> None:
     """Write the blocks of B to `factor`, for the normal rows of contacts with held[i] = 1 and the tangential ones with
-    stuck[i] != 0. SCALE (k, 3): roots of the inverse masses.  R: dimensionless."""
-    place, columns, rows, DIAGONAL, BELOW = factor.place, factor.columns, factor.rows, factor.DIAGONAL, factor.BELOW
+    stuck[i] != 0."""
+    ROWS, _, _, _, n, m = problem
+    SCALE, place, columns, rows, DIAGONAL, BELOW = factor
     DIAGONAL[:] = 0.0
     BELOW[:] = 0.0
     for j in range(n):
@@ -112,12 +107,13 @@ def assemble_blocks(
 
 
 @kernel
-def factor_blocks(n: int, factor: Factor) -> None:
+def factor_blocks(factor: Factor) -> None:
     """Left-looking Cholesky factorisation in place: DIAGONAL gets lower triangles, BELOW the blocks under them.
 
     Column k acts next on column rows[first[k]], in whose chain (`head`, then `after`) it is until then.
     """
     columns, rows, D, X = factor.columns, factor.rows, factor.DIAGONAL, factor.BELOW
+    n = len(D)
     head, after, where = np.full(n, -1, np.int64), np.full(n, -1, np.int64), np.full(n, -1, np.int64)
     first = np.zeros(n, np.int64)
     for j in range(n):
@@ -170,9 +166,10 @@ def factor_blocks(n: int, factor: Factor) -> None:
 
 
 @nonallocating
-def solve_blocks(n: int, factor: Factor, f: FloatArray) -> None:
+def solve_blocks(factor: Factor, f: FloatArray) -> None:
     """Replace f (n, 3), in the order of elimination, by B^-1 f."""
     columns, rows, D, X = factor.columns, factor.rows, factor.DIAGONAL, factor.BELOW
+    n = len(D)
     for j in range(n):
         f[j, 0] /= D[j, 0, 0]
         f[j, 1] = (f[j, 1] - D[j, 1, 0] * f[j, 0]) / D[j, 1, 1]

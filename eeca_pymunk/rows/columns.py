@@ -103,22 +103,15 @@ def breach(problem: JointedProblem, L: FloatArray, V: FloatArray) -> float:
 
 
 @nonallocating
-def work_of_sweep(problem: JointedProblem) -> float:
-    """Operations of a sweep over contacts and bounded rows."""
-    C, D, m = problem.C, problem.D, problem.m
-    work = SWEEP_WORK * (m + D.USED[0]) + SWEEP_ENTRY_WORK * (C.AT[m] + D.AT[D.USED[0]])
-    for i in range(D.USED[0]):
-        work += DISC_WORK if D.ROWS[i].part == FIRST_OF_DISC else 0.0
-    return float(work)
-
-
-@nonallocating
 def sweep_jointed(problem: JointedProblem, L: FloatArray, V: FloatArray) -> float:
     """One sweep over the contacts as `sweeps.sweep_free`, but that a contact which sticks stays closed where friction
     alone could open it; and over the bounded rows, whose impulses are L[m:, 0]. Returns the largest change of a
     velocity."""
-    ROWS, C, m = problem.ROWS, problem.C, problem.m
-    C.WORK[0] += work_of_sweep(problem)
+    ROWS, C, D, m = problem
+    work = SWEEP_WORK * (m + D.USED[0]) + SWEEP_ENTRY_WORK * (C.AT[m] + D.AT[D.USED[0]])
+    for i in range(D.USED[0]):
+        work += DISC_WORK if D.ROWS[i].part == FIRST_OF_DISC else 0.0
+    C.WORK[0] += work
     worst = 0.0
     for i in range(m):
         if C.LEFT_OUT[i] != 0:
@@ -131,4 +124,4 @@ def sweep_jointed(problem: JointedProblem, L: FloatArray, V: FloatArray) -> floa
         L[i, 0], L[i, 1] = lam, beta
         push_column(C, i, dn, dt, V)
         worst = max(worst, abs(dn) * ROWS[i].a_nn, abs(dt) * ROWS[i].a_tt)
-    return max(worst, sweep_bounded(problem.D, L, m, V))
+    return max(worst, sweep_bounded(D, L, m, V))

@@ -6,23 +6,21 @@ from __future__ import annotations
 from ..arrays import FloatArray, IntArray
 from ..compiled import nonallocating
 from ..compiled.records import Rows
-from ..model.contacts import Edge, Row
+from ..model.contacts import Edge, Problem, Row
 from .build import push_contact
 
 
 @nonallocating
-def cone_edges(
-    ROWS: Rows[Row], L: FloatArray, IM: FloatArray, II: FloatArray, m: int, OF: IntArray, G: Rows[Row], EDGE: Rows[Edge]
-) -> int:
+def cone_edges(problem: Problem, L: FloatArray, OF: IntArray, G: Rows[Row], EDGE: Rows[Edge]) -> int:
     """Write the edges of the cones of m contacts, and return their number K <= 2 m.
 
     Args:
-        ROWS: those with a target below 0 have no edges.
+        problem: contacts with a target below 0 have no edges.
         L: (m, 2) normal and tangential impulses, from which `guess` and `x` of the edges follow.
-        IM, II: inverse masses and moments of the bodies.
         OF: out, the contact of each edge.  G: out, rows of the edges, those of a contact one after the other.
         EDGE: out, with a_gg = g^T M^-1 g.
     """
+    ROWS, IM, II, _, _, m = problem
     K = 0
     for i in range(m):
         if ROWS[i].target < 0.0:
@@ -44,22 +42,21 @@ def cone_edges(
 
 
 @nonallocating
-def add_impulses(
-    G: Rows[Row], EDGE: Rows[Edge], steps: bool, K: int, IM: FloatArray, II: FloatArray, V: FloatArray
-) -> None:
-    """Add M^-1 sum g x over all K edges to the velocities V (k, 3); with dx in place of x if `steps`."""
-    for e in range(K):
-        push_contact(G[e], IM, II, EDGE[e].dx if steps else EDGE[e].x, 0.0, V)
+def add_impulses(edges: Problem, EDGE: Rows[Edge], steps: bool, V: FloatArray) -> None:
+    """Add M^-1 sum g x over all edges, the rows of `edges`, to the velocities V (k, 3); with dx in place of x if
+    `steps`."""
+    for e in range(edges.m):
+        push_contact(edges.ROWS[e], edges.IM, edges.II, EDGE[e].dx if steps else EDGE[e].x, 0.0, V)
 
 
 @nonallocating
-def impulses_of(ROWS: Rows[Row], EDGE: Rows[Edge], OF: IntArray, K: int, L: FloatArray, m: int) -> None:
-    """Set the normal and tangential impulses L (m, 2) of m contacts from the x of their edges."""
-    for i in range(m):
+def impulses_of(problem: Problem, EDGE: Rows[Edge], OF: IntArray, K: int, L: FloatArray) -> None:
+    """Set the normal and tangential impulses L (m, 2) of m contacts from the x of their K edges."""
+    for i in range(problem.m):
         L[i, 0] = L[i, 1] = 0.0
     for e in range(K):
         i = OF[e]
-        slope = ROWS[i].friction
+        slope = problem.ROWS[i].friction
         if e > 0 and OF[e - 1] == i:
             slope = -slope
         L[i, 0] += EDGE[e].x

@@ -55,9 +55,9 @@ def extend_direction(X: FloatArray, X0: FloatArray, P: FloatArray, ratio: float)
     """Move X by `ratio` times the direction P, which becomes that plus the change from X0 to X; X becomes the next
     start X0."""
     for i in range(len(X0)):
-        x, way = X[i], ratio * P[i]
-        P[i] = way + (x - X0[i])
-        x += way
+        x, step = X[i], ratio * P[i]
+        P[i] = step + (x - X0[i])
+        x += step
         X[i] = x
         X0[i] = x
 

@@ -11,8 +11,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import Choice, kernel, nonallocating
-from ..compiled.records import Rows
-from ..model.contacts import AnyProblem, JointedProblem, Problem, Row
+from ..model.contacts import AnyProblem, JointedProblem, Problem
 from ..model.parameters.impulses import PROXIMAL_DENSE
 from ..model.parameters.joints import COLUMN_PROXIMAL, MATRIX_WORK
 from .bounded import bounded_rate
@@ -144,17 +143,19 @@ def matrix_jointed(
 matrix = Choice(matrix_free, matrix_jointed)
 
 
-@nonallocating
-def unknowns(
-    ROWS: Rows[Row], L: FloatArray, m: int, held: IntArray, stuck: IntArray, slip: FloatArray, shared: bool,
-    at: IntArray, kind: IntArray,
-) -> int:  # fmt: skip
-    """List the unknowns: contact `at` and `kind` (0 normal, 1 tangential); returns their number.
+@kernel
+def newton(
+    problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, passes: int, tolerance: float, shared: bool
+) -> tuple[float, int]:
+    """Solve on the active contacts of L; arguments and results as of `polish.polish_free`.
 
     Where energy limits friction, beta (u_t- + u_t+) = -lam (u_n- + b): if `shared`, another contact of the same face
-    has u_t+ = 0, and beta follows lam as in slip. Sets these impulses in L.
+    has u_t+ = 0, and beta follows lam as in slip.
     """
-    N = 0
+    ROWS, m = problem.ROWS, problem.m
+    held, stuck, slip, rest = classify(ROWS, L, V, m)
+    # Unknowns: of contact `at`, the normal impulse (`kind` 0) or the tangential one (1).
+    at, kind, N = np.empty(2 * m, np.int64), np.empty(2 * m, np.int64), 0
     for i in range(m):
         if held[i] == 0:
             continue
@@ -168,19 +169,6 @@ def unknowns(
             N += 1
         else:
             L[i, 1] = slip[i] * L[i, 0]
-    return N
-
-
-@kernel
-def newton(
-    problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, passes: int, tolerance: float, shared: bool
-) -> tuple[float, int]:
-    """Solve on the active contacts of L; arguments and results as of `polish.polish_free`, `shared` as of
-    `unknowns`."""
-    ROWS, m = problem.ROWS, problem.m
-    held, stuck, slip, rest = classify(ROWS, L, V, m)
-    at, kind = np.empty(2 * m, np.int64), np.empty(2 * m, np.int64)
-    N = unknowns(ROWS, L, m, held, stuck, slip, shared, at, kind)
     W, order, r, x = np.empty((N, N)), np.empty(N, np.int64), np.empty(N), np.empty(N)
     matrix(problem, slip, at, kind, N, W)
     decompose_dense(W, N, order)

@@ -71,6 +71,7 @@ def dissect(POSE: FloatArray, n: int, start: IntArray, other: IntArray, place: I
             px, py = POSE[ids[k], 0], POSE[ids[k], 1]
             x0, x1, y0, y1 = min(x0, px), max(x1, px), min(y0, py), max(y1, py)
             x, y = x + px, y + py
+        # Not divided: few bodies, bodies at one place, and what the stack has no room for.
         if high - low <= DISSECTION_LEAF or top > 120 or not max(x1 - x0, y1 - y0) > 0.0:
             for k in range(high - 1, low - 1, -1):
                 end -= 1

@@ -28,11 +28,11 @@ from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, zeros
 from ..model.contacts import EDGE as EDGE_KIND
-from ..model.contacts import ROW, Edge, Problem, Row
+from ..model.contacts import ROW, Edge, Problem
 from ..model.parameters.impulses import PROXIMAL_STATICS
 from ..model.parameters.rest import STATICS_START, STATICS_STEP, STATICS_SUM
 from .build import normal_rate
-from .cholesky import Factor, assemble_blocks, factor_blocks, make_factor, roots_of, solve_blocks
+from .cholesky import Factor, assemble_blocks, factor_blocks, make_factor, solve_blocks
 from .cones import add_impulses, cone_edges, impulses_of
 from .inplace import copy
 
@@ -77,8 +77,8 @@ def moves_into_cones(EDGE: Rows[Edge], K: int) -> bool:
 
 @nonallocating
 def newton_step(
-    edges: Problem, EDGE: Rows[Edge], SCALE: FloatArray, factor: Factor, LEFT: FloatArray, Y: FloatArray, f: FloatArray,
-    V: FloatArray, DY: FloatArray, centre: float, second: bool,
+    edges: Problem, EDGE: Rows[Edge], factor: Factor, LEFT: FloatArray, Y: FloatArray, f: FloatArray, V: FloatArray,
+    DY: FloatArray, centre: float, second: bool,
 ) -> None:  # fmt: skip
     """Newton's step dx, ds (fields of EDGE) and DY of
 
@@ -88,11 +88,11 @@ def newton_step(
     subtracts the product dx ds of the predictor from x s.
 
     Args:
-        edges: rows of the edges, with k_n = Theta.  SCALE: (k, 3) roots of the inverse masses, the scale of
-            the factor.  LEFT: (k, 3) velocities that the impulses x leave.  Y, DY: (k, 3) multipliers, and their step.
+        edges: rows of the edges, with k_n = Theta.  LEFT: (k, 3) velocities that the impulses x leave.
+        Y, DY: (k, 3) multipliers, and their step.
         f, V: (n, 3) and (k, 3), scratch.
     """
-    G, K, n, place = edges.ROWS, edges.m, edges.n, factor.place
+    G, K, n, place, SCALE = edges.ROWS, edges.m, edges.n, factor.place, factor.SCALE
     V[:] = 0.0
     for e in range(K):
         x, s = EDGE[e].x, EDGE[e].s
@@ -103,11 +103,11 @@ def newton_step(
         product = x * s - centre + (EDGE[e].dx * EDGE[e].ds if second else 0.0)
         EDGE[e].ds = product
         EDGE[e].dx = G[e].k_n * (dual + product / x)
-    add_impulses(G, EDGE, True, K, edges.IM, edges.II, V)
+    add_impulses(edges, EDGE, True, V)
     for i in range(n):
         for c in range(3):
             f[place[i], c] = PROXIMAL_STATICS * (V[i, c] - LEFT[i, c]) / SCALE[i, c] if SCALE[i, c] > 0.0 else 0.0
-    solve_blocks(n, factor, f)
+    solve_blocks(factor, f)
     for i in range(n):
         for c in range(3):
             DY[i, c] = SCALE[i, c] * f[place[i], c]
@@ -150,20 +150,18 @@ def update_iterate(EDGE: Rows[Edge], K: int, Y: FloatArray, DY: FloatArray, prim
 
 
 @nonallocating
-def leave(
-    G: Rows[Row], EDGE: Rows[Edge], K: int, IM: FloatArray, II: FloatArray, START: FloatArray, EXTENT: FloatArray,
-    n: int, LEFT: FloatArray,
-) -> float:  # fmt: skip
-    """Set LEFT (k, 3), the velocities that the impulses x of the K edges leave of START; the speed of the fastest point
-    of the first n bodies."""
+def leave(edges: Problem, EDGE: Rows[Edge], START: FloatArray, EXTENT: FloatArray, LEFT: FloatArray) -> float:
+    """Set LEFT (k, 3), the velocities that the impulses x of the edges leave of START; the speed of the fastest point
+    of the bodies that impulses move."""
     copy(LEFT, START)
-    add_impulses(G, EDGE, False, K, IM, II, LEFT)
-    return fastest_point(LEFT, EXTENT, n)
+    add_impulses(edges, EDGE, False, LEFT)
+    return fastest_point(LEFT, EXTENT, edges.n)
 
 
 @nonallocating
-def sum_of_momenta(V: FloatArray, IM: FloatArray, II: FloatArray, EXTENT: FloatArray, n: int) -> float:
-    """The impulses that would stop n bodies one by one, those of spins at their EXTENT."""
+def sum_of_momenta(problem: Problem, V: FloatArray, EXTENT: FloatArray) -> float:
+    """The impulses that would stop the bodies one by one, those of spins at their EXTENT."""
+    _, IM, II, _, n, _ = problem
     total = 0.0
     for i in range(n):
         total += (abs(V[i, 0]) + abs(V[i, 1])) / IM[i] if IM[i] > 0.0 else 0.0
@@ -204,34 +202,34 @@ def equilibrium(
     IM, II, n, m = problem.IM, problem.II, problem.n, problem.m
     k = len(IM)
     OF, G, EDGE = np.empty(2 * m, np.int64), zeros(2 * m, ROW), zeros(2 * m, EDGE_KIND)
-    K = cone_edges(problem.ROWS, L, IM, II, m, OF, G, EDGE)
+    K = cone_edges(problem, L, OF, G, EDGE)
+    edges = Problem(G, IM, II, problem.POSE, n, K)
     LEFT, Y, DY, V, f = np.empty((k, 3)), np.zeros((k, 3)), np.zeros((k, 3)), np.empty((k, 3)), np.empty((n, 3))
     if K == 0:
         return fastest_point(START, EXTENT, n) <= tolerance, 0  # without contacts START is that motion
-    speed = leave(G, EDGE, K, IM, II, START, EXTENT, n, LEFT)
+    speed = leave(edges, EDGE, START, EXTENT, LEFT)
     if speed <= tolerance:  # the guess balances
-        impulses_of(problem.ROWS, EDGE, OF, K, L, m)
+        impulses_of(problem, EDGE, OF, K, L)
         return True, 0
     held, stuck = np.ones(K, np.int64), np.zeros(K, np.int64)
-    SCALE, factor = roots_of(IM, II), make_factor(G, K, n, held, problem.POSE)
-    problem_of_edges = Problem(G, IM, II, problem.POSE, n, K)
-    most_impulse = STATICS_SUM * n * sum_of_momenta(START, IM, II, EXTENT, n)
+    factor = make_factor(edges, held)
+    most_impulse = STATICS_SUM * n * sum_of_momenta(problem, START, EXTENT)
     free = True
     for done in range(most + 1):
         if speed <= tolerance:
-            impulses_of(problem.ROWS, EDGE, OF, K, L, m)
+            impulses_of(problem, EDGE, OF, K, L)
             return True, done
         centre = mean_product(EDGE, K, 0.0, 0.0)
         if done == most or not (speed < np.inf and (centre > 0.0 or free)):
             break
-        if done > 1 and needs_more(problem_of_edges, START, Y, most_impulse):
+        if done > 1 and needs_more(edges, START, Y, most_impulse):
             break
         if done == 0 or not free:
             for e in range(K):
                 G[e].k_n = 1.0 / (EDGE[e].a_gg + (0.0 if free else EDGE[e].s / EDGE[e].x))
-            assemble_blocks(G, K, n, held, stuck, SCALE, PROXIMAL_STATICS, factor)
-            factor_blocks(n, factor)
-        newton_step(problem_of_edges, EDGE, SCALE, factor, LEFT, Y, f, V, DY, 0.0, False)
+            assemble_blocks(edges, held, stuck, PROXIMAL_STATICS, factor)
+            factor_blocks(factor)
+        newton_step(edges, EDGE, factor, LEFT, Y, f, V, DY, 0.0, False)
         if free:
             # Without regard to the cones, the nearest balancing impulses need one linear solve: often they are inside.
             free = moves_into_cones(EDGE, K)
@@ -240,8 +238,8 @@ def equilibrium(
                     Y[i, c] += DY[i, c]
         else:
             reduced = mean_product(EDGE, K, step_length(EDGE, K, False), step_length(EDGE, K, True)) / centre
-            newton_step(problem_of_edges, EDGE, SCALE, factor, LEFT, Y, f, V, DY, centre * reduced**3, True)
+            newton_step(edges, EDGE, factor, LEFT, Y, f, V, DY, centre * reduced**3, True)
             update_iterate(EDGE, K, Y, DY, step_length(EDGE, K, False), step_length(EDGE, K, True))
-        speed = leave(G, EDGE, K, IM, II, START, EXTENT, n, LEFT)
+        speed = leave(edges, EDGE, START, EXTENT, LEFT)
     copy(START, Y)
     return False, done

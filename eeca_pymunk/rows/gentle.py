@@ -35,8 +35,8 @@ def excessive(L: FloatArray, m: int, IM: FloatArray, n: int, speed: float) -> bo
 
 @nonallocating
 def sweep_gently(problem: AnyProblem, L: FloatArray, V: FloatArray) -> float:
-    """GENTLE_SWEEPS sweeps from impulses L, 0 of contacts, with velocities V (k, 3). Returns the largest change of a
-    contact's velocity in the last sweep."""
+    """GENTLE_SWEEPS sweeps from impulses L, which are 0 for contacts, with velocities V (k, 3) under them.
+    Returns the largest change of a contact's velocity in the last sweep."""
     worst = 0.0
     for _ in range(GENTLE_SWEEPS):
         worst = sweep(problem, L, V)

@@ -77,21 +77,21 @@ def follow_homotopy(problem: JointedProblem, L: FloatArray, V: FloatArray, FREE:
     tableau = start_homotopy(problem, L, V, anew)
     T, count, size = tableau.T, len(tableau.MODE), tableau.T.shape[1]
     X = np.empty(size)
-    # way: direction of theta, +-1.  nearest: way of theta to the next change of state, change `number` of `changed`.
-    theta, way, changed, number = 1.0, -1.0, -1, 0
+    # sense: of theta, +-1.  nearest: change of theta up to the next change of state, change `number` of `changed`.
+    theta, sense, changed, number = 1.0, -1.0, -1, 0
     for _ in range((HOMOTOPY_CHANGES_ANEW if anew else HOMOTOPY_CHANGES) * count):
         nearest = np.inf
         if changed >= 0:
-            way = 1.0 if margin(tableau, m, changed, number, 1) > 0.0 else -1.0
+            sense = 1.0 if margin(tableau, m, changed, number, 1) > 0.0 else -1.0
         changed = -1
         for c in range(count):
             for which in range(2):
-                rate = way * margin(tableau, m, c, which, 1)
+                rate = sense * margin(tableau, m, c, which, 1)
                 if rate < 0.0:
-                    left = max(margin(tableau, m, c, which, 0) + theta * way * rate, 0.0) / -rate
+                    left = max(margin(tableau, m, c, which, 0) + theta * sense * rate, 0.0) / -rate
                     if left < nearest:
                         nearest, changed, number = left, c, which
-        if way < 0.0 and theta <= nearest:
+        if sense < 0.0 and theta <= nearest:
             finite = True
             for k in range(size):
                 X[k] = T[size, k]
@@ -107,7 +107,7 @@ def follow_homotopy(problem: JointedProblem, L: FloatArray, V: FloatArray, FREE:
             return True
         if changed < 0:
             return False
-        theta += way * nearest
+        theta += sense * nearest
         problem.C.WORK[0] += work_of_change(size)
         number = change(tableau, m, changed, number, theta)
     return False

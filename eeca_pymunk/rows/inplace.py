@@ -15,14 +15,6 @@ def copy(TO: FloatArray, FROM: FloatArray) -> None:
 
 
 @nonallocating
-def add(TO: FloatArray, MORE: FloatArray) -> None:
-    """Add MORE (n, k) to TO."""
-    for i in range(TO.shape[0]):
-        for k in range(TO.shape[1]):
-            TO[i, k] += MORE[i, k]
-
-
-@nonallocating
 def sort(A: IntArray, n: int) -> None:
     """Sort the first n numbers of A in ascending order, by Shell's sort with Knuth's gaps: at most about n^1.5
     comparisons."""

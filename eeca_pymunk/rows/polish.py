@@ -17,7 +17,7 @@ from ..compiled.records import Rows
 from ..model.contacts import AnyProblem, Problem, Row
 from ..model.parameters.impulses import FACE_LINE, ON_CONE
 from .build import normal_rate, push_contact, slip_rate, tangent_rate
-from .cholesky import assemble_blocks, factor_blocks, make_factor, roots_of, solve_blocks
+from .cholesky import assemble_blocks, factor_blocks, make_factor, solve_blocks
 from .coulomb import OPEN, STICK, limits_slip, lossless_slip, mode_of
 from .sweeps import velocities
 
@@ -100,13 +100,14 @@ def polish_free(
     Returns:
         The residual velocity before the impulses were clamped, and how many were clamped.
     """
-    ROWS, IM, II, _, n, m = problem
+    ROWS, IM, _, _, n, m = problem
     divide_friction(ROWS, L, m)
     held, stuck, slip, rest = classify(ROWS, L, V, m)
-    SCALE, factor = roots_of(IM, II), make_factor(ROWS, m, n, held, problem.POSE)
-    place, ROOTS, SPINS = factor.place, SCALE[:, 0], SCALE[:, 2]
-    assemble_blocks(ROWS, m, n, held, stuck, SCALE, R, factor)
-    factor_blocks(n, factor)
+    factor = make_factor(problem, held)
+    SCALE, place = factor.SCALE, factor.place
+    ROOTS, SPINS = SCALE[:, 0], SCALE[:, 2]
+    assemble_blocks(problem, held, stuck, R, factor)
+    factor_blocks(factor)
     f, F, dv, r, worst = np.empty((n, 3)), np.empty((len(IM), 3)), np.zeros((len(IM), 3)), np.zeros((m, 2)), np.inf
     for done in range(passes + 1):
         last = worst
@@ -129,7 +130,7 @@ def polish_free(
         for i in range(n):
             for p in range(3):
                 f[place[i], p] = F[i, p]
-        solve_blocks(n, factor, f)
+        solve_blocks(factor, f)
         for i in range(n):
             for p in range(3):
                 dv[i, p] = SCALE[i, p] * f[place[i], p]

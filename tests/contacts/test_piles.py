@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from eeca_pymunk.compiled.records import row, rows
-from eeca_pymunk.contacts.memory import copy_recent, find, remember_force
+from eeca_pymunk.contacts.memory import copy_recent, find, row_for
 from eeca_pymunk.model.contacts import Force
 from eeca_pymunk.model.step import Count
 
@@ -211,7 +211,8 @@ def test_memory_finds_what_was_remembered() -> None:
     for _ in range(300):
         key = int(rng.integers(0, 60)) * 1024
         known[key] = (float(rng.random()), float(rng.integers(1, 4)))
-        remember_force(keys, forces, count, key, known[key][0], 0.0, 0.0, 1.0, known[key][1])
+        force = forces[row_for(keys, count, key)]
+        force.normal, force.stamp = known[key]
     assert count.remembered == len(known)
     assert all(forces[find(keys, key)].normal == value for key, (value, _) in known.items())
     assert find(keys, 7) < 0

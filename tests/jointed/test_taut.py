@@ -14,13 +14,13 @@ from eeca_pymunk.compiled.records import Rows, columns, rows
 from eeca_pymunk.impacts.scene import EventLoop
 from eeca_pymunk.jointed import advance
 from eeca_pymunk.jointed.bounded_rows import let_slip
-from eeca_pymunk.jointed.component import answer, ready_in_step
 from eeca_pymunk.joints.step import is_taut
-from eeca_pymunk.joints.workspace import JointMemory, Linkage
+from eeca_pymunk.joints.workspace import JointMemory, Linkage, workspace
 from eeca_pymunk.model.bodies import Body
 from eeca_pymunk.model.contacts import Row
-from eeca_pymunk.model.joint_steps import BodyStep
+from eeca_pymunk.model.joint_steps import STEP, BodyStep
 from eeca_pymunk.model.joints import PIN, PIVOT, Joint, Joints, Workspace, joints_of
+from eeca_pymunk.newton.response import prepare_response, respond
 
 from .measures import apart, energy
 
@@ -172,11 +172,11 @@ def test_what_planks_answer_is_the_derivative_of_a_step(slack: float) -> None:
     seen = np.array([b.velocity.y for b in run(change)[1]]) - np.array([b.velocity.y for b in run(-change)[1]])
     seen /= 2.0 * change * DT
     J = scratch(run(0.0)[2])
-    assert ready_in_step(J, 0, DT)
+    assert prepare_response(workspace(J, 0), STEP, DT)
     places = [int(np.flatnonzero(J.JOINED["body"] == row)[0]) for row in range(12)]
     PUSH = np.zeros((13, 3))
     PUSH[places[4], 1] = 1.0
-    answer(J, 0, PUSH)
+    respond(workspace(J, 0), PUSH)
     foreseen = PUSH[places, 1]
     assert np.abs(foreseen).max() > 1e-3
     assert np.abs(foreseen - seen).max() <= 1e-3 * np.abs(seen).max()
@@ -184,12 +184,12 @@ def test_what_planks_answer_is_the_derivative_of_a_step(slack: float) -> None:
 
 def least_answer(J: Joints, dt: float) -> float:
     """Least eigenvalue of the symmetric part of what two jointed bodies answer about a step."""
-    assert ready_in_step(J, 0, dt)
+    assert prepare_response(workspace(J, 0), STEP, dt)
     S = np.empty((6, 6))
     for i in range(6):
         PUSH = np.zeros((2, 3))
         PUSH[i // 3, i % 3] = 1.0
-        answer(J, 0, PUSH)
+        respond(workspace(J, 0), PUSH)
         S[:, i] = PUSH.ravel()
     return float(np.linalg.eigvalsh(S + S.T).min())
 
@@ -272,7 +272,7 @@ def test_arms_are_brought_to_one_point() -> None:
         put_arms(ROWS, middle + away, arm_n, arm_t)
     before = arms(ROWS, "arm_na", "arm_ta") + arms(ROWS, "arm_nb", "arm_tb")
     for i in range(4):
-        advance.join_points(ROWS[i], *advance.apart(ROWS[i], END))
+        advance.join_points(ROWS[i], *advance.separation(ROWS[i], END))
     a, b = arms(ROWS, "arm_na", "arm_ta"), arms(ROWS, "arm_nb", "arm_tb")
     assert np.abs(END[P, :2] + a - END[Q, :2] - b).max() < 1e-14
     assert np.abs(a + b - before).max() < 1e-14

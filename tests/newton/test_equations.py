@@ -245,7 +245,7 @@ def arrange(stepper: Driven, condensed: bool) -> None:
     """Have the stepper's only component in the bodies' unknowns alone, or not."""
     J, loop = stepper.joints, stepper.stepper.event_loop
     assert loop is not None
-    order_unknowns(J.COMPONENT, J.JOINED, J.COUPLING, 0, condensed)
+    order_unknowns(J, 0, condensed)
     C = J.COMPONENT[0]
     loop.joints = J._replace(
         RIGHT=np.zeros(2 * C.unknowns + C.impulses), MATRIX=np.zeros(C.unknowns * (3 * C.band + 1)),

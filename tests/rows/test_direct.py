@@ -82,10 +82,12 @@ def test_sparse_factor_is_that_of_the_dense_matrix(count: int) -> None:
     m, k = len(block.contacts), n + 1
     held, stuck = np.ones(m, np.int64), (np.arange(m) % 2).astype(np.int64)
     scale = np.sqrt(np.stack((block.im, block.im, block.ii), axis=1))
-    factor, R = make_factor(block.rows, m, n, held, block.pose), 100.0
+    problem, R = Problem(block.rows, block.im, block.ii, block.pose, n, m), 100.0
+    factor = make_factor(problem, held)
+    assert np.array_equal(factor.SCALE, scale)
     place = factor.place
     assert sorted(place) == list(range(n))
-    assemble_blocks(block.rows, m, n, held, stuck, scale, R, factor)
+    assemble_blocks(problem, held, stuck, R, factor)
     dense = np.eye(3 * n)
     for i in range(m):
         for rate, column in ((normal_rate, "k_n"), (tangent_rate, "k_t")):
@@ -101,8 +103,8 @@ def test_sparse_factor_is_that_of_the_dense_matrix(count: int) -> None:
     right = np.random.default_rng(0).normal(size=(n, 3))
     f = np.empty((n, 3))
     f[place] = right
-    factor_blocks(n, factor)
-    solve_blocks(n, factor, f)
+    factor_blocks(factor)
+    solve_blocks(factor, f)
     expected = np.linalg.solve(dense, right.ravel()).reshape(n, 3)
     assert np.abs(f[place] - expected).max() <= 1e-11 * np.abs(expected).max()
 

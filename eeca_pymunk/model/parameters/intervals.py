@@ -40,7 +40,8 @@ INTERVAL_DEPTH_LEAST = heuristic(0.0001, "of the smaller shape",
 INTERVAL_RETRY = heuristic(1.5, "ratio",
     "Excess of a displacement, rotation or depth over its limit from which on an interval is solved again, shorter.")
 SMALL_SWEEPS = work(40, "sweeps",
-    "Sweeps of an impact on a pile before its direct solves, and of a small island that waits for its next one.")
+    "Sweeps of an impact on a pile before its direct solves, of a small island that waits for its next one, and of "
+    "many contacts of a small island with joints.")
 UNSOLVED_PART = work(4.0, "ratio",
     "Factor by which an interval with joints becomes shorter, at most, where its contacts are not solved, and may be "
     "longer after an impact.")

@@ -143,7 +143,6 @@ LOCK_SHIFT = accuracy(1e-05, "of |a| h and the speed",
     "Change of velocities by which the energy lock may break the laws of contacts.")
 AGREE_REST = accuracy(1e-11, "of |a| h and the speed", "This difference near rest.")
 AGREE_ELASTIC = accuracy(1e-13, "of |a| h and the speed", "This difference in elastic islands.")
-PRESS_SWEEPS = work(40, "sweeps", "Sweeps over contacts of components.")
 PRESS_SWEEPS_FEW = work(30, "sweeps", "Sweeps over few contacts of components.")
 PRESS_SWEEPS_ELASTIC = work(400, "sweeps", "Sweeps over elastic contacts of components.")
 PRESS_RESIDUAL = accuracy(1e-09, "of |a| h and the speed", "Residual of sweeps over contacts of components.")
