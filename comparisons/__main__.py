@@ -30,6 +30,7 @@ NAMES = (
     "first_use",
     "detection",
     "piles",
+    "crowds",
     "ablation",
     "joints",
     "robots",

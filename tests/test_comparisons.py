@@ -24,6 +24,7 @@ import eeca_pymunk as ep
 import scenes
 from comparisons import (
     ablation,
+    crowds,
     datasets,
     detection,
     features,
@@ -468,6 +469,15 @@ def test_joints_tell_errors_and_costs(tmp_path: Path) -> None:
     assert float(cost["EECA / native 10"] or 0.0) > 0.0
     ep.render.save_picture(joints.picture([problem], rows), tmp_path / "joints.png")
     assert (tmp_path / "joints.png").exists()
+
+
+def test_crowds_tell_how_much_of_their_time_they_take() -> None:
+    """A net of springs takes all of it, which a fortieth had been where intervals were halved without end."""
+    for make in crowds.CROWDS.values():
+        row = crowds.play(make, 1 / 60, 2)
+        assert row["taken"] == pytest.approx(1.0)
+        assert float(row["ms/step"] or 0.0) > 0.0
+    assert float(crowds.play(crowds.net, 1 / 60)["in the last third"] or 0.0) > 0.99
 
 
 def test_robots_tell_costs_and_repeatability() -> None:

@@ -60,6 +60,7 @@ SHORT = {
     "first_use": "test_comparisons.py::test_first_use_tells_seconds_of_imports_and_steps",
     "detection": "test_comparisons.py::test_detection_finds_what_pymunk_finds",
     "piles": "test_comparisons.py::test_short_piles_keep_their_books",
+    "crowds": "test_comparisons.py::test_crowds_tell_how_much_of_their_time_they_take",
     "ablation": "test_comparisons.py::test_ablation_switches_each_heuristic_off_in_a_copy",
     "robots": "test_comparisons.py::test_robots_tell_costs_and_repeatability",
     "joints": "test_comparisons.py::test_joints_tell_errors_and_costs",
