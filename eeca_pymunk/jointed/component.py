@@ -97,5 +97,9 @@ def passes_limit(
     W = workspace(J, s)
     length = gather_component(A, J, s, POSE, D, D, IM, II, t, h)
     size_joints(W, length)
+    for i in range(W.bodies):
+        if number_of(A, J, s, i) < 0:  # partners stay where they are
+            for c in range(3):
+                J.LOCAL[i].v0[c] = 0.0
     compute_rows(W)
     return hold_passed_by(W, least / length)

@@ -9,7 +9,7 @@ from ..compiled import kernel, nonallocating
 from ..islands.accounting import account_contact, move_to_end
 from ..islands.local import drop_contacts
 from ..islands.membership import members_of
-from ..joints.bounds import hold_passed
+from ..joints.bounds import hold_passed, stand_as_stepped
 from ..joints.closing import close_poses, farthest
 from ..joints.start import compute_rows, springs_of
 from ..joints.workspace import workspace
@@ -121,8 +121,7 @@ def carry(A: Scene, J: Joints, root: int, t: float) -> None:
             continue
         W, first = workspace(J, s), J.COMPONENT[s].first_body
         size_joints(W, gather_alone(A, J, s, began, A.PAR.planned))
-        for k in range(W.joints):
-            W.link[k].side = W.J.JOINT[W.link[k].joint].side
+        stand_as_stepped(W)
         stored = springs_of(W)
         if hold_passed(W):
             compute_rows(W)

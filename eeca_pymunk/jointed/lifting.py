@@ -13,6 +13,7 @@ from ..contacts.correction import admissible, least_of, turn_by, unturn
 from ..contacts.works import work_of_forces
 from ..islands.depths import left_to_lift
 from ..islands.payment import payment
+from ..joints.bounds import stand_as_stepped
 from ..joints.workspace import workspace
 from ..model.contacts import Columns, JointedProblem, Row
 from ..model.joint_steps import SPEEDS
@@ -83,6 +84,8 @@ def lift_island(A: Scene, J: Joints, interval: Interval, L: FloatArray, root: in
     loss = lost(interval, L)
     budget, payable = payment(A, isle, ROWS, L, motion.V, n, m, loss, A.RESTING[root].lost, False, True)
     spent = correct_overlaps(A, J, interval, budget)
+    for s in groups.JOINTED:
+        stand_as_stepped(workspace(J, s))
     paid, one = min(spent, payable), J.STEPPED[groups.JOINTED[0]]
     one.lifted += paid
     one.supports += spent - paid

@@ -108,8 +108,7 @@ def excess_length(
     Args:
         solved: whether contacts are.  last: whether no other attempt follows, see `try_jointed`.
     """
-    hard = not solved and J.PROGRESS.length == LONG and J.PROGRESS.effort > J.PROGRESS.share
-    far = 2.0 if hard and has_work_for(A, J, interval.t, interval.h, 2.0, effort) else 0.0
+    far = 2.0 if not solved and J.PROGRESS.length == LONG and J.PROGRESS.effort > J.PROGRESS.share else 0.0
     for s in interval.groups.JOINTED:
         if takes_shorter(A, J, s, interval.t, interval.h, effort):
             far = 2.0

@@ -48,6 +48,13 @@ def stand(W: Workspace, k: int, side: int) -> None:
     W.link[k].side = side
 
 
+@nonallocating
+def stand_as_stepped(W: Workspace) -> None:
+    """Let joints stand on the bounds on which the last step has left them, or on none."""
+    for k in range(W.joints):
+        W.link[k].side = W.J.JOINT[W.link[k].joint].side
+
+
 @inlined
 def inactive(link: Rows[Coupling], k: int) -> bool:
     """Whether joint k stands on no bound, and its force is not bounded: if it is a limit, it may meet one. True of all

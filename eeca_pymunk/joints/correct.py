@@ -168,15 +168,16 @@ def hold_closing(W: Workspace, kept: bool) -> bool:
 @nonallocating
 def hold_passed_by(W: Workspace, least: float) -> bool:
     """Let all limits act that displacements, which are in the place of the velocities, pass by more than `least` of
-    the unit of their functions. Returns whether there are any. Rows are those of the present poses."""
+    the unit of their functions, or pass further by that. Returns whether there are any. Rows are those of the present
+    poses."""
     hinge, link, found = W.J.HINGE, W.link, False
     for k in range(W.joints):
         if link[k].bounded != 0:
             continue
         a, b = W.J.LOCAL[link[k].body[0]].v0, W.J.LOCAL[link[k].body[1]].v0
         for side in (-1, 1):
-            gap = limit_gap(W, k, side) + limit_gap_rate(hinge[k], link[k].rows, side, a, b)
-            if gap < -least * hinge[k].size:
+            room = max(limit_gap(W, k, side), 0.0) + least * hinge[k].size
+            if limit_gap_rate(hinge[k], link[k].rows, side, a, b) < -room:
                 stand(W, k, side)
                 found = True
     return found

@@ -6,6 +6,7 @@ from ..compiled import nonallocating
 from ..model.joints import Workspace
 from ..newton.motion import accept_part, go_back, move
 from ..newton.solve import drop_impulses
+from .bounds import stand_as_stepped
 from .closing import farthest
 from .foresight import forget_parts
 from .frame import frame_of, has_prescribed_motion, relative_energy
@@ -31,8 +32,7 @@ def restore_start(W: Workspace) -> None:
     """Return to the start of the step, without impulses."""
     go_back(W)
     undo_impulses(W)
-    for k in range(W.joints):
-        W.link[k].side = W.J.JOINT[W.link[k].joint].side
+    stand_as_stepped(W)
 
 
 @nonallocating
