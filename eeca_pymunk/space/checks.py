@@ -44,8 +44,8 @@ def check_shape(shape: Any) -> None:
         raise ValueError(f"{shape} has friction {shape.friction}: set a finite value >= 0")
     if not 0.0 <= shape.elasticity < math.inf:
         raise ValueError(f"{shape} has elasticity {shape.elasticity}: set a finite value >= 0")
-    if not math.isfinite(shape.radius):
-        raise ValueError(f"{shape} has radius {shape.radius}: set a finite radius")
+    if not 0.0 <= shape.radius < math.inf:
+        raise ValueError(f"{shape} has radius {shape.radius}: set a finite radius >= 0")
 
 
 def has_friction(shapes: Sequence[pymunk.Shape]) -> bool:

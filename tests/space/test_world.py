@@ -234,6 +234,17 @@ def test_friction_is_read_or_ignored() -> None:
     assert not ignoring.SHAPE["friction"].any()
 
 
+@pytest.mark.parametrize("radius", [-0.1, math.nan, math.inf])
+def test_a_radius_that_is_none_is_refused_by_name(radius: float) -> None:
+    space = pymunk.Space()
+    body = pymunk.Body(1.0, 1.0)
+    disk = pymunk.Circle(body, 0.5)
+    space.add(body, disk)
+    disk.unsafe_set_radius(radius)
+    with pytest.raises(ValueError, match=rf"Circle.*radius {radius}: set"):
+        ep.EECA(space)
+
+
 def test_masses_that_no_body_can_have_are_refused() -> None:
     space = pymunk.Space()
     one = pymunk.Body()
