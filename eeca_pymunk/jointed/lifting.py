@@ -38,18 +38,20 @@ from .losses import lost
 
 
 @kernel
-def raise_gaps(problem: JointedProblem, n: int, GAPS: FloatArray, D: FloatArray, tolerance: float) -> FloatArray:
+def raise_gaps(
+    problem: JointedProblem, n: int, GAPS: FloatArray, D: FloatArray, tolerance: float, exactly: bool
+) -> FloatArray:  # fmt: skip
     """Displacements D (k, 3) = Y mu with 0 <= mu _|_ g + G D >= 0, for contacts that are not left out, whose GAPS
-    (m,) become infinite; returns mu (m,). Where a light body in a corner is joined to one a thousand times heavier,
-    sweeps have not come far: of few contacts this is the law of contacts without friction, with targets -g, and solved
-    as such."""
+    (m,) become infinite; returns mu (m,). By sweeps, which have not come far where a light body in a corner is joined
+    to one a thousand times heavier: of few contacts this is the law of contacts without friction, with targets -g, and
+    solved as such if `exactly`. Impulses that sweeps leave give no energy, whatever their error."""
     ROWS, m, MU = problem.ROWS, problem.m, np.zeros(problem.m)
     for i in range(m):
         if problem.C.LEFT_OUT[i] != 0:
             GAPS[i] = np.inf
     if lift(problem, GAPS, MU, D, tolerance, JOINTED_CORRECTION_SWEEPS) <= tolerance:
         return MU
-    if m <= COLUMN_CONTACTS:
+    if exactly and m <= COLUMN_CONTACTS:
         slip_freely(ROWS, m)
         L, WAY = np.zeros((m, 2)), D.copy()
         for i in range(m):
@@ -132,7 +134,7 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, budget: float) -> 
     for _ in range(IMPACT_LIMITS):
         KEEP, D[:] = ROWS[:m].copy(), 0.0
         set_effective_masses(groups, C, KEEP, m)
-        raise_gaps(JointedProblem(KEEP, C, room_for_rows(0, 0), m), n, GAPS, D, JOINTED_LIFT_ERROR * -deepest)
+        raise_gaps(JointedProblem(KEEP, C, room_for_rows(0, 0), m), n, GAPS, D, JOINTED_LIFT_ERROR * -deepest, True)
         count_operations(J, C)
         again = False
         for g in range(len(groups.COMPONENT)):
