@@ -19,6 +19,7 @@ from tqdm import tqdm
 
 import eeca_pymunk as ep
 from comparisons.output import Output, Row
+from scenes.scene import add_walls
 
 G = 9.81
 STEPS = 240
@@ -29,10 +30,10 @@ def container(half: float, high: float, friction: float = 0.5, elasticity: float
     """A space with a floor and two walls, 2 `half` apart."""
     space = pymunk.Space()
     space.gravity = 0.0, -G
-    for a, b in (((-half, 0.0), (half, 0.0)), ((-half, 0.0), (-half, high)), ((half, 0.0), (half, high))):
-        wall = pymunk.Segment(space.static_body, a, b, 0.0)
+    left, right = (-half, 0.0), (half, 0.0)
+    add_walls(space, [(left, right), (left, (-half, high)), (right, (half, high))])
+    for wall in space.shapes:
         wall.friction, wall.elasticity = friction, elasticity
-        space.add(wall)
     return space
 
 

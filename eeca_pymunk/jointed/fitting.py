@@ -96,7 +96,7 @@ def stop_closing(A: Scene, J: Joints, interval: Interval, PUSHING: IntArray, fin
     for i in range(pushing):
         RATES[i] = normal_rate(KEEP[i], motion.V)
     D, before = np.zeros_like(motion.V), kinetic_energy(motion.V, isle.IM, isle.II, n)
-    MU = raise_gaps(JointedProblem(KEEP, C, room_for_rows(0, 0), pushing), n, RATES, D, fine, False)
+    MU = raise_gaps(JointedProblem(KEEP, C, room_for_rows(0, 0), pushing), n, RATES, D, fine)
     HELD, loss = np.zeros(m), 0.0
     for i in range(pushing):
         HELD[PUSHING[i]] = MU[i]

@@ -19,18 +19,15 @@ from ..model.contacts import Columns, JointedProblem, Row
 from ..model.joint_steps import SPEEDS
 from ..model.joints import Joints
 from ..model.parameters.intervals import CORRECTION_ROUND_OFF
-from ..model.parameters.joints import COLUMN_CONTACTS, IMPACT_LIMITS, JOINTED_CORRECTION_SWEEPS, JOINTED_LIFT_ERROR
+from ..model.parameters.joints import IMPACT_LIMITS, JOINTED_CORRECTION_SWEEPS, JOINTED_LIFT_ERROR
 from ..model.scene import Scene
 from ..newton.response import prepare_response
 from ..rows.bounded import room_for_rows
 from ..rows.build import normal_rate
-from ..rows.columns import breach
-from ..rows.coulomb import slip_freely
-from ..rows.homotopy import follow_homotopy
 from ..rows.inplace import copy
-from ..rows.lifting import keep_walls, lift
+from ..rows.lifting import lift_above_walls
 from .advance import Interval
-from .columns import count_operations, fill_group, set_effective_masses
+from .columns import fill_group, set_effective_masses
 from .component import close_at_poses, passes_limit
 from .gathered import find_places, gather_component
 from .groups import is_free
@@ -38,31 +35,13 @@ from .losses import lost
 
 
 @kernel
-def raise_gaps(
-    problem: JointedProblem, n: int, GAPS: FloatArray, D: FloatArray, tolerance: float, exactly: bool
-) -> FloatArray:  # fmt: skip
+def raise_gaps(problem: JointedProblem, n: int, GAPS: FloatArray, D: FloatArray, tolerance: float) -> FloatArray:
     """Displacements D (k, 3) = Y mu with 0 <= mu _|_ g + G D >= 0, for contacts that are not left out, whose GAPS
-    (m,) become infinite; returns mu (m,). By sweeps, which have not come far where a light body in a corner is joined
-    to one a thousand times heavier: of few contacts this is the law of contacts without friction, with targets -g, and
-    solved as such if `exactly`. Impulses that sweeps leave give no energy, whatever their error."""
-    ROWS, m, MU = problem.ROWS, problem.m, np.zeros(problem.m)
-    for i in range(m):
+    (m,) become infinite; returns mu (m,)."""
+    for i in range(problem.m):
         if problem.C.LEFT_OUT[i] != 0:
             GAPS[i] = np.inf
-    if lift(problem, GAPS, MU, D, tolerance, JOINTED_CORRECTION_SWEEPS) <= tolerance:
-        return MU
-    if exactly and m <= COLUMN_CONTACTS:
-        slip_freely(ROWS, m)
-        L, WAY = np.zeros((m, 2)), D.copy()
-        for i in range(m):
-            L[i, 0], ROWS[i].target, ROWS[i].wake = MU[i], -GAPS[i], np.inf
-        if follow_homotopy(problem, L, WAY, np.zeros_like(D), False) and breach(problem, L, WAY) <= tolerance:
-            copy(D, WAY)
-            for i in range(m):
-                MU[i] = L[i, 0]
-            return MU
-    keep_walls(problem, n, GAPS, np.minimum(GAPS, 0.0), MU, D)
-    return MU
+    return lift_above_walls(problem, n, GAPS, D, tolerance, JOINTED_CORRECTION_SWEEPS)
 
 
 @kernel
@@ -134,8 +113,7 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, budget: float) -> 
     for _ in range(IMPACT_LIMITS):
         KEEP, D[:] = ROWS[:m].copy(), 0.0
         set_effective_masses(groups, C, KEEP, m)
-        raise_gaps(JointedProblem(KEEP, C, room_for_rows(0, 0), m), n, GAPS, D, JOINTED_LIFT_ERROR * -deepest, True)
-        count_operations(J, C)
+        raise_gaps(JointedProblem(KEEP, C, room_for_rows(0, 0), m), n, GAPS, D, JOINTED_LIFT_ERROR * -deepest)
         again = False
         for g in range(len(groups.COMPONENT)):
             s = groups.COMPONENT[g]
