@@ -85,6 +85,8 @@ MUTATIONS = (
              "joints/test_bounds.py", "a_few_times"),
     Mutation("limits: none takes part in an impact", "impacts/joint_impact.py",
              "or not activate_limits(A, J, block, groups, t)", "or True", "impacts/test_joint_impact.py", "a_wall"),
+    Mutation("limits: displacements pass them at the wrong side", "joints/correct.py",
+             "a, b) < -room:", "a, b) > room:", "jointed/test_lifting.py", "along_limits"),
     Mutation("impacts: joints of bounded force hold", "joints/plan.py",
              "model.BOUNDED if bounded else 0", "0", "jointed/test_still.py", "flies_into"),
     Mutation("motors: impulses without bounds", "newton/saturation.py",

@@ -52,3 +52,20 @@ def test_a_body_without_shapes_lets_the_others_be_lifted() -> None:
     for _ in range(60):
         stepper.step(DT)
     assert -1e-8 < min(box.local_to_world(corner).y for corner in shape.get_vertices()) < 1e-3
+
+
+def test_bodies_are_lifted_along_limits_that_the_lift_would_pass() -> None:
+    """A rod on a heavy disk, whose tip is deep in a wall that carries both along: by itself it would turn out of it, by
+    .03 rad, but may turn by .001 only. A correction that does not know this is undone as the limit closes."""
+    space = pymunk.Space()
+    wall = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    heavy, rod = pymunk.Body(1e3, 1e3), pymunk.Body(1.0, INERTIA)
+    heavy.position, rod.position = (-0.5, 0.02 - DEEP), (0.0, 0.02 - DEEP)
+    wall.velocity = heavy.velocity = rod.velocity = 0.0, 0.1
+    limit = pymunk.RotaryLimitJoint(heavy, rod, -1.0, 0.001)
+    tip = pymunk.Segment(wall, (0.4, -0.1), (5.0, -0.1), 0.1)
+    space.add(wall, tip, heavy, rod, pymunk.Segment(rod, (-0.5, 0.0), (0.5, 0.0), 0.02))
+    space.add(limit, pymunk.PivotJoint(heavy, rod, (-0.5, 0.02 - DEEP)))
+    ep.EECA(space).step(DT)
+    assert rod.local_to_world((0.5, 0.0)).y - 0.02 - wall.position.y > -0.01 * DEEP
+    assert rod.angle - heavy.angle < 0.001 + 1e-9
