@@ -21,7 +21,8 @@ TAKEN_OVER_LEFT = heuristic(0.05, "of the kinetic energy of the component",
 LEAST_INERTIA = work(0.1, "of a body's inertia",
     "Inertia that the geometric stiffness of joints may leave in the smaller one of two systems, whose solution is "
     "the same; below it the larger one is solved.")
-IMPACT_LIMITS = work(4, "solutions", "Solutions of an impact, each with the limits that the one before moves into.")
+IMPACT_LIMITS = work(4, "solutions",
+    "Solutions of an impact, or of a correction of overlaps, each with the limits that the one before moves into.")
 IMPACT_ENERGY = round_off(4e-16, "of the kinetic energy", "Change of energy by an impact that is round-off.")
 LIMIT_EVENTS = work(12, "number", "Limits that are reached in one step of a component, at most.")
 LIMIT_WAY = round_off(1e-9, "of the component", "Way of a limit to its bound up to which the part before it is empty.")
