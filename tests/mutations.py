@@ -388,6 +388,8 @@ MUTATIONS = (
     Mutation("jointed: laws are solved exactly though impulses are excessive", "jointed/press_laws.py",
              "rough = first and manner.exactly and excessive(", "rough = False and excessive(",
              "jointed/test_budget.py", "solved_at_once and 1.0-1.0-True"),
+    Mutation("ends: what ends where the step is cut is solved again", "jointed/ends.py",
+             "if A.RESTING[root].until != t:", "if True:", "jointed/test_budget.py", "cloth and 14"),
     Mutation("joints: an error that has stalled is no round-off", "newton/solve.py",
              "NEWTON_FLOOR if stalls > 1 else", "JOINT_ROUND_OFF if stalls > 1 else",
              "joints/test_redundant.py", "knots"),

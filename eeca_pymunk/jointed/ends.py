@@ -7,7 +7,7 @@ import numpy as np
 from ..arrays import IntArray
 from ..compiled import kernel, nonallocating
 from ..islands.accounting import account_contact, move_to_end
-from ..islands.local import drop_contacts
+from ..islands.local import contact_range, drop_contacts
 from ..islands.membership import members_of
 from ..joints.bounds import hold_passed, stand_as_stepped
 from ..joints.closing import close_poses, farthest
@@ -55,19 +55,19 @@ def take_back(A: Scene, root: int) -> None:
 @kernel
 def shorten(A: Scene, J: Joints, root: int, t: float) -> int:
     """Let the interval of an island end at instant t, by a new solve from its start; nothing is entered in the ledger.
-    Returns how many contacts it had. Nothing if no interval is under way."""
+    Nothing changes if no interval is under way, or if it was solved to end at t. Returns how many contacts it had."""
     if not under_way(A, root):
         return 0
     end_rest(A, root)
-    before = A.COUNT.pushes
-    take_back(A, root)
-    began, A.RESTING[root].strays = A.BODY[root].since, 0.0
-    some = int(before - A.COUNT.pushes)
-    for s in components_of(A, J, root):
-        restore_joints(J, s)
-    if t - began > A.PAR.instant:
-        try_jointed(A, J, root, began, t - began, True)
-    return some
+    first, after = contact_range(A, root)
+    if A.RESTING[root].until != t:
+        take_back(A, root)
+        began, A.RESTING[root].strays, A.RESTING[root].until = A.BODY[root].since, 0.0, t
+        for s in components_of(A, J, root):
+            restore_joints(J, s)
+        if t - began > A.PAR.instant:
+            try_jointed(A, J, root, began, t - began, True)
+    return after - first
 
 
 @kernel

@@ -41,27 +41,28 @@ class Counting(ep.EECA):
 @pytest.mark.parametrize("side", [7, 8, 10, 14])
 def test_a_cloth_that_falls_over_a_disk_stays_within_its_budget(side: int) -> None:
     """Its knots are almost in line when it folds, so that Newton's method is slow, and 196 of them are expensive. Past
-    the budget only what ends a step is solved, at most as much again (four budgets, .18 s, if each attempt
-    at an interval may take 40 iterations, and becomes shorter by a factor of 4). Steps are cut, but time goes on, also
-    where knots in line are apart by 1e-12, which no motion closes (100 knots stood still from the 50th step on, if
-    Newton's method repeats iterations of which each makes the error smaller by 2e-4 of it), and where cells are folded
-    flat (49 knots stood still, if intervals too short to be long are taken in parts that cost the whole step)."""
+    the budget only what ends a step is solved, and nothing that ends there already (two budgets, if intervals that end
+    where the step is cut are solved again; four, if also each attempt at an interval may take 40 iterations, and
+    becomes shorter by a factor of 4). Steps are cut, but time goes on, also where knots in line are apart by 1e-12,
+    which no motion closes (100 knots stood still from the 50th step on, if Newton's method repeats iterations of which
+    each makes the error smaller by 2e-4 of it), and where cells are folded flat (49 knots stood still, if intervals too
+    short to be long are taken in parts that cost the whole step)."""
     space = linkages.draped(side)
     matter(space, 0.5)
     stepper = Counting(space)
     for _ in range(60):
         stepper.step(DT)
-    assert 0.5 < max(stepper.works) <= 2.0
+    assert 0.5 < max(stepper.works) <= 1.5
     assert np.mean(stepper.parts) >= 0.4
     assert min(stepper.parts) > 0.0
     assert sum(part < 1e-6 for part in stepper.parts) <= 1
 
 
-@pytest.mark.parametrize(("seed", "least"), [(51050106, 0.6), (51050051, 0.8), (51050114, 0.85)])
+@pytest.mark.parametrize(("seed", "least"), [(51050106, 0.7), (51050051, 0.9), (51050114, 0.7)])
 def test_the_work_of_steps_is_spent_on_motion(monkeypatch: pytest.MonkeyPatch, seed: int, least: float) -> None:
     """Of so much of the time of a hard scene motion is found before its steps are cut. If components may be stepped in
     parts within long intervals, and these are tried again at full length after each impact, it is a third in 51050106.
-    """
+    Scenes are chaotic: with gravity changed by 1e-9 to 7e-9 it is .77 to .93, .96 to 1 and .75 to .94."""
     monkeypatch.setattr(varied.ep, "EECA", Counting)
     scene = varied.Varied(seed, True)
     monkeypatch.setattr(scene, "_longest", lambda: math.inf)
