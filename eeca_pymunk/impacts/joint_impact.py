@@ -24,7 +24,6 @@ from ..joints.workspace import workspace
 from ..model.contacts import SOLVED, JointedProblem, Row, Solved
 from ..model.joints import Joints
 from ..model.parameters.events import EVENT_LOOKS
-from ..model.parameters.intervals import UNSOLVED_PART
 from ..model.parameters.joints import CLOSES, IMPACT_ENERGY, IMPACT_LIMITS
 from ..model.scene import Scene
 from ..rows.blocks import TRUNCATED, close_block, solve_block, solve_freely
@@ -177,7 +176,4 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     spend(A, n, m, 0.0)  # besides what its solutions take
     count_operations(J, C)
     n = unite_block(A, a, b, t, n, lasts, lost, 1.0 - work_left(A, J) / J.PROGRESS.budget)
-    n = list_ended(A, n)
-    for q in range(n):
-        A.RESTING[A.BLOCK[q]].longest *= UNSOLVED_PART  # they move otherwise now, perhaps for long
-    return n
+    return list_ended(A, n)

@@ -13,7 +13,7 @@ from ..model.step import AGAIN, DONE
 from ..pairs.rules import barred
 from .component import step_in_scratch
 from .gathered import gather_alone, restore_joints, save_joints, takes_shorter
-from .lengths import excess_alone
+from .lengths import excess_alone, next_length
 
 
 @nonallocating
@@ -62,7 +62,7 @@ def begin_alone(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
             set_path(A, body, h, local.pose, local.pose, local.v0)
     A.COUNT.solves += 1
     open_until(A, root, t + h)
-    return DONE, INTERVAL_RETRY * h
+    return DONE, next_length(h, far)
 
 
 @nonallocating

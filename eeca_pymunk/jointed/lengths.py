@@ -155,3 +155,10 @@ def forced_deeper(A: Scene, interval: Interval) -> int:
         if LEFT_OUT[z] != 0 and closed < 0.0 and ROWS[z].gap + closed < -depth_limit(A, a, b):
             return z
     return -1
+
+
+@nonallocating
+def next_length(h: float, far: float) -> float:
+    """Largest length of the interval after one of length h that was `far` times too long (`excess`), INTERVAL_RETRY at
+    most: as its motion allows, up to RESOLUTION times h."""
+    return h * max(INTERVAL_RETRY, 1.0 / max(far, 1.0 / RESOLUTION))

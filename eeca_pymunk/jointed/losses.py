@@ -84,7 +84,7 @@ def lock_jointed(
         if loss >= owed - error and (not elastic or loss <= owed + error):
             break
         s, _ = scale_of_loss(interval, L, B, owed - loss)
-        if tries == PRESS_LOCKS or J.PROGRESS.effort > J.PROGRESS.share or (elastic and not 0.0 < s < 2.0):
+        if tries == PRESS_LOCKS or (elastic and not 0.0 < s < 2.0):
             s = 0.0
         elif not 0.1 < s < 2.0:
             # For small s the loss of s L has the sign of p: L is halved, repeatedly.

@@ -91,6 +91,7 @@ def solve_contacts(
     | iterations or work are used up | no | as that solution, if it agrees | L, or LEAST if these agreed better |
     | of few contacts, CHORD iterations have come no nearer, or nowhere near | no | likewise | likewise |
 
+    What comes no nearer agrees at `enough`: near rest velocities have to agree better, but less is a solution, too.
     Where the exact solution of the first iteration is excessive, sweeps take its place (`rough`), and iterations go on.
     Impulses that are excessive in the end, or not converged, are replaced (`solve_gently`). The lock is last.
 
@@ -103,7 +104,7 @@ def solve_contacts(
     rates(ROWS, isle.V, m)
     SLIP, limited, quick, manner = take_slips(ROWS, m), False, fast + pull * h, manner_of(A, interval)
     elastic, exactly = manner.elastic, manner.exactly
-    scale, agree, fine = aims(pull * h, slow, fast, elastic)
+    scale, agree, enough, fine = aims(pull * h, slow, fast, elastic)
     # While many contacts have not converged, joints need not be exact before the last step of the components.
     J.PROGRESS.near = 0.0 if exactly or slow < pull * h else joints.JOINTS_NEAR
     # off: difference between the velocities of contacts and components, best: its smallest value since contacts last
@@ -131,7 +132,7 @@ def solve_contacts(
             off = farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n)
             reached = min(reached, off)
             stalls = off > joints.OUTER_PROGRESS * best
-            if (off <= agree and not (rough and worst > fine)) or (off <= joints.OUTER_FLOOR * scale and stalls):
+            if (off <= agree and not (rough and worst > fine)) or (off <= enough and stalls):
                 # Velocities agree, but contacts may gain energy by them: no more than the lock may take at the end.
                 error = work_error(interval, L, slow, pull, joints.PRESS_WORK_ROUND_OFF)
                 more = owed - lost(interval, L)
@@ -168,7 +169,7 @@ def solve_contacts(
             pull = max(pull, most_pull)
         set_effective_masses(groups, C, ROWS, m)
         if outer == 0:
-            scale, agree, fine = aims(pull * h, slow, fast, elastic)
+            scale, agree, enough, fine = aims(pull * h, slow, fast, elastic)
             target(ROWS, m, EFFECT, EXPECTED, pull, h)
         copy(PREVIOUS, motion.MEAN)
         copy(USED, L)
@@ -178,7 +179,7 @@ def solve_contacts(
         worst, rough = solve_laws(
             A, J, interval, problem, manner, L, FORESEEN, scale, fine, quick, sweeps, outer == 0
         )  # fmt: skip
-        converged = worst <= 10.0 * max(fine, min(agree, joints.AGREE * scale))
+        converged = worst <= 10.0 * enough
         if farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n) <= 1e-3 * agree:
             # The motion is that of USED: others have the same effect by the columns, but perhaps not in a step.
             copy(L, USED)
@@ -193,8 +194,7 @@ def solve_contacts(
         if not off <= best:
             copy(L, LEAST)
             advance(A, J, interval, L, B, False, UNKNOWN)
-        # Elastic joints leave round-off of ways times their stiffness, which more iterations do not lower.
-        converged = (converged and off <= agree) or (best <= joints.AGREE * scale and some_give(J, groups))
+        converged = converged and min(off, best) <= enough
     # Impulses that are no solution may let walls do any work.
     quick = fast + pull * h
     if excessive(L, m, isle.IM, n, quick) or (not converged and few):
@@ -210,6 +210,6 @@ def solve_contacts(
         known = max(known, min(2.0 * reached / (slow + pull * h), joints.PRESS_WORK_TAUT))
     copy(FORESEEN, motion.MEAN)
     lock_jointed(A, J, interval, L, B, free, elastic, owed, work_error(interval, L, slow, pull, known))
-    J.PROGRESS.tolerance = max(agree, joints.AGREE * scale)
-    agreed = farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n) <= max(agree, joints.LOCK_SHIFT * scale)
+    J.PROGRESS.tolerance = joints.AGREE * scale
+    agreed = farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n) <= joints.LOCK_SHIFT * scale
     return SOLVED if converged and agreed and bent <= joints.ARM_LEFT else UNSOLVED

@@ -62,16 +62,18 @@ def manner_of(A: Scene, interval: Interval) -> Manner:
 
 
 @nonallocating
-def aims(change: float, slow: float, fast: float, elastic: bool) -> tuple[float, float, float]:
-    """Three tolerances of the iterations, each a velocity: the unit of errors; the difference between the velocities of
-    contacts and components at which iterations end; the residual of the contacts' laws. change: |a| h.  slow, fast:
-    speeds of the island."""
+def aims(change: float, slow: float, fast: float, elastic: bool) -> tuple[float, float, float, float]:
+    """Four tolerances of the iterations, each a velocity: the unit of errors; the difference between the velocities of
+    contacts and components at which iterations end; that at which contacts count as solved where iterations come no
+    nearer; the residual of the contacts' laws. change: |a| h.  slow, fast: speeds of the island."""
     if elastic:
-        return change + fast, joints.AGREE_ELASTIC * (change + fast), 1e-15 * (change + fast)
+        scale = change + fast
+        return scale, joints.AGREE_ELASTIC * scale, joints.OUTER_FLOOR * scale, 1e-15 * scale
     scale, rests = change + slow, slow < change
     return (
         scale,
         (joints.AGREE_REST if rests else joints.AGREE) * scale,
+        joints.AGREE * scale,
         (joints.PRESS_RESIDUAL_REST if rests else joints.PRESS_RESIDUAL) * scale,
     )
 

@@ -33,7 +33,7 @@ from .fitting import project_velocities
 from .gathered import restore_joints, save_joints, takes_shorter
 from .groups import find_groups
 from .ledger import has_work_for, work_left
-from .lengths import excess, forced_deeper, too_deep_on_way, within_sagitta
+from .lengths import excess, forced_deeper, next_length, too_deep_on_way, within_sagitta
 from .lifting import lift_island
 from .losses import slip_of
 from .press import GIVEN_UP, SOLVED, solve_contacts
@@ -66,8 +66,7 @@ def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
     if joints do not hold, work is short, or bodies move too far (`lengths`).
 
     A length that was too long is not tried again at once: the next interval is at most INTERVAL_RETRY times as long as
-    one that was shortened, UNSOLVED_PART times after an impact, or if it has many contacts and moves little
-    (`Rest.longest`).
+    one that was shortened, and else as long as its motion allows, at most RESOLUTION times (`Rest.longest`).
 
     Returns DONE; or, with everything as before, PUSHES_FULL, or SPENT if the step has no work left.
     """
@@ -85,7 +84,7 @@ def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
         status, then = try_jointed(A, J, root, t, h, last)
         if status != AGAIN:
             if status == DONE:
-                longer = max(then, 0.0 if h < longest else rest.longest)
+                longer = max(then if attempt == 0 else INTERVAL_RETRY * h, 0.0 if h < longest else rest.longest)
                 i = root
                 while i >= 0:
                     A.RESTING[i].longest = longer
@@ -215,6 +214,4 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
         pushed.held = HELD[z]
     for q in range(n):
         set_path(A, MINE[q], h, WHERE[q], motion.END[q], motion.V[q])
-    # Many contacts are solved roughly, so that the motion alone tells how long an interval may be.
-    grows = UNSOLVED_PART if not interval.few and UNSOLVED_PART * far < INTERVAL_RETRY else INTERVAL_RETRY
-    return DONE, grows * h
+    return DONE, next_length(h, far if solved or not interval.few else 1.0)

@@ -57,7 +57,7 @@ def solve_columns(
             velocities(problem, L, FREE, V)
             if not follow_homotopy(problem, L, V, FREE, True):
                 break
-        # Discs of bounded impulses are not in the homotopy: sweeps, in turn with it.
+        # Impulses on the rim of discs are not in the homotopy, nor are rims: sweeps, in turn with it.
         worst, done = breach(problem, L, V), 0
         while done < COLUMN_SWEEPS_AFTER and worst > tolerance:
             worst = sweep(problem, L, V)

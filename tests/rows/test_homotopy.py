@@ -10,7 +10,7 @@ import pytest
 from eeca_pymunk.compiled.records import zeros
 from eeca_pymunk.model.contacts import BOUNDED_ROW, ROW, Bounded, Columns, JointedProblem
 from eeca_pymunk.model.parameters.joints import HOMOTOPY_WORK, MATRIX_WORK
-from eeca_pymunk.rows.bounded import room_for_rows, weigh_rows
+from eeca_pymunk.rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, room_for_rows, weigh_rows
 from eeca_pymunk.rows.build import normal_rate, place_row, tangent_rate
 from eeca_pymunk.rows.homotopy import follow_homotopy
 from eeca_pymunk.rows.homotopy_start import work_of_change
@@ -170,6 +170,42 @@ def test_bounded_rows_as_all_cases_tried() -> None:
                     found.append(trial)
         assert found
         assert min(np.abs(trial - L).max() for trial in found) <= 1e-10
+
+
+def pinned(count: int, most: float) -> JointedProblem:
+    """A chain of points of unit mass without contacts; neighbours are pinned by impulses of at most `most`."""
+    rows = 2 * (count - 1)
+    D = room_for_rows(rows, 2 * rows)
+    D.USED[0] = rows
+    for i in range(rows):
+        first, axis = divmod(i, 2)
+        D.AT[i + 1], D.BODY[2 * i], D.BODY[2 * i + 1] = 2 * i + 2, first, first + 1
+        D.N[2 * i, axis], D.N[2 * i + 1, axis] = -1.0, 1.0
+        D.END[i], D.ROW[i, axis], D.ROW[i, 3 + axis] = (first, first + 1), -1.0, 1.0
+        D.ROWS[i].part = SECOND_OF_DISC if axis else FIRST_OF_DISC
+        D.ROWS[i].low, D.ROWS[i].high = -most, most
+    weigh_rows(D)
+    nothing = problem_of([], np.empty((0, 2)), np.empty((0, 2)), np.zeros((1, 2)), 0.0)
+    return JointedProblem(nothing.ROWS, nothing.C, D, 0)
+
+
+def test_chains_of_bounded_pivots_are_solved_as_a_whole() -> None:
+    """Impulses inside their discs are linear rows: 30 points move as one after them. Sweeps from neighbour to neighbour
+    need 900 rounds for each digit. If the largest impulse is more than is allowed, some slip, and none exceeds it."""
+    rng, count = np.random.default_rng(0), 30
+    free = np.column_stack((rng.normal(size=(count, 2)), np.zeros(count)))
+    problem = pinned(count, 1e3)
+    L, V = np.zeros((2 * count - 2, 2)), free.copy()
+    assert solve_columns(problem, L, V, 1e-12, 3, 4, np.inf) <= 1e-12
+    np.testing.assert_allclose(V, np.tile(free.mean(axis=0), (count, 1)), atol=1e-12)
+    problem = pinned(count, 0.9 * float(np.hypot(L[::2, 0], L[1::2, 0]).max()))
+    L, V = np.zeros((2 * count - 2, 2)), free.copy()
+    assert solve_columns(problem, L, V, 1e-10, 3, 5000, np.inf) <= 1e-10
+    sizes = np.hypot(L[::2, 0], L[1::2, 0]) / problem.D.ROWS[0].high
+    assert 1.0 - 1e-12 <= sizes.max() <= 1.0 + 1e-12
+    apart = np.linalg.norm(np.diff(V[:, :2], axis=0), axis=1)
+    assert apart.max() > 0.01
+    assert np.all(apart[sizes < 1.0 - 1e-12] <= 1e-8)
 
 
 def matrix(problem: JointedProblem, free: Array) -> tuple[Array, Array, Array]:

@@ -43,8 +43,7 @@ SMALL_SWEEPS = work(40, "sweeps",
     "Sweeps of an impact on a pile before its direct solves, of a small island that waits for its next one, and of "
     "many contacts of a small island with joints.")
 UNSOLVED_PART = work(4.0, "ratio",
-    "Factor by which an interval with joints becomes shorter, at most, where its contacts are not solved, and may be "
-    "longer after an impact.")
+    "Factor by which an interval with joints becomes shorter, at most, where its contacts are not solved.")
 SLIGHT_DEPTH = heuristic(0.1, "of what an interval allows",
     "Depth of a contact that may stay: beyond it all losses of the step pay for lifting. Smaller: piles move on.")
 INTERVAL_TRIES = work(12, "number", "Attempts at an interval, each shorter, at most.")

@@ -139,7 +139,8 @@ OUTER_MANY = work(2, "steps of the components", "These iterations with more than
 OUTER_PART = work(1, "steps of the components",
     "These iterations in an interval of many contacts that ends within the step.")
 AGREE = accuracy(1e-06, "of |a| h and the speed",
-    "Difference of the velocities of contacts and components at which their iterations end.")
+    "Difference of the velocities of contacts and components at which their iterations end; at which contacts count as "
+    "solved if it does not fall.")
 LOCK_SHIFT = accuracy(1e-05, "of |a| h and the speed",
     "Change of velocities by which the energy lock may break the laws of contacts.")
 AGREE_REST = accuracy(1e-11, "of |a| h and the speed", "This difference near rest.")
@@ -153,7 +154,8 @@ JOINTS_NEAR = accuracy(1e-09, "of the component", "Error of joints while many co
 FIT_ROUND_OFF = round_off(1e-12, "of the size of a body",
     "Way in an interval up to which columns are not made to fit what they missed.")
 OUTER_FLOOR = round_off(1e-08, "of the speed",
-    "Difference of the velocities that is round-off of stiff components if it does not fall.")
+    "Difference of the velocities at which elastic contacts count as solved if it does not fall: round-off of stiff "
+    "components.")
 PRESS_WORK_ROUND_OFF = round_off(4e-14, "of impulses times speed", "Round-off of the work of contacts of components.")
 SWEEP_WORK = work(38.0, "operations", "Work of a sweep for each contact and bounded row.")
 SWEEP_ENTRY_WORK = work(15.0, "operations", "Work of a sweep for each entry of their columns.")
