@@ -115,11 +115,14 @@ def per_impulse(B: Bounded, i: int, j: int) -> float:
 
 
 @nonallocating
-def inside_disc(B: Bounded, L: FloatArray, m: int, i: int) -> bool:
-    """Whether the impulses L[m:, 0] of the disc of row i are inside it: both rows then have their target velocities."""
-    i -= 1 if B.ROWS[i].part == SECOND_OF_DISC else 0
-    x, y, bound = L[m + i, 0], L[m + i + 1, 0], B.ROWS[i].high
-    return bool(x * x + y * y < bound * bound and B.ROWS[i + 1].low < y < B.ROWS[i + 1].high)
+def inside_discs(B: Bounded, L: FloatArray, m: int) -> bool:
+    """Whether all impulses L[m:, 0] of discs are inside these, so that all their rows have their target velocities."""
+    for i in range(B.USED[0]):
+        if B.ROWS[i].part == FIRST_OF_DISC:
+            x, y, bound = L[m + i, 0], L[m + i + 1, 0], B.ROWS[i].high
+            if not (x * x + y * y < bound * bound and B.ROWS[i + 1].low < y < B.ROWS[i + 1].high):
+                return False
+    return True
 
 
 @nonallocating

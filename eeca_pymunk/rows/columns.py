@@ -13,7 +13,7 @@ from ..compiled import inlined, kernel, nonallocating
 from ..model.contacts import Columns, JointedProblem, Problem, Row
 from ..model.parameters.impulses import ON_CONE
 from ..model.parameters.joints import DISC_WORK, SLIP_WORK, SWEEP_ENTRY_WORK, SWEEP_WORK
-from .bounded import FIRST_OF_DISC, SINGLE, bounded_rate, inside_disc, push_row, room_for_rows, sweep_bounded
+from .bounded import FIRST_OF_DISC, bounded_rate, inside_discs, push_row, room_for_rows, sweep_bounded
 from .build import normal_rate, tangent_rate
 from .coulomb import OPEN, STICK, lawful, limited_slip, mode_of
 
@@ -79,7 +79,7 @@ def breach(problem: JointedProblem, L: FloatArray, V: FloatArray) -> float:
     change of velocity in a sweep is no such measure: where an impulse of friction could open its contact,
     a_nn < mu |a_nt|, a contact by itself has several solutions, among which a sweep may change."""
     ROWS, C, D, m = problem
-    worst = 0.0
+    worst = 0.0 if inside_discs(D, L, m) else np.inf
     for i in range(m):
         if C.LEFT_OUT[i] != 0:
             continue
@@ -94,8 +94,6 @@ def breach(problem: JointedProblem, L: FloatArray, V: FloatArray) -> float:
             worst = max(worst, abs(off) if state == STICK else sign * off)
     for i in range(D.USED[0]):
         row, x = D.ROWS[i], L[m + i, 0]
-        if row.part != SINGLE and not inside_disc(D, L, m, i):
-            return np.inf
         if row.give > 0.0:
             u = row.speed + bounded_rate(D, i, V)
             worst = max(worst, abs(u) if row.low < x < row.high else u if x >= row.high else -u)

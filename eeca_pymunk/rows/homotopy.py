@@ -65,16 +65,19 @@ def correct_residual(problem: JointedProblem, tableau: Tableau, V: FloatArray, X
 
 
 @kernel
-def follow_homotopy(problem: JointedProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, anew: bool) -> bool:
+def follow_homotopy(
+    problem: JointedProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, anew: bool, discs: bool
+) -> bool:
     """Impulses L (m + n, 2) and velocities V (k, 3) at the end of the homotopy from these; False, with nothing changed,
     if its end is not reached.
 
     Args:
         FREE: (k, 3) velocities without any impulses of the problem.  anew: whether it begins without impulses, and may
             be longer.
+        discs: whether impulses of discs take part, in squares around these; else they stay.
     """
     m = problem.m
-    tableau = start_homotopy(problem, L, V, anew)
+    tableau = start_homotopy(problem, L, V, anew, discs)
     T, count, size = tableau.T, len(tableau.MODE), tableau.T.shape[1]
     X = np.empty(size)
     # sense: of theta, +-1.  nearest: change of theta up to the next change of state, change `number` of `changed`.

@@ -12,7 +12,7 @@ from ..compiled import inlined, kernel, nonallocating
 from ..model.contacts import JointedProblem
 from ..model.parameters.impulses import HOMOTOPY_CHANGES, HOMOTOPY_CHANGES_ANEW, ON_CONE_SWEPT, RESTORED_FIRST
 from ..model.parameters.joints import CHANGE_ENTRY_WORK, CHANGE_WORK, HOMOTOPY_WORK
-from .bounded import SINGLE, bounded_rate, inside_disc
+from .bounded import SINGLE, bounded_rate
 from .build import normal_rate, tangent_rate
 from .coulomb import OPEN, SLIP, STICK, limited_slip, mode_of
 from .dense import matrix_jointed
@@ -26,11 +26,11 @@ def work_of_change(size: int) -> float:
 
 
 @kernel
-def start_homotopy(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: bool) -> Tableau:
+def start_homotopy(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: bool, discs: bool) -> Tableau:
     """The homotopy's start at impulses L (m + n, 2) of m contacts and n bounded rows with velocities V (k, 3); or, if
     `anew`, without impulses of contacts, and with rows at a bound. Contacts that are inactive (`Row.wake`) or left out
-    (`Columns.LEFT_OUT`), discs on whose rim impulses are, and rows that joints hold take no part: their impulses stay.
-    """
+    (`Columns.LEFT_OUT`), and rows that joints hold take no part: their impulses stay, and so do those of discs, unless
+    these are replaced by squares (`discs`)."""
     ROWS, C, D, m = problem
     n = D.USED[0]
     size = 2 * m + n
@@ -61,7 +61,7 @@ def start_homotopy(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: 
     for i in range(n):
         row, k = D.ROWS[i], 2 * m + i
         tableau.LOW[i], tableau.HIGH[i] = row.low, row.high
-        if (row.part == SINGLE or inside_disc(D, L, m, i)) and T[k, k] > 0.0:
+        if (discs or row.part == SINGLE) and T[k, k] > 0.0:
             upper = L[m + i, 0] >= row.high or row.low == -np.inf
             tableau.MODE[m + i], tableau.SIGN[m + i] = BOUND, 1.0 if upper else -1.0
             T[size, k] = row.speed + bounded_rate(D, i, V)

@@ -14,6 +14,7 @@ from ..compiled.records import Rows
 from ..model.contacts import JointedProblem, Problem, Row, Solved
 from ..model.parameters.intervals import LARGE_ISLAND
 from ..model.parameters.joints import COLUMN_CONTACTS, COLUMN_HOMOTOPIES, COLUMN_SWEEPS, COLUMN_SWEEPS_AFTER
+from .bounded import inside_discs
 from .columns import as_columns, breach
 from .conjugate import sweep_conjugate
 from .coulomb import slip_freely
@@ -44,6 +45,7 @@ def solve_columns(
     """
     worst = sweep_conjugate(problem, L, V, tolerance, sweeps)[1] if sweeps > 0 else breach(problem, L, V)
     best, L0, V0, before, earlier = worst, L.copy(), V.copy(), np.inf, np.inf
+    within = inside_discs(problem.D, L, problem.m)  # as long as impulses stay inside, discs are linear rows
     for _ in range(COLUMN_HOMOTOPIES):
         if worst <= tolerance:
             return worst
@@ -52,12 +54,17 @@ def solve_columns(
         FREE = V.copy()
         push(problem, L, -1.0, FREE)
         divide_friction(problem.ROWS, L, problem.m)  # points that slip against each other have no common motion
-        if not follow_homotopy(problem, L, V, FREE, False):
+        follows = follow_homotopy(problem, L, V, FREE, False, within)
+        if within and not inside_discs(problem.D, L, problem.m):
+            within = False
+            restore_impulses(L, V, L0, V0)
+            continue
+        if not follows:
             L[:] = 0.0
             velocities(problem, L, FREE, V)
-            if not follow_homotopy(problem, L, V, FREE, True):
+            if not follow_homotopy(problem, L, V, FREE, True, within):
                 break
-        # Impulses on the rim of discs are not in the homotopy, nor are rims: sweeps, in turn with it.
+        # Homotopies have no rims of discs: sweeps, in turn with these.
         worst, done = breach(problem, L, V), 0
         while done < COLUMN_SWEEPS_AFTER and worst > tolerance:
             worst = sweep(problem, L, V)

@@ -219,10 +219,11 @@ def yard(unit: float, boxes: int = 6) -> tuple[pymunk.Space, pymunk.Body, pymunk
     return space, add(0.0, 0.0, 1.5, 10.0, control, 500.0), control
 
 
-@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+@pytest.mark.parametrize("unit", [1e-3, 1e-1, 1.0, 7.0, 1e2, 1e3, 1e4])
 def test_boxes_that_lie_in_each_other_and_that_a_tank_pushes_are_solved(unit: float) -> None:
     """What lies without any load or velocity is solved as it is: by one solve a step, not by shorter and shorter
-    intervals."""
+    intervals. Where impulses reach the rim of a disc, homotopies leave them to sweeps: with squares for discs one of
+    the units has steps that are not solved."""
     space, tank, control = yard(unit)
     stepper = ep.EECA(space)
     lying = [b for b in moving(space) if b.position.x < -unit]

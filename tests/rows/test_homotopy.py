@@ -98,7 +98,7 @@ def test_homotopies_without_impulses_end_at_the_law(rows: int) -> None:
     for seed in range(30):
         problem, free = drawn(seed, rows=rows)
         L, V = np.zeros((problem.m + rows, 2)), free.copy()
-        assert follow_homotopy(problem, L, V, free, True)
+        assert follow_homotopy(problem, L, V, free, True, False)
         assert off(problem, L, V) <= 1e-12
         again = free.copy()
         push(problem, L, 1.0, again)
@@ -112,11 +112,11 @@ def test_homotopies_from_a_solution_nearby_end_at_the_law_or_nowhere() -> None:
     for seed in range(30):
         problem, free = drawn(seed)
         L = np.zeros((problem.m, 2))
-        assert follow_homotopy(problem, L, free.copy(), free, True)
+        assert follow_homotopy(problem, L, free.copy(), free, True, False)
         free[:-1] += 0.1 * np.random.default_rng(seed).normal(size=free[:-1].shape)
         V, before = np.empty_like(free), L.copy()
         velocities(problem, L, free, V)
-        if follow_homotopy(problem, L, V, free, False):
+        if follow_homotopy(problem, L, V, free, False, False):
             ended += 1
             assert off(problem, L, V) <= 1e-12
         else:
@@ -136,8 +136,8 @@ def test_jammed_contacts_that_sweeps_carry_round() -> None:
     for _ in range(300):
         changed = sweep(problem, L, V)
     assert changed > 1e-11
-    assert follow_homotopy(problem, L, V, free, False) or follow_homotopy(
-        problem, np.zeros((2, 2)), free.copy(), free, True
+    assert follow_homotopy(problem, L, V, free, False, False) or follow_homotopy(
+        problem, np.zeros((2, 2)), free.copy(), free, True, False
     )
     assert off(problem, L, V) <= 1e-12
 
@@ -148,7 +148,7 @@ def test_bounded_rows_as_all_cases_tried() -> None:
         problem, free = drawn(seed, m=1, k=3, rows=2)
         problem.ROWS[0].friction = 0.0
         L, V = np.zeros((3, 2)), free.copy()
-        assert follow_homotopy(problem, L, V, free, True)
+        assert follow_homotopy(problem, L, V, free, True, False)
         found = []
         for states in itertools.product((-1, 0, 1), repeat=2):
             for held in (False, True):
@@ -230,7 +230,7 @@ def test_paths_through_contacts_that_nothing_moves_end_nowhere() -> None:
     problem.C.N[:], problem.C.T[:] = 0.0, 0.0
     L = np.zeros((problem.m, 2))
     with np.errstate(all="ignore"):
-        assert not follow_homotopy(problem, L, free.copy(), free, True)
+        assert not follow_homotopy(problem, L, free.copy(), free, True, False)
     assert not L.any()
 
 
@@ -259,7 +259,7 @@ def test_stacks_whose_faces_jam_start_at_their_impulses(mu: float) -> None:
     for seed in range(20):
         problem, L, free = jammed_stack(mu, seed)
         V = np.zeros_like(free)
-        assert follow_homotopy(problem, L, V, free, False)
+        assert follow_homotopy(problem, L, V, free, False, False)
         assert np.abs(V).max() <= 1e-4  # where the matrix has no inverse; sweeps follow
         assert np.abs(L).max() <= 1.0
 
