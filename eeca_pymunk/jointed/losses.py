@@ -8,7 +8,7 @@ from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..model.contacts import Bounded, Row
 from ..model.joints import Joints
-from ..model.parameters.joints import BOUNDED_SWEEPS, PRESS_LOCKS
+from ..model.parameters.joints import BOUNDED_SWEEPS, PRESS_LOCKS, PRESS_LOCKS_SPENT
 from ..model.scene import Scene
 from ..rows.bounded import sweep_bounded
 from ..rows.build import normal_rate, slip_rate
@@ -84,7 +84,8 @@ def lock_jointed(
         if loss >= owed - error and (not elastic or loss <= owed + error):
             break
         s, _ = scale_of_loss(interval, L, B, owed - loss)
-        if tries == PRESS_LOCKS or (elastic and not 0.0 < s < 2.0):
+        most = PRESS_LOCKS if J.PROGRESS.effort <= J.PROGRESS.share else PRESS_LOCKS_SPENT
+        if tries >= most or (elastic and not 0.0 < s < 2.0):
             s = 0.0
         elif not 0.1 < s < 2.0:
             # For small s the loss of s L has the sign of p: L is halved, repeatedly.

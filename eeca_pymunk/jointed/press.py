@@ -81,7 +81,7 @@ def solve_contacts(
     contacts' laws gave before; else it solves these laws with the columns, for L and FORESEEN. Columns are computed
     again in every CHORD-th iteration, else updated (`secant`). A long interval (PROGRESS.length) is given up where a
     component gives way or is not stepped as a whole; of many contacts only if the step has work for many shorter
-    intervals. Else iterations end in five ways:
+    intervals; and where few contacts have not converged when its work is spent. Iterations end in five ways:
 
     | because | `agreed` | `converged` | impulses |
     |---|---|---|---|
@@ -195,6 +195,8 @@ def solve_contacts(
             copy(L, LEAST)
             advance(A, J, interval, L, B, False, UNKNOWN)
         converged = converged and min(off, best) <= enough
+    if not converged and few and J.PROGRESS.length == LONG and J.PROGRESS.effort > J.PROGRESS.share:
+        return GIVEN_UP
     # Impulses that are no solution may let walls do any work.
     quick = fast + pull * h
     if excessive(L, m, isle.IM, n, quick) or (not converged and few):

@@ -181,7 +181,7 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
         advance(A, J, interval, L, room_for_rows(0, 0), False, np.empty((0, 3)))
     COUNT.solves += 1
     COUNT.solved += n
-    solved, far = outcome == SOLVED, UNSOLVED_PART
+    solved, far = outcome == SOLVED, 2.0 if J.PROGRESS.effort > J.PROGRESS.share else UNSOLVED_PART
     if outcome != GIVEN_UP:
         far = excess_length(A, J, interval, L, root, J.PROGRESS.effort - before, solved, last)
     J.PROGRESS.length = FINAL

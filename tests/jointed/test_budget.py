@@ -53,17 +53,17 @@ def test_a_cloth_that_falls_over_a_disk_stays_within_its_budget(side: int) -> No
     stepper = Counting(space)
     for _ in range(60):
         stepper.step(DT)
-    assert 0.5 < max(stepper.works) <= 1.5
+    assert 0.5 < max(stepper.works) <= 1.7
     assert np.mean(stepper.parts) >= 0.4
     assert min(stepper.parts) > 0.0
     assert sum(part < 1e-6 for part in stepper.parts) <= 1
 
 
-@pytest.mark.parametrize(("seed", "least"), [(51050106, 0.7), (51050051, 0.9), (51050114, 0.7)])
+@pytest.mark.parametrize(("seed", "least"), [(51050106, 0.5), (51050051, 0.9), (51050114, 0.65)])
 def test_the_work_of_steps_is_spent_on_motion(monkeypatch: pytest.MonkeyPatch, seed: int, least: float) -> None:
     """Of so much of the time of a hard scene motion is found before its steps are cut. If components may be stepped in
     parts within long intervals, and these are tried again at full length after each impact, it is a third in 51050106.
-    Scenes are chaotic: with gravity changed by 1e-9 to 7e-9 it is .77 to .93, .96 to 1 and .75 to .94."""
+    Scenes are chaotic: with gravity changed by 1e-9 to 7e-9 it is .58 to .93, .95 to .99 and .76 to .91."""
     monkeypatch.setattr(varied.ep, "EECA", Counting)
     scene = varied.Varied(seed, True)
     monkeypatch.setattr(scene, "_longest", lambda: math.inf)
@@ -81,7 +81,7 @@ def test_a_heap_that_settles_takes_its_time(seed: int) -> None:
     stepper = Counting(scene.space)
     for _ in range(300):
         stepper.step(DT)
-    assert np.mean(stepper.parts) >= 0.95
+    assert np.mean(stepper.parts) >= 0.92
     assert sum(body.kinetic_energy for body in scene.bodies) <= 1e-2 * len(scene.bodies) * 9.81
     assert apart(scene.space) <= 1e-10
 
@@ -127,6 +127,21 @@ def test_a_rope_of_slack_links_takes_its_time() -> None:
     for _ in range(100):
         stepper.step(DT)
     assert np.mean(stepper.parts) >= 0.9
+
+
+@pytest.mark.parametrize("case", ["cloth", "rope"])
+def test_steps_that_end_early_end_soon(case: str) -> None:
+    """A cloth of 169 knots, and a rope of 180 slack links whose joints give way in intervals of any length. Steps took
+    2.8 budgets: ten attempts of the energy lock, and five at an interval that ends the step, though their work was
+    spent, and gentle sweeps for what is solved again in a shorter interval."""
+    space = slack_rope(180)
+    if case == "cloth":
+        space = linkages.draped(13)
+        matter(space, 0.5)
+    stepper = Counting(space)
+    for _ in range(80):
+        stepper.step(1 / 30)
+    assert 0.5 < max(stepper.works) <= 2.0
 
 
 def pinned_on_a_floor(friction: float, off: float, mass: float, box: bool) -> pymunk.Space:
