@@ -102,12 +102,12 @@ def excess_length(
 ) -> float:
     """How many times too long the interval of an island is, whose motion under impulses L of its contacts took so much
     effort; also sets its `strays`. `press.solve_contacts` gives a long interval up before there is a motion, for what
-    only its iterations show: components that are not stepped as a whole.
+    only its iterations show: components that are not stepped as a whole, or work that is spent.
 
     Args:
         solved: whether contacts are.  last: whether no other attempt follows, see `try_jointed`.
     """
-    far = 2.0 if not solved and J.PROGRESS.length == LONG and J.PROGRESS.effort > J.PROGRESS.share else 0.0
+    far = 0.0
     for s in interval.groups.JOINTED:
         if takes_shorter(A, J, s, interval.t, interval.h, effort):
             far = 2.0
@@ -181,9 +181,12 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
         advance(A, J, interval, L, room_for_rows(0, 0), False, np.empty((0, 3)))
     COUNT.solves += 1
     COUNT.solved += n
-    solved, far = outcome == SOLVED, 2.0 if J.PROGRESS.effort > J.PROGRESS.share else UNSOLVED_PART
+    solved = outcome == SOLVED
+    # What was not solved with the work of a long interval is tried in half of it, at least.
+    spent = not solved and J.PROGRESS.length == LONG and J.PROGRESS.effort > J.PROGRESS.share
+    far = 2.0 if spent else UNSOLVED_PART if outcome == GIVEN_UP else 0.0
     if outcome != GIVEN_UP:
-        far = excess_length(A, J, interval, L, root, J.PROGRESS.effort - before, solved, last)
+        far = max(far, excess_length(A, J, interval, L, root, J.PROGRESS.effort - before, solved, last))
     J.PROGRESS.length = FINAL
     if far > INTERVAL_RETRY and not last:
         if work_left(A, J) < 0.0:

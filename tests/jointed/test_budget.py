@@ -59,11 +59,11 @@ def test_a_cloth_that_falls_over_a_disk_stays_within_its_budget(side: int) -> No
     assert sum(part < 1e-6 for part in stepper.parts) <= 1
 
 
-@pytest.mark.parametrize(("seed", "least"), [(51050106, 0.5), (51050051, 0.9), (51050114, 0.65)])
+@pytest.mark.parametrize(("seed", "least"), [(51050106, 0.6), (51050051, 0.9), (51050114, 0.7)])
 def test_the_work_of_steps_is_spent_on_motion(monkeypatch: pytest.MonkeyPatch, seed: int, least: float) -> None:
     """Of so much of the time of a hard scene motion is found before its steps are cut. If components may be stepped in
     parts within long intervals, and these are tried again at full length after each impact, it is a third in 51050106.
-    Scenes are chaotic: with gravity changed by 1e-9 to 7e-9 it is .58 to .93, .95 to .99 and .76 to .91."""
+    Scenes are chaotic: with gravity changed by 1e-9 to 7e-9 it is .80 to .90, .95 to .99 and .75 to .95."""
     monkeypatch.setattr(varied.ep, "EECA", Counting)
     scene = varied.Varied(seed, True)
     monkeypatch.setattr(scene, "_longest", lambda: math.inf)
@@ -76,7 +76,8 @@ def test_the_work_of_steps_is_spent_on_motion(monkeypatch: pytest.MonkeyPatch, s
 def test_a_heap_that_settles_takes_its_time(seed: int) -> None:
     """200 bodies in one island: a solve takes a twenty-fifth of the budget, and never converges, as more than forty
     contacts are solved roughly. If intervals may not grow by more than 1.5 from one to the next, half of the time is
-    not taken. When the last ropes have slid down is chance: in 165 to 450 steps, in fourteen heaps."""
+    not taken, where four heaps take .93 to .97. When the last ropes have slid down is chance: in 165 to 450 steps, in
+    fourteen heaps."""
     scene = rods.heap(seed=seed)
     stepper = Counting(scene.space)
     for _ in range(300):
@@ -88,7 +89,7 @@ def test_a_heap_that_settles_takes_its_time(seed: int) -> None:
 
 @pytest.mark.parametrize(("most", "least"), [(math.inf, 0.65), (300.0, 0.4)])
 def test_heaps_of_chains_take_their_time(most: float, least: float) -> None:
-    """Twelve chains on each other, with contacts that are nearly redundant: .84 to .88 and .54 to .63 of the time, with
+    """Twelve chains on each other, with contacts that are nearly redundant: .70 to .94 and .50 to .60 of the time, with
     gravity changed by up to 3e-9. A third if what agrees to AGREE, and not as at rest, is not solved, or if intervals
     grow by half only, so that steps begin with 1e-5 s; a seventh of chains with a `max_force` if discs are left to
     sweeps."""
