@@ -1,7 +1,8 @@
 """Crowds whose steps end early: the part of its time that each takes, what a step costs, whether it is solved.
 
 A step ends early when its budget of work is spent (`report.unmet`: `solves`): energy and momentum hold, but bodies move
-as in slow motion. A body that falls beside the crowd tells how much time was taken.
+as in slow motion. A body that falls beside the crowd tells how much time was taken. No step of up to 200 bodies takes
+longer than 20 ms or 100 steps of pymunk, whichever is more.
 """
 
 from __future__ import annotations
@@ -18,11 +19,14 @@ import pymunk
 from tqdm import tqdm
 
 import eeca_pymunk as ep
+from comparisons.hard_cases.case import matter
 from comparisons.output import Output, Row
+from scenes import linkages
 from scenes.scene import add_walls
 
 G = 9.81
 STEPS = 240
+RUNS = 2
 SPANS = (1 / 60, 1 / 30)  # s
 
 
@@ -119,40 +123,78 @@ def chains(count: int = 12, links: int = 5, most: float = math.inf) -> pymunk.Sp
     return space
 
 
+def slack_rope(bars: int) -> pymunk.Space:
+    """A rope of bars, whose ends slides of length 0 to .03 join, that falls over disks."""
+    space = linkages.empty(10.0)
+    last = None
+    for k in range(bars):
+        bar = pymunk.Body(0.1, pymunk.moment_for_segment(0.1, (-0.1, 0.0), (0.1, 0.0), 0.03))
+        bar.position = 0.22 * k - 0.11 * bars, 1.5 + 0.01 * math.sin(7.0 * k)
+        space.add(bar, pymunk.Segment(bar, (-0.1, 0.0), (0.1, 0.0), 0.03))
+        if last is not None:
+            joint = pymunk.SlideJoint(last, bar, (0.1, 0.0), (-0.1, 0.0), 0.0, 0.03)
+            joint.collide_bodies = False
+            space.add(joint)
+        last = bar
+    for k in range(5):
+        space.add(pymunk.Circle(space.static_body, 0.3, (0.9 * k - 1.8, 0.5 * math.sin(3.0 * k))))
+    space.add(pymunk.Segment(space.static_body, (-30.0, -1.2), (30.0, -1.2), 0.1))
+    for shape in space.shapes:
+        shape.friction = 0.5
+    return space
+
+
+def cloth(side: int, friction: float = 0.5) -> pymunk.Space:
+    """A cloth of side² knots that falls over a disk."""
+    space = linkages.draped(side)
+    matter(space, friction)
+    return space
+
+
 CROWDS: dict[str, Callable[[], pymunk.Space]] = {
     "needles": needles, "rods of radius 0": rods, "polygons, 1 : 10 000": polygons, "net of springs": net,
-    "chains": chains, "chains, bounded pivots": lambda: chains(most=300.0),
+    "net of 180": lambda: net(180), "chains": chains, "chains, bounded pivots": lambda: chains(most=300.0),
+    "36 chains": lambda: chains(36), "36 chains, bounded": lambda: chains(36, most=300.0),
+    "12 chains of 15": lambda: chains(12, 15), "6 chains of 30": lambda: chains(6, 30),
+    "rope of 90 slack links": lambda: slack_rope(90), "rope of 180": lambda: slack_rope(180),
+    "cloth of 81 knots": lambda: cloth(9), "cloth of 121, smooth": lambda: cloth(11, 0.0),
+    "cloth of 144, smooth": lambda: cloth(12, 0.0), "cloth of 196": lambda: cloth(14),
 }  # fmt: skip
 
 
 def play(make: Callable[[], pymunk.Space], dt: float, steps: int = STEPS) -> Row:
     """The part of its time that a crowd takes, in all steps and in the last third of these; the part of steps that
-    converge; the mean and the longest processor time of a step (ms), and the mean of pymunk's."""
-    space, native = make(), make()
-    clock = pymunk.Body(1.0, 1.0)
-    clock.position = 1e4, 0.0
-    space.add(clock, pymunk.Circle(clock, 0.1))
-    stepper, other = ep.EECA(space), ep.Native(native)
-    taken, spent, theirs, converged = [], [], 0.0, 0
-    for _ in range(steps):
-        before, begun = clock.velocity.y, time.thread_time()
-        report = stepper.step(dt)
-        spent.append(time.thread_time() - begun)
-        taken.append((before - clock.velocity.y) / (G * dt))
-        converged += report.converged
-        begun = time.thread_time()
-        other.step(dt)
-        theirs += time.thread_time() - begun
+    converge; the mean and the longest processor time of a step (ms, the least of RUNS runs of each step), and what a
+    step may take: 20 ms or 100 times the mean of pymunk's."""
+    taken, converged = np.empty(steps), 0
+    spent, theirs, bodies = np.full(steps, np.inf), np.full(steps, np.inf), 0
+    for _ in range(RUNS):
+        space, native = make(), make()
+        bodies = len(native.bodies)
+        clock = pymunk.Body(1.0, 1.0)
+        clock.position = 1e4, 0.0
+        space.add(clock, pymunk.Circle(clock, 0.1))
+        stepper, other, converged = ep.EECA(space), ep.Native(native), 0
+        for k in range(steps):
+            before, begun = clock.velocity.y, time.thread_time()
+            report = stepper.step(dt)
+            spent[k] = min(spent[k], time.thread_time() - begun)
+            taken[k] = (clock.velocity.y - before) / (space.gravity.y * dt)
+            converged += report.converged
+            begun = time.thread_time()
+            other.step(dt)
+            theirs[k] = min(theirs[k], time.thread_time() - begun)
     return {
-        "bodies": len(native.bodies), "1/dt": round(1.0 / dt), "taken": float(np.mean(taken)),
+        "bodies": bodies, "1/dt": round(1.0 / dt), "taken": float(np.mean(taken)),
         "in the last third": float(np.mean(taken[-(steps // 3) :])), "converged": converged / steps,
-        "ms/step": 1e3 * float(np.mean(spent)), "worst ms": 1e3 * max(spent), "native ms/step": 1e3 * theirs / steps,
+        "ms/step": 1e3 * float(np.mean(spent)), "worst ms": 1e3 * float(np.max(spent)),
+        "allowed ms": max(20.0, 100e3 * float(np.mean(theirs))),
     }  # fmt: skip
 
 
 def run(output: Output, full: bool) -> None:
     """Print the table; write CSV."""
-    output.parameters({"steps": STEPS})
+    output.parameters({"steps": STEPS, "runs": RUNS})
     cases = list(itertools.product(CROWDS, SPANS))
     rows: list[Row] = [{"crowd": name, **play(CROWDS[name], dt)} for name, dt in tqdm(cases, unit="run")]
     output.table(f"Crowds, {STEPS} steps", rows)

@@ -24,7 +24,7 @@ from ..joints.workspace import workspace
 from ..model.contacts import SOLVED, JointedProblem, Row, Solved
 from ..model.joints import Joints
 from ..model.parameters.events import EVENT_LOOKS
-from ..model.parameters.joints import CLOSES, IMPACT_ENERGY, IMPACT_LIMITS
+from ..model.parameters.joints import CLOSES, COLUMN_CONTACTS, IMPACT_ENERGY, IMPACT_LIMITS
 from ..model.scene import Scene
 from ..rows.blocks import TRUNCATED, close_block, solve_block, solve_freely
 from ..rows.bounded import room_for_rows
@@ -133,7 +133,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     WHO = np.full(len(block.IM), -1, np.int64)
     for q in range(n):
         WHO[q] = A.BLOCK[q]
-    groups = find_groups(WHO, block.IM, J)
+    groups = find_groups(WHO, block.IM, J, True)
     C = make_columns(groups, ROWS, rows)
     fill_free(groups, C, ROWS, block.IM, block.II, rows)
     BEFORE = V.copy()
@@ -146,12 +146,12 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
         driven = answer_impact(A, J, block, groups, C, n, t)
         FITTED = V.copy()
         set_effective_masses(groups, C, ROWS, rows)
-        status = solve_block(problem, L, V, owed, False, OUT)
+        status = solve_block(problem, L, V, owed, rows > COLUMN_CONTACTS, OUT)
         if solution + 1 == IMPACT_LIMITS or not activate_limits(A, J, block, groups, t):
             break
         copy(V, BEFORE)
         L[:] = 0.0
-    status = solve_freely(problem, L, V, FITTED, owed, status, OUT)
+    status = solve_freely(problem, L, V, FITTED, owed, status, rows > COLUMN_CONTACTS, OUT)
     exact, fastest = conserves(ROWS, rows), aim(ROWS, rows)
     for q in range(n):
         fastest = max(fastest, math.hypot(FITTED[q, 0], FITTED[q, 1]))

@@ -116,7 +116,7 @@ def strike(A: Scene, a: int, b: int, t: float, lasts: bool) -> int:
     FREE = block.V.copy()
     status = solve_block(problem, L, block.V, owed, in_islands, OUT)
     if solved_exactly(n, rows):
-        status = solve_freely(problem, L, block.V, FREE, owed, status, OUT)
+        status = solve_freely(problem, L, block.V, FREE, owed, status, False, OUT)
     lost = OUT[0].restitution + OUT[0].friction - owed
     finish_block(A, block, n, m, L, OUT, status, t)
     spend(A, n, m, looks_of(rows, OUT[0]))

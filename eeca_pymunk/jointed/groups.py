@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..model.islands import Island
-from ..model.joints import Joints
+from ..model.joints import ROTARY_SPRING, SPRING, Joints
 from ..model.parameters.joints import STRUT, STRUT_BETWEEN
 
 
@@ -27,25 +27,41 @@ class Groups(NamedTuple):
     LEAST: FloatArray
 
 
+@nonallocating
+def has_springs_alone(J: Joints, s: int) -> bool:
+    """Whether all joints of component s are springs."""
+    for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
+        if J.COUPLING[k].kind != SPRING and J.COUPLING[k].kind != ROTARY_SPRING:
+            return False
+    return True
+
+
 @kernel
-def find_groups(WHO: IntArray, IM: FloatArray, J: Joints) -> Groups:
-    """Find the groups of bodies WHO (k,), rows of BODY."""
-    k, OF, LEAST = len(WHO), J.OF, np.full(len(WHO), STRUT_BETWEEN)
-    groups, jointed, NUMBERS = 0, 0, np.zeros(6 * k + 1, np.int64)  # one array: an allocation takes as long as a body
+def find_groups(WHO: IntArray, IM: FloatArray, J: Joints, impact: bool) -> Groups:
+    """Find the groups of bodies WHO (k,), rows of BODY. At an `impact` springs exert no impulse, and bodies that these
+    alone connect are groups of their own."""
+    k, LEAST = len(WHO), np.full(len(WHO), STRUT_BETWEEN)
+    groups, jointed, NUMBERS = 0, 0, np.zeros(7 * k + 1, np.int64)  # one array: an allocation takes as long as a body
     GROUP, NEXT, COMPONENT = NUMBERS[:k], NUMBERS[k : 2 * k], NUMBERS[2 * k : 3 * k]
-    BODY, JOINTED, FIRST = NUMBERS[3 * k : 4 * k], NUMBERS[4 * k : 5 * k], NUMBERS[5 * k :]
+    BODY, JOINTED, OF = NUMBERS[3 * k : 4 * k], NUMBERS[4 * k : 5 * k], NUMBERS[5 * k : 6 * k]
+    FIRST = NUMBERS[6 * k :]
+    last, loose = -1, False
     for q in range(k):
-        GROUP[q] = -1
+        GROUP[q], OF[q] = -1, J.OF[WHO[q]] if IM[q] > 0.0 else -1
+        if impact and OF[q] >= 0:
+            if OF[q] != last:
+                last, loose = OF[q], has_springs_alone(J, OF[q])
+            OF[q] = -1 if loose else OF[q]
     for q in range(k):
         if IM[q] == 0.0 or GROUP[q] >= 0:
             continue
-        GROUP[q], COMPONENT[groups] = groups, OF[WHO[q]]
-        if OF[WHO[q]] >= 0:
-            JOINTED[jointed] = OF[WHO[q]]
-            LEAST[groups] = STRUT if J.COMPONENT[OF[WHO[q]]].loops > 0 else STRUT_BETWEEN
+        GROUP[q], COMPONENT[groups] = groups, OF[q]
+        if OF[q] >= 0:
+            JOINTED[jointed] = OF[q]
+            LEAST[groups] = STRUT if J.COMPONENT[OF[q]].loops > 0 else STRUT_BETWEEN
             jointed += 1
             for p in range(q + 1, k):
-                if IM[p] > 0.0 and OF[WHO[p]] == OF[WHO[q]]:
+                if IM[p] > 0.0 and OF[p] == OF[q]:
                     GROUP[p] = groups
         groups += 1
     for q in range(k):

@@ -54,12 +54,23 @@ def mark_edited(A: Scene, J: Joints, STATES: FloatArray, IDS: IntArray) -> None:
 
 
 @nonallocating
+def joint_budget(A: Scene, J: Joints, dt: float) -> float:
+    """Operations that a step of length dt may spend on joints: STEP_WORK + STEP_WORK_BODY (n - c/2), times `growth`,
+    with n bodies, of which the largest component has c. These count half, as what ends a step early is not in this
+    budget: some motions of a component."""
+    largest = 0
+    for s in range(J.TALLY.components):
+        largest = max(largest, J.COMPONENT[s].end_body - J.COMPONENT[s].first_body)
+    return float((STEP_WORK + STEP_WORK_BODY * (A.BODY.shape[0] - 0.5 * largest)) * growth(A, dt))
+
+
+@nonallocating
 def start_joints(A: Scene, J: Joints, STATES: FloatArray, IDS: IntArray, dt: float) -> None:
     """Begin a step of length dt of a scene with joints, before `read_states`."""
     mark_edited(A, J, STATES, IDS)
     J.TALLY.worst = 0
     J.PROGRESS.effort = 0.0
-    J.PROGRESS.budget = (STEP_WORK + STEP_WORK_BODY * A.BODY.shape[0]) * growth(A, dt)
+    J.PROGRESS.budget = joint_budget(A, J, dt)
     for s in range(len(J.STEPPED)):
         clear_interval(J.STEPPED[s])
     for j in range(J.JOINT.shape[0]):

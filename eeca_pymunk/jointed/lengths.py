@@ -21,7 +21,7 @@ from ..geometry.widths import depth_limit, smaller
 from ..islands.depths import closes_too_far, too_deep_at_end
 from ..model.joints import Joints
 from ..model.parameters.events import RESOLUTION
-from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_WAY, SAGITTA
+from ..model.parameters.intervals import INTERVAL_GROWTH, INTERVAL_RETRY, INTERVAL_WAY, SAGITTA
 from ..model.scene import Scene
 from ..pairs.rules import barred, far_apart
 from ..rows.build import normal_rate
@@ -160,5 +160,5 @@ def forced_deeper(A: Scene, interval: Interval) -> int:
 @nonallocating
 def next_length(h: float, far: float) -> float:
     """Largest length of the interval after one of length h that was `far` times too long (`excess`), INTERVAL_RETRY at
-    most: as its motion allows, up to RESOLUTION times h."""
-    return h * max(INTERVAL_RETRY, 1.0 / max(far, 1.0 / RESOLUTION))
+    most: as its motion allows, up to INTERVAL_GROWTH times h."""
+    return h * max(INTERVAL_RETRY, 1.0 / max(far, 1.0 / INTERVAL_GROWTH))

@@ -35,8 +35,8 @@ from .paths import crossing_of_paths, gap_and_rate, instants_between, passes_thr
 def end_before(A: Scene, J: Joints, root: int, t: float, fits: bool, spent: bool) -> bool:
     """End the interval of an island, which was shortened to instant t; whether the island ends before t. Unless the
     interval is known to fit (`fits`), it is halved while joints do not hold at its end or it has passed through other
-    shapes, at last to nothing, and once the work of the step is spent at the second time. The island then stays there
-    until t, or moves with its moving partners (`carry`); if the work of the step is `spent`, until the end of the step.
+    shapes, at last to nothing, and at once if the work of the step is spent. The island then stays there until t, or
+    moves with its moving partners (`carry`); if the work of the step is `spent`, until the end of the step.
     """
     if not under_way(A, root):
         return False
@@ -45,7 +45,7 @@ def end_before(A: Scene, J: Joints, root: int, t: float, fits: bool, spent: bool
         if not (left_apart(A, J, root) or passes_through(A, root, then) < math.inf):
             break
         J.TALLY.worst = LINEAR
-        hopeless = tries + 1 == MEET_SECANTS or (tries > 0 and work_left(A, J) < 0.0)
+        hopeless = tries + 1 == MEET_SECANTS or work_left(A, J) < 0.0
         then = began if hopeless else 0.5 * (began + then)
         shorten(A, J, root, then)
     end_here(A, J, root, then)

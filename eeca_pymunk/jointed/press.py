@@ -89,6 +89,7 @@ def solve_contacts(
     | of many contacts, the laws' residual is larger than their difference | yes | as the laws' last solution | L |
     | the laws' last solution gives the present motion | yes | as that solution | USED, those of this motion |
     | iterations or work are used up | no | as that solution, if it agrees | L, or LEAST if these agreed better |
+    | of few contacts, work is used up by the step of the components | no | no | as below |
     | of few contacts, CHORD iterations have come no nearer, or nowhere near | no | likewise | likewise |
 
     What comes no nearer agrees at `enough`: near rest velocities have to agree better, but less is a solution, too.
@@ -117,8 +118,11 @@ def solve_contacts(
     NOW = np.empty(len(B.OF))
     problem = JointedProblem(ROWS, C, B, m)
     free, begun = is_free(isle, groups, n, J), J.PROGRESS.effort
+    before = begun
     for outer in range(manner.rounds):
-        if J.PROGRESS.effort > J.PROGRESS.share:
+        # Few contacts are solved gently without work, many at least once.
+        taken, before = J.PROGRESS.effort - before, J.PROGRESS.effort
+        if before + taken >= J.PROGRESS.share and (few or outer > 0):
             break
         J.PROGRESS.effort += joints.CONTACT_WORK * (m + 2)
         build = outer % joints.CHORD == 0
@@ -167,6 +171,9 @@ def solve_contacts(
                 EFFECT, most_pull = accelerations(interval, L, B)
             # Springs and motors accelerate bodies, too.
             pull = max(pull, most_pull)
+        if few and J.PROGRESS.effort > J.PROGRESS.share:
+            converged = False
+            break
         set_effective_masses(groups, C, ROWS, m)
         if outer == 0:
             scale, agree, enough, fine = aims(pull * h, slow, fast, elastic)
@@ -186,16 +193,18 @@ def solve_contacts(
             agreed = True
             break
     give_slips(ROWS, m, SLIP)
-    if not agreed or J.PROGRESS.near > 0.0:
-        J.PROGRESS.near, bent = 0.0, np.inf if free else 0.0
+    near, J.PROGRESS.near = J.PROGRESS.near, 0.0
+    gentle = few and not (agreed or converged)  # which replaces the motion
+    if not gentle and (not agreed or near > 0.0):
+        bent = np.inf if free else 0.0
         advance(A, J, interval, L, B, False, UNKNOWN)
-    if not agreed:
+    if not gentle and not agreed:
         off = farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n)
         if not off <= best:
             copy(L, LEAST)
             advance(A, J, interval, L, B, False, UNKNOWN)
         converged = converged and min(off, best) <= enough
-    if not converged and few and J.PROGRESS.length == LONG and J.PROGRESS.effort > J.PROGRESS.share:
+    if not converged and few and J.PROGRESS.length == LONG and J.PROGRESS.effort >= J.PROGRESS.share:
         return GIVEN_UP
     # Impulses that are no solution may let walls do any work.
     quick = fast + pull * h

@@ -66,7 +66,7 @@ def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
     if joints do not hold, work is short, or bodies move too far (`lengths`).
 
     A length that was too long is not tried again at once: the next interval is at most INTERVAL_RETRY times as long as
-    one that was shortened, and else as long as its motion allows, at most RESOLUTION times (`Rest.longest`).
+    one that was shortened, and else as long as its motion allows, at most INTERVAL_GROWTH times (`Rest.longest`).
 
     Returns DONE; or, with everything as before, PUSHES_FULL, or SPENT if the step has no work left.
     """
@@ -76,9 +76,9 @@ def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
     # How a step was cut does not tell how short the intervals of the next one have to be.
     tried = h = min(h, rest.longest if t > 0.0 else max(rest.longest, h / RESOLUTION**2))
     for attempt in range(INTERVAL_TRIES):
-        h = max(h, least)
-        last = attempt + 1 == INTERVAL_TRIES or A.COUNT.together > 0 or h <= least
-        if t > 0.0 and work_left(A, J) < 0.0:
+        h, spent = max(h, least), work_left(A, J) < 0.0
+        last = attempt + 1 == INTERVAL_TRIES or A.COUNT.together > 0 or h <= least or (spent and attempt > 0)
+        if t > 0.0 and spent:
             rest.longest = max(h, tried / UNSOLVED_PART)  # where the next step begins
             return SPENT
         status, then = try_jointed(A, J, root, t, h, last)
@@ -151,7 +151,7 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
         return PUSHES_FULL, h
     isle = local.local_island(A, MINE, found, t)
     k = len(isle.WHO)
-    groups = find_groups(isle.WHO, isle.IM, J)
+    groups = find_groups(isle.WHO, isle.IM, J, False)
     for s in groups.JOINTED:
         save_joints(J, s)
     contacts, EXPECTED = make_contacts(p, k), np.zeros(2 * p + 1)
@@ -170,7 +170,8 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     outcome, before = SOLVED, J.PROGRESS.effort
     if not last:  # contacts of a short interval are solved more easily than those of components stepped in parts
         J.PROGRESS.length = LONG if m > 0 and h * UNSOLVED_PART**2 > A.PAR.dt / RESOLUTION else SHORT
-    J.PROGRESS.share = before + INTERVAL_SHARE * max(work_left(A, J), 0.0)
+    part = max(INTERVAL_SHARE, n / (A.BODY.shape[0] - 1)) if J.PROGRESS.length == LONG else INTERVAL_SHARE
+    J.PROGRESS.share = before + part * max(work_left(A, J), 0.0)
     if m > 0:
         recall(A, ROWS, m, h, not interval.few, L, EXPECTED)
         owed = max(-A.RESTING[root].lost, 0.0)
@@ -182,9 +183,9 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     COUNT.solves += 1
     COUNT.solved += n
     solved = outcome == SOLVED
-    # What was not solved with the work of a long interval is tried in half of it, at least.
-    spent = not solved and J.PROGRESS.length == LONG and J.PROGRESS.effort > J.PROGRESS.share
-    far = 2.0 if spent else UNSOLVED_PART if outcome == GIVEN_UP else 0.0
+    # What was not solved with the work of a long interval is tried in a shorter one.
+    spent = not solved and J.PROGRESS.length == LONG and J.PROGRESS.effort >= J.PROGRESS.share
+    far = UNSOLVED_PART if spent or outcome == GIVEN_UP else 0.0
     if outcome != GIVEN_UP:
         far = max(far, excess_length(A, J, interval, L, root, J.PROGRESS.effort - before, solved, last))
     J.PROGRESS.length = FINAL

@@ -125,8 +125,10 @@ def limit_work(W: Workspace) -> bool:
     """Set the work that this component may take in a step, PROGRESS.limit; whether it is more than the least."""
     component, progress = W.J.COMPONENT[W.s], W.J.PROGRESS
     one = work_of_iteration(component.system, joints.CONDENSED_PASSES, W.joints, component)
-    # With no work left, components that are solved easily still are.
+    # With no work left, components that are solved easily still are; not what was not solved in this interval before.
     share, least = (progress.budget - progress.effort) * joints.COMPONENT_BUDGET, joints.LEAST_SOLUTIONS * one
+    if W.J.STEPPED[W.s].status == LINEAR:
+        least = 0.0
     progress.limit = progress.effort + max(share, least)
     return bool(share > least)
 

@@ -155,7 +155,8 @@ def solve_block(problem: AnyProblem, L: FloatArray, V: FloatArray, owed: float, 
             order of elimination only.
         L: (m, 2) in: initial impulses (0 for none); out: the impulses.
         owed: energy >= 0 that the block has to lose at least.
-        hasty: whether a large lossy island may be solved to a coarse tolerance: a hit on a pile.
+        hasty: whether a large lossy island may be solved to a coarse tolerance: a hit on a pile, or on many contacts of
+            components, whose rows have an entry for each body.
         OUT: (1,) the report, out.
 
     Returns:
@@ -195,12 +196,13 @@ def solve_block(problem: AnyProblem, L: FloatArray, V: FloatArray, owed: float, 
 
 @kernel
 def solve_freely(
-    problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, owed: float, status: int, OUT: Rows[Solved]
+    problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, owed: float, status: int, hasty: bool,
+    OUT: Rows[Solved],
 ) -> int:  # fmt: skip
     """`solve_block` again, without friction, where `solve_block` has left contacts with friction wedged (WEDGED):
     sweeps may end between two states without impulses, or the energy lock may leave none, so that what approaches would
     meet again at the same instant, without end. FREE (k, 3): velocities without impulses. Returns the status; L, V and
-    OUT are those of the solution, OUT with the sweeps and direct solves of both.
+    OUT are those of the solution, OUT with the sweeps and direct solves of both. hasty: as of `solve_block`.
     """
     ROWS, m = problem.ROWS, problem.m
     if status == CONVERGED or not rubs(ROWS, m):
@@ -214,7 +216,7 @@ def solve_freely(
     L[:] = 0.0
     velocities(problem, L, FREE, V)
     sweeps, direct = OUT[0].sweeps, OUT[0].direct
-    status = solve_block(problem, L, V, owed, False, OUT)
+    status = solve_block(problem, L, V, owed, hasty, OUT)
     OUT[0].sweeps += sweeps
     OUT[0].direct += direct
     return status

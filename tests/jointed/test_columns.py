@@ -11,7 +11,7 @@ import pytest
 import eeca_pymunk as ep
 from eeca_pymunk.compiled.records import zeros
 from eeca_pymunk.jointed.columns import set_effective_masses
-from eeca_pymunk.jointed.groups import Groups
+from eeca_pymunk.jointed.groups import Groups, find_groups
 from eeca_pymunk.model.contacts import ROW, Columns
 from eeca_pymunk.model.parameters.joints import STRUT_BETWEEN
 from eeca_pymunk.rows.coulomb import coulomb
@@ -66,3 +66,27 @@ def test_a_light_body_that_heavy_ones_of_its_own_component_hold_is_hit(ratio: fl
         assert report.converged, report.unmet
     met = 1.0 + 0.5 * ratio
     assert other.velocity.x == pytest.approx((ratio - met) / (ratio + met), rel=1e-9)
+
+
+def test_springs_connect_bodies_within_an_interval_and_not_at_an_impact() -> None:
+    """Three disks on springs and two on a pin: within an interval an impulse on one disk moves all three, at an impact
+    it moves that disk alone, as a spring exerts no impulse at an instant. Columns of an impact on a net have entries
+    for the bodies that it moves, not for all."""
+    space = pymunk.Space()
+    disks = [pymunk.Body(1.0, 1.0) for _ in range(5)]
+    for k, disk in enumerate(disks):
+        disk.position = 2.0 * k, 0.0
+        space.add(disk, pymunk.Circle(disk, 0.5))
+    for a, b in ((0, 1), (1, 2)):
+        space.add(pymunk.DampedSpring(disks[a], disks[b], (0.0, 0.0), (0.0, 0.0), 2.0, 10.0, 0.1))
+    space.add(pymunk.PinJoint(disks[3], disks[4]))
+    stepper = ep.EECA(space)
+    stepper.step(1e-3)
+    loop = stepper.event_loop
+    assert loop is not None
+    who, mobile = np.arange(5), np.ones(5)
+    within, at_impact = (find_groups(who, mobile, loop.joints, impact) for impact in (False, True))
+    assert within.GROUP.tolist() == [0, 0, 0, 1, 1]
+    assert at_impact.GROUP.tolist() == [0, 1, 2, 3, 3]
+    assert (at_impact.COMPONENT >= 0).tolist() == [False, False, False, True]
+    assert len(at_impact.JOINTED) == 1

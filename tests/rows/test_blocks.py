@@ -321,7 +321,7 @@ def test_contacts_that_friction_wedges_part_without_it(seed: int) -> None:
     assert block.out[0].residual > 0.01 * fastest
     problem = Problem(block.rows, block.im, block.ii, block.pose, n, m)
     sweeps, direct = block.out[0].sweeps, block.out[0].direct
-    status = solve_freely(problem, block.impulses, block.after, block.velocity, 0.0, block.status, block.out)
+    status = solve_freely(problem, block.impulses, block.after, block.velocity, 0.0, block.status, False, block.out)
     assert status == CONVERGED
     assert block.out[0].sweeps > sweeps > 0  # the budget of a step pays for both
     assert block.out[0].direct >= direct > 0
@@ -358,6 +358,6 @@ def test_contacts_that_the_energy_lock_leaves_without_impulses_part_without_fric
     assert block.out[0].residual < 1e-3 * fastest
     assert min(normal_rate(row, block.after) - row.target for row in block.rows) < -0.5 * fastest
     problem = Problem(block.rows, block.im, block.ii, block.pose, len(pose) - 1, 3)
-    solve_freely(problem, block.impulses, block.after, block.velocity, 0.0, block.status, block.out)
+    solve_freely(problem, block.impulses, block.after, block.velocity, 0.0, block.status, False, block.out)
     assert min(normal_rate(row, block.after) - row.target for row in block.rows) >= -1e-10 * fastest
     assert abs(block.energy(block.after) / block.energy(block.velocity) - 1.0) <= 1e-13

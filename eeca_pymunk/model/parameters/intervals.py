@@ -46,6 +46,7 @@ UNSOLVED_PART = work(4.0, "ratio",
     "Factor by which an interval with joints becomes shorter, at most, where its contacts are not solved.")
 SLIGHT_DEPTH = heuristic(0.1, "of what an interval allows",
     "Depth of a contact that may stay: beyond it all losses of the step pay for lifting. Smaller: piles move on.")
+INTERVAL_GROWTH = work(8.0, "ratio", "Factor by which an interval with joints is longer than the last one, at most.")
 INTERVAL_TRIES = work(12, "number", "Attempts at an interval, each shorter, at most.")
 MIDSTEP_PASSES = work(3, "solves", "Further solves of `Midstep` for bodies that impulses move into others, at most.")
 LARGE_ISLAND = heuristic(24, "bodies",
