@@ -81,7 +81,7 @@ def solve_contacts(
     contacts' laws gave before; else it solves these laws with the columns, for L and FORESEEN. Columns are computed
     again in every CHORD-th iteration, else updated (`secant`). A long interval (PROGRESS.length) is given up where a
     component gives way or is not stepped as a whole; of many contacts only if the step has work for many shorter
-    intervals; and where few contacts have not converged when its work is spent. Iterations end in five ways:
+    intervals; and where contacts have not converged when its work is spent. Iterations end in five ways:
 
     | because | `agreed` | `converged` | impulses |
     |---|---|---|---|
@@ -120,9 +120,9 @@ def solve_contacts(
     free, begun = is_free(isle, groups, n, J), J.PROGRESS.effort
     before = begun
     for outer in range(manner.rounds):
-        # Few contacts are solved gently without work, many at least once.
+        # Few contacts are solved gently without work, many at least once, but in long intervals.
         taken, before = J.PROGRESS.effort - before, J.PROGRESS.effort
-        if before + taken >= J.PROGRESS.share and (few or outer > 0):
+        if before + taken >= J.PROGRESS.share and (few or outer > 0 or J.PROGRESS.length == LONG):
             break
         J.PROGRESS.effort += joints.CONTACT_WORK * (m + 2)
         build = outer % joints.CHORD == 0
@@ -194,7 +194,8 @@ def solve_contacts(
             break
     give_slips(ROWS, m, SLIP)
     near, J.PROGRESS.near = J.PROGRESS.near, 0.0
-    gentle = few and not (agreed or converged)  # which replaces the motion
+    # What is not solved is solved gently, or given up: the motion does not count.
+    gentle = not (agreed or converged) and (few or (J.PROGRESS.length == LONG and J.PROGRESS.effort >= J.PROGRESS.share))
     if not gentle and (not agreed or near > 0.0):
         bent = np.inf if free else 0.0
         advance(A, J, interval, L, B, False, UNKNOWN)
@@ -204,7 +205,7 @@ def solve_contacts(
             copy(L, LEAST)
             advance(A, J, interval, L, B, False, UNKNOWN)
         converged = converged and min(off, best) <= enough
-    if not converged and few and J.PROGRESS.length == LONG and J.PROGRESS.effort >= J.PROGRESS.share:
+    if not converged and J.PROGRESS.length == LONG and J.PROGRESS.effort >= J.PROGRESS.share:
         return GIVEN_UP
     # Impulses that are no solution may let walls do any work.
     quick = fast + pull * h

@@ -183,9 +183,7 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     COUNT.solves += 1
     COUNT.solved += n
     solved = outcome == SOLVED
-    # What was not solved with the work of a long interval is tried in a shorter one.
-    spent = not solved and J.PROGRESS.length == LONG and J.PROGRESS.effort >= J.PROGRESS.share
-    far = UNSOLVED_PART if spent or outcome == GIVEN_UP else 0.0
+    far = UNSOLVED_PART if outcome == GIVEN_UP else 0.0
     if outcome != GIVEN_UP:
         far = max(far, excess_length(A, J, interval, L, root, J.PROGRESS.effort - before, solved, last))
     J.PROGRESS.length = FINAL
