@@ -128,7 +128,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     owed, _ = take_owed_energy(A, n)
     block = make_block(A, n, m, PAIRS, pair_of(A, a, b), lasts, t)
     ROWS, V = block.ROWS, block.V
-    rows = len(ROWS)
+    rows, many = len(ROWS), len(ROWS) > COLUMN_CONTACTS
     L, OUT = np.zeros((rows, 2)), zeros(1, SOLVED)
     WHO = np.full(len(block.IM), -1, np.int64)
     for q in range(n):
@@ -146,12 +146,12 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
         driven = answer_impact(A, J, block, groups, C, n, t)
         FITTED = V.copy()
         set_effective_masses(groups, C, ROWS, rows)
-        status = solve_block(problem, L, V, owed, rows > COLUMN_CONTACTS, OUT)
+        status = solve_block(problem, L, V, owed, many, OUT)
         if solution + 1 == IMPACT_LIMITS or not activate_limits(A, J, block, groups, t):
             break
         copy(V, BEFORE)
         L[:] = 0.0
-    status = solve_freely(problem, L, V, FITTED, owed, status, rows > COLUMN_CONTACTS, OUT)
+    status = solve_freely(problem, L, V, FITTED, owed, status, many, OUT)
     exact, fastest = conserves(ROWS, rows), aim(ROWS, rows)
     for q in range(n):
         fastest = max(fastest, math.hypot(FITTED[q, 0], FITTED[q, 1]))

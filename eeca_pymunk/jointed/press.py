@@ -195,7 +195,8 @@ def solve_contacts(
     give_slips(ROWS, m, SLIP)
     near, J.PROGRESS.near = J.PROGRESS.near, 0.0
     # What is not solved is solved gently, or given up: the motion does not count.
-    gentle = not (agreed or converged) and (few or (J.PROGRESS.length == LONG and J.PROGRESS.effort >= J.PROGRESS.share))
+    spent = J.PROGRESS.length == LONG and J.PROGRESS.effort >= J.PROGRESS.share
+    gentle = not (agreed or converged) and (few or spent)
     if not gentle and (not agreed or near > 0.0):
         bent = np.inf if free else 0.0
         advance(A, J, interval, L, B, False, UNKNOWN)
