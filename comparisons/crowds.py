@@ -1,8 +1,8 @@
 """Crowds whose steps end early: the part of its time that each takes, what a step costs, whether it is solved.
 
 A step ends early when its budget of work is spent (`report.unmet`: `solves`): energy and momentum hold, but bodies move
-as in slow motion. A body that falls beside the crowd tells how much time was taken. No step of up to 200 bodies takes
-longer than 20 ms or 100 steps of pymunk, whichever is more.
+as in slow motion. A body that falls beside the crowd tells how much time was taken. A step of up to 200 bodies may
+take 20 ms or 100 steps of pymunk, whichever is more.
 """
 
 from __future__ import annotations

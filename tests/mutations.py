@@ -105,7 +105,7 @@ MUTATIONS = (
              "= False, rules", "islands/test_at_rest.py", "handler"),
     Mutation("support: loads that change within a step are forgotten", "impacts/step.py", "    renew_support(A)\n", "",
              "islands/test_support.py", "hold_its_weight"),
-    Mutation("jointed: springs connect bodies at an impact", "jointed/groups.py", "-1 if loose else OF[q]", "OF[q]",
+    Mutation("jointed: springs connect bodies at an impact", "jointed/groups.py", "-1 if loose else s", "s",
              "jointed/test_columns.py", "springs_connect"),
     Mutation("jointed: walls turn in one interval", "jointed/solve.py", "if shorter < h and not last:", "if False:",
              "contacts/test_turning.py", "joints_connect and 0.4"),

@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..model.islands import Island
-from ..model.joints import ROTARY_SPRING, SPRING, Joints
+from ..model.joints import Joints
 from ..model.parameters.joints import STRUT, STRUT_BETWEEN
 
 
@@ -27,15 +27,6 @@ class Groups(NamedTuple):
     LEAST: FloatArray
 
 
-@nonallocating
-def has_springs_alone(J: Joints, s: int) -> bool:
-    """Whether all joints of component s are springs."""
-    for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
-        if J.COUPLING[k].kind != SPRING and J.COUPLING[k].kind != ROTARY_SPRING:
-            return False
-    return True
-
-
 @kernel
 def find_groups(WHO: IntArray, IM: FloatArray, J: Joints, impact: bool) -> Groups:
     """Find the groups of bodies WHO (k,), rows of BODY. At an `impact` springs exert no impulse, and bodies that these
@@ -45,13 +36,10 @@ def find_groups(WHO: IntArray, IM: FloatArray, J: Joints, impact: bool) -> Group
     GROUP, NEXT, COMPONENT = NUMBERS[:k], NUMBERS[k : 2 * k], NUMBERS[2 * k : 3 * k]
     BODY, JOINTED, OF = NUMBERS[3 * k : 4 * k], NUMBERS[4 * k : 5 * k], NUMBERS[5 * k : 6 * k]
     FIRST = NUMBERS[6 * k :]
-    last, loose = -1, False
     for q in range(k):
-        GROUP[q], OF[q] = -1, J.OF[WHO[q]] if IM[q] > 0.0 else -1
-        if impact and OF[q] >= 0:
-            if OF[q] != last:
-                last, loose = OF[q], has_springs_alone(J, OF[q])
-            OF[q] = -1 if loose else OF[q]
+        s = J.OF[WHO[q]] if IM[q] > 0.0 else -1
+        loose = impact and s >= 0 and J.COMPONENT[s].dual_size == 0  # no joint has rows: all are springs
+        GROUP[q], OF[q] = -1, -1 if loose else s
     for q in range(k):
         if IM[q] == 0.0 or GROUP[q] >= 0:
             continue
@@ -61,7 +49,7 @@ def find_groups(WHO: IntArray, IM: FloatArray, J: Joints, impact: bool) -> Group
             LEAST[groups] = STRUT if J.COMPONENT[OF[q]].loops > 0 else STRUT_BETWEEN
             jointed += 1
             for p in range(q + 1, k):
-                if IM[p] > 0.0 and OF[p] == OF[q]:
+                if OF[p] == OF[q]:
                     GROUP[p] = groups
         groups += 1
     for q in range(k):

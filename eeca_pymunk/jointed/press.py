@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import kernel
+from ..compiled import kernel, nonallocating
 from ..contacts.targets import target
 from ..model.contacts import Bounded, JointedProblem
 from ..model.joint_steps import LONG
@@ -67,6 +67,12 @@ def accelerations(interval: Interval, L: FloatArray, B: Bounded) -> tuple[FloatA
     the columns; and the largest of any point."""
     EFFECT = (without_contacts(interval, L, B) - interval.isle.V) / interval.h
     return EFFECT, farthest_apart(EFFECT, np.zeros_like(EFFECT), interval.isle.EXTENT, interval.n)
+
+
+@nonallocating
+def gives_up(J: Joints) -> bool:
+    """Whether a long interval that is not solved is given up, as its work is spent."""
+    return bool(J.PROGRESS.length == LONG and J.PROGRESS.effort >= J.PROGRESS.share)
 
 
 @kernel
@@ -195,8 +201,7 @@ def solve_contacts(
     give_slips(ROWS, m, SLIP)
     near, J.PROGRESS.near = J.PROGRESS.near, 0.0
     # What is not solved is solved gently, or given up: the motion does not count.
-    spent = J.PROGRESS.length == LONG and J.PROGRESS.effort >= J.PROGRESS.share
-    gentle = not (agreed or converged) and (few or spent)
+    gentle = not (agreed or converged) and (few or gives_up(J))
     if not gentle and (not agreed or near > 0.0):
         bent = np.inf if free else 0.0
         advance(A, J, interval, L, B, False, UNKNOWN)
@@ -206,7 +211,7 @@ def solve_contacts(
             copy(L, LEAST)
             advance(A, J, interval, L, B, False, UNKNOWN)
         converged = converged and min(off, best) <= enough
-    if not converged and J.PROGRESS.length == LONG and J.PROGRESS.effort >= J.PROGRESS.share:
+    if not converged and gives_up(J):
         return GIVEN_UP
     # Impulses that are no solution may let walls do any work.
     quick = fast + pull * h

@@ -182,10 +182,9 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
         advance(A, J, interval, L, room_for_rows(0, 0), False, np.empty((0, 3)))
     COUNT.solves += 1
     COUNT.solved += n
-    solved = outcome == SOLVED
-    far = UNSOLVED_PART if outcome == GIVEN_UP else 0.0
+    solved, far = outcome == SOLVED, UNSOLVED_PART
     if outcome != GIVEN_UP:
-        far = max(far, excess_length(A, J, interval, L, root, J.PROGRESS.effort - before, solved, last))
+        far = excess_length(A, J, interval, L, root, J.PROGRESS.effort - before, solved, last)
     J.PROGRESS.length = FINAL
     if far > INTERVAL_RETRY and not last:
         if work_left(A, J) < 0.0:

@@ -12,10 +12,9 @@ import pytest
 
 import eeca_pymunk as ep
 from comparisons import crowds
-from comparisons.hard_cases.case import matter
 from comparisons.hard_cases.joints import apart
 from eeca_pymunk.jointed.ledger import joint_budget
-from scenes import linkages, rods
+from scenes import rods
 from tests.programs import varied
 
 DT = 1 / 60
@@ -48,9 +47,7 @@ def test_a_cloth_that_falls_over_a_disk_stays_within_its_budget(side: int) -> No
     each makes the error smaller by 2e-4 of it), and where cells are folded flat (49 knots stood still, if intervals too
     short to be long are taken in parts that cost the whole step). At most three steps take no time: an impact spends
     their work, and is not found."""
-    space = linkages.draped(side)
-    matter(space, 0.5)
-    stepper = Counting(space)
+    stepper = Counting(crowds.cloth(side))
     for _ in range(60):
         stepper.step(DT)
     assert 0.5 < max(stepper.works) <= 2.0
@@ -75,7 +72,7 @@ def test_the_work_of_steps_is_spent_on_motion(monkeypatch: pytest.MonkeyPatch, s
 def test_a_heap_that_settles_takes_its_time(seed: int) -> None:
     """200 bodies in one island: a solve takes a twenty-fifth of the budget, and never converges, as more than forty
     contacts are solved roughly. If intervals may not grow by more than 1.5 from one to the next, half of the time is
-    not taken, where four heaps take .93 to .97. When the last ropes have slid down is chance: in 165 to 450 steps, in
+    not taken, where three heaps take .95 to .98. When the last ropes have slid down is chance: in 165 to 450 steps, in
     fourteen heaps."""
     scene = rods.heap(seed=seed)
     stepper = Counting(scene.space)
@@ -88,7 +85,7 @@ def test_a_heap_that_settles_takes_its_time(seed: int) -> None:
 
 @pytest.mark.parametrize(("most", "least"), [(math.inf, 0.65), (300.0, 0.4)])
 def test_heaps_of_chains_take_their_time(most: float, least: float) -> None:
-    """Twelve chains on each other, with contacts that are nearly redundant: .70 to .94 and .50 to .60 of the time, with
+    """Twelve chains on each other, with contacts that are nearly redundant: .80 to .96 and .49 to .80 of the time, with
     gravity changed by up to 3e-9. A third if what agrees to AGREE, and not as at rest, is not solved, or if intervals
     grow by half only, so that steps begin with 1e-5 s; a seventh of chains with a `max_force` if discs are left to
     sweeps."""
@@ -124,11 +121,7 @@ def test_steps_that_end_early_end_soon(case: str) -> None:
     """A cloth of 169 knots, and a rope of 180 slack links whose joints give way in intervals of any length. Steps took
     2.8 budgets: ten attempts of the energy lock, and five at an interval that ends the step, though their work was
     spent, and gentle sweeps for what is solved again in a shorter interval."""
-    space = crowds.slack_rope(180)
-    if case == "cloth":
-        space = linkages.draped(13)
-        matter(space, 0.5)
-    stepper = Counting(space)
+    stepper = Counting(crowds.cloth(13) if case == "cloth" else crowds.slack_rope(180))
     for _ in range(80):
         stepper.step(1 / 30)
     assert 0.5 < max(stepper.works) <= 1.8
