@@ -100,7 +100,7 @@ def test_heaps_of_chains_take_their_time(most: float, least: float) -> None:
 ])  # fmt: skip
 def test_an_island_of_most_bodies_may_spend_most_of_the_work(make: Callable[[], pymunk.Space], least: float) -> None:
     """.70 to .78, .68 to .84 and .29 to .44 of 120 steps. If each interval is given up after a quarter of what is left,
-    so that most attempts are in vain, these take .25, .5 and .2."""
+    so that most attempts are in vain, these take .29, .53 and .2."""
     stepper = Counting(make())
     for _ in range(120):
         stepper.step(DT)
