@@ -14,6 +14,8 @@ from ..compiled.records import Rows
 from ..joints.workspace import workspace
 from ..model.contacts import Columns, Row
 from ..model.joints import Joints
+from ..model.parameters.joints import CONDENSED_PASSES
+from ..newton.effort import work_of_solution
 from ..newton.response import respond
 from ..rows.build import invert
 from ..rows.columns import put_free_body
@@ -49,6 +51,21 @@ def count_operations(J: Joints, C: Columns) -> None:
     """Add the operations that solves with the columns have taken to the work of the step."""
     J.PROGRESS.effort += C.WORK[0]
     C.WORK[0] = 0.0
+
+
+@nonallocating
+def work_of_columns(J: Joints, groups: Groups, ROWS: Rows[Row], m: int) -> float:
+    """Operations of the columns of m contacts on components: two solutions with factors for each."""
+    total = 0.0
+    for i in range(m):
+        a, b = groups.GROUP[ROWS[i].a], groups.GROUP[ROWS[i].b]
+        for g in (a, -1 if b == a else b):
+            s = groups.COMPONENT[g] if g >= 0 else -1
+            if s >= 0:
+                component = J.COMPONENT[s]
+                joints = component.end_joint - component.first_joint
+                total += 2.0 * work_of_solution(component.system, CONDENSED_PASSES, joints, component)
+    return total
 
 
 @nonallocating

@@ -8,7 +8,7 @@ from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..model.contacts import Bounded, Row
 from ..model.joints import Joints
-from ..model.parameters.joints import BOUNDED_SWEEPS, PRESS_LOCKS, PRESS_LOCKS_SPENT
+from ..model.parameters.joints import BOUNDED_SWEEPS, PRESS_LOCKS
 from ..model.scene import Scene
 from ..rows.bounded import sweep_bounded
 from ..rows.build import normal_rate, slip_rate
@@ -77,19 +77,20 @@ def lock_jointed(
     error: float,
 ) -> None:  # fmt: skip
     """Scale the impulses L of contacts by s until these lose at least `owed`, or if `elastic` exactly that, up to
-    `error`. s follows from the slope p - 2 q at s = 1, again for each new motion."""
+    `error`. s follows from the slope p - 2 q at s = 1, again for each new motion; without work it does so
+    once."""
     m = interval.m
     for tries in range(PRESS_LOCKS + 1):
         loss = lost(interval, L)
         if loss >= owed - error and (not elastic or loss <= owed + error):
             break
         s, _ = scale_of_loss(interval, L, B, owed - loss)
-        most = PRESS_LOCKS if J.PROGRESS.effort <= J.PROGRESS.share else PRESS_LOCKS_SPENT
-        if tries >= most or (elastic and not 0.0 < s < 2.0):
+        spent = J.PROGRESS.effort > J.PROGRESS.share
+        if tries == PRESS_LOCKS or (spent and tries > 0) or (elastic and not 0.0 < s < 2.0):
             s = 0.0
         elif not 0.1 < s < 2.0:
             # For small s the loss of s L has the sign of p: L is halved, repeatedly.
-            s = 0.5 if owed <= 0.0 else 0.0
+            s = 0.5 if owed <= 0.0 and not spent else 0.0
         for i in range(m):
             L[i, 0] = s * L[i, 0] if s > 0.0 else 0.0
             L[i, 1] = s * L[i, 1] if s > 0.0 else 0.0

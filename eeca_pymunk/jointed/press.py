@@ -23,12 +23,13 @@ from ..model.parameters import joints
 from ..model.parameters.events import RESOLUTION
 from ..model.scene import Scene
 from ..rows.build import rates
+from ..rows.columns import push_columns
 from ..rows.gentle import excessive, sweep_gently
 from ..rows.inplace import copy
 from ..rows.laws import give_slips, take_slips
 from .advance import Interval, advance, advance_aligned, align, farthest_apart
 from .bounded_rows import make_bounded, with_bounded
-from .columns import count_operations, fill_free, set_effective_masses
+from .columns import count_operations, fill_free, set_effective_masses, work_of_columns
 from .gathered import some_give, some_refused, some_taut
 from .groups import is_free
 from .losses import lock_jointed, lost, scale_of_loss, without_contacts, work_error
@@ -39,17 +40,24 @@ GIVEN_UP, UNSOLVED, SOLVED = -1, 0, 1  # what becomes of the contacts of an inte
 
 
 @kernel
-def solve_gently(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, free: bool, quick: float) -> None:
-    """Impulses L (m, 2) by sweeps that begin at 0, about the motion without impulses; none if these are excessive for
-    bodies of the speed `quick`; and the motion under them."""
+def solve_gently(
+    A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, free: bool, quick: float, filled: bool
+) -> None:
+    """Impulses L (m, 2) by sweeps that begin at 0; none if these are excessive for bodies of the speed `quick`; and the
+    motion under them. Columns are those about the motion without impulses; if they are `filled`, as there is no work
+    for others, those about the present motion, under L."""
     isle, groups, ROWS, _, C, m, n, _, _, _ = interval
-    L[:m] = 0.0
-    advance(A, J, interval, L, B, True, np.empty((0, 3)))
-    if free:
-        align(interval)
+    if not filled:
+        L[:m] = 0.0
+        advance(A, J, interval, L, B, True, np.empty((0, 3)))
+        if free:
+            align(interval)
     fill_free(groups, C, ROWS, isle.IM, isle.II, m)
     set_effective_masses(groups, C, ROWS, m)
-    V, BOTH = interval.motion.MEAN.copy(), with_bounded(B, L, m)
+    V = interval.motion.MEAN.copy()
+    push_columns(C, L, m, -1.0, V)
+    L[:m] = 0.0
+    BOTH = with_bounded(B, L, m)
     problem = JointedProblem(ROWS, C, B, m)
     sweep_gently(problem, BOTH, V)
     count_operations(J, C)
@@ -70,9 +78,9 @@ def accelerations(interval: Interval, L: FloatArray, B: Bounded) -> tuple[FloatA
 
 
 @nonallocating
-def gives_up(J: Joints) -> bool:
-    """Whether a long interval that is not solved is given up, as its work is spent."""
-    return bool(J.PROGRESS.length == LONG and J.PROGRESS.effort >= J.PROGRESS.share)
+def gives_up(J: Joints, more: float) -> bool:
+    """Whether a long interval that is not solved is given up, as it has no work for `more` operations."""
+    return bool(J.PROGRESS.length == LONG and J.PROGRESS.effort + more >= J.PROGRESS.share)
 
 
 @kernel
@@ -87,7 +95,8 @@ def solve_contacts(
     contacts' laws gave before; else it solves these laws with the columns, for L and FORESEEN. Columns are computed
     again in every CHORD-th iteration, else updated (`secant`). A long interval (PROGRESS.length) is given up where a
     component gives way or is not stepped as a whole; of many contacts only if the step has work for many shorter
-    intervals; and where contacts have not converged when its work is spent. Iterations end in five ways:
+    intervals; and where contacts have not converged when its work is spent, or is for what replaces their impulses.
+    Iterations end in five ways:
 
     | because | `agreed` | `converged` | impulses |
     |---|---|---|---|
@@ -116,10 +125,10 @@ def solve_contacts(
     J.PROGRESS.near = 0.0 if exactly or slow < pull * h else joints.JOINTS_NEAR
     # off: difference between the velocities of contacts and components, best: its smallest value since contacts last
     # gained energy (in iteration `better`), reached: of all; worst, rough: see `solve_laws`; bent: error of the arms;
-    # limited: friction is limited by energy.
+    # limited: friction is limited by energy; filled: columns are those of the motion with which iterations end.
     VELOCITIES, k = np.empty((2 * len(isle.IM), 3)), len(isle.IM)
     PREVIOUS, FORESEEN, UNKNOWN = VELOCITIES[:k], VELOCITIES[k:], VELOCITIES[:0]
-    converged, best, worst, LEAST, USED, agreed = False, np.inf, 0.0, L.copy(), L.copy(), False
+    converged, best, worst, LEAST, USED, agreed, filled = False, np.inf, 0.0, L.copy(), L.copy(), False, False
     better, bent, rough, reached, B = 0, 0.0, False, np.inf, make_bounded(J, groups, few)
     NOW = np.empty(len(B.OF))
     problem = JointedProblem(ROWS, C, B, m)
@@ -129,6 +138,9 @@ def solve_contacts(
         # Few contacts are solved gently without work, many at least once, but in long intervals.
         taken, before = J.PROGRESS.effort - before, J.PROGRESS.effort
         if before + taken >= J.PROGRESS.share and (few or outer > 0 or J.PROGRESS.length == LONG):
+            if not converged and gives_up(J, taken):
+                J.PROGRESS.near = 0.0
+                return GIVEN_UP
             break
         J.PROGRESS.effort += joints.CONTACT_WORK * (m + 2)
         build = outer % joints.CHORD == 0
@@ -178,7 +190,7 @@ def solve_contacts(
             # Springs and motors accelerate bodies, too.
             pull = max(pull, most_pull)
         if few and J.PROGRESS.effort > J.PROGRESS.share:
-            converged = False
+            converged, filled = False, outer == 0
             break
         set_effective_masses(groups, C, ROWS, m)
         if outer == 0:
@@ -201,7 +213,7 @@ def solve_contacts(
     give_slips(ROWS, m, SLIP)
     near, J.PROGRESS.near = J.PROGRESS.near, 0.0
     # What is not solved is solved gently, or given up: the motion does not count.
-    gentle = not (agreed or converged) and (few or gives_up(J))
+    gentle = not (agreed or converged) and (few or gives_up(J, 0.0))
     if not gentle and (not agreed or near > 0.0):
         bent = np.inf if free else 0.0
         advance(A, J, interval, L, B, False, UNKNOWN)
@@ -211,12 +223,14 @@ def solve_contacts(
             copy(L, LEAST)
             advance(A, J, interval, L, B, False, UNKNOWN)
         converged = converged and min(off, best) <= enough
-    if not converged and gives_up(J):
+    if not converged and gives_up(J, 0.0):
         return GIVEN_UP
     # Impulses that are no solution may let walls do any work.
     quick = fast + pull * h
     if excessive(L, m, isle.IM, n, quick) or (not converged and few):
-        solve_gently(A, J, interval, L, B, free, quick)
+        if gives_up(J, work_of_columns(J, groups, ROWS, m)):
+            return GIVEN_UP
+        solve_gently(A, J, interval, L, B, free, quick, filled)
         converged, bent = False, np.inf if free else 0.0
     if bent > joints.ARM_ERROR:
         bent = advance_aligned(A, J, interval, L, B, free)

@@ -75,12 +75,14 @@ def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
     least = min(h, 2.0 * A.PAR.instant)
     # How a step was cut does not tell how short the intervals of the next one have to be.
     tried = h = min(h, rest.longest if t > 0.0 else max(rest.longest, h / RESOLUTION**2))
+    spent = work_left(A, J) < 0.0
     for attempt in range(INTERVAL_TRIES):
-        h, spent = max(h, least), work_left(A, J) < 0.0
+        h = max(h, least)
         last = attempt + 1 == INTERVAL_TRIES or A.COUNT.together > 0 or h <= least or (spent and attempt > 0)
         if t > 0.0 and spent:
             rest.longest = max(h, tried / UNSOLVED_PART)  # where the next step begins
             return SPENT
+        left = work_left(A, J)
         status, then = try_jointed(A, J, root, t, h, last)
         if status != AGAIN:
             if status == DONE:
@@ -92,7 +94,9 @@ def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
                 if t == 0.0 and h == longest:
                     rest_if_still(A, J, root)
             return status
-        tried, h = h, then
+        # Whether there is no work for another attempt, which takes a part of this one's, as it is solved more easily.
+        spent = UNSOLVED_PART * work_left(A, J) < left - work_left(A, J)
+        tried, h = h, min(then, h / RESOLUTION) if spent else then
     return DONE
 
 
@@ -187,8 +191,6 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
         far = excess_length(A, J, interval, L, root, J.PROGRESS.effort - before, solved, last)
     J.PROGRESS.length = FINAL
     if far > INTERVAL_RETRY and not last:
-        if work_left(A, J) < 0.0:
-            far = max(far, RESOLUTION)  # few more attempts follow
         for s in groups.JOINTED:
             restore_joints(J, s)
         local.clear_places(A, MINE)

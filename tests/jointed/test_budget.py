@@ -30,7 +30,7 @@ class Counting(ep.EECA):
     def step(self, dt: float) -> ep.StepReport:
         report, loop = super().step(dt), self.event_loop
         for unmet in report.unmet:
-            assert unmet.name != "solves" or 0.9 < unmet.value / unmet.limit < 2.5
+            assert unmet.name != "solves" or 1.0 <= unmet.value / unmet.limit < 2.5
         if loop is not None and loop.jointed:
             self.works.append(float(loop.joints.PROGRESS.effort) / joint_budget(loop.scene, loop.joints, dt))
             self.parts.append(float(loop.scene.PAR.dt / dt))

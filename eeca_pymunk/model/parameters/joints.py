@@ -107,12 +107,12 @@ FIT_RESIDUAL = accuracy(1e-06, "of the fastest closing contact",
 FIT_ENERGY = round_off(1e-12, "of the energy", "Change of energy by this projection that is round-off.")
 JOINTED_CORRECTION_SWEEPS = work(40, "sweeps", "Sweeps of the penetration correction of jointed bodies.")
 JOINTED_LIFT_ERROR = accuracy(0.001, "of the deepest overlap", "Error of this correction, also of limits in its way.")
-STEP_WORK = work(36000000.0, "operations",
+STEP_WORK = work(32000000.0, "operations",
     "Work of a step with joints besides STEP_WORK_BODY; 2.5e9 operations take about a second.")
 INTERVAL_SHARE = work(0.25, "of what is left of the budget",
     "Work of a long interval after which it is solved again, shorter, if it has not converged: this, or the island's "
     "part of all bodies, if that is more.")
-STEP_WORK_BODY = work(110000.0, "operations",
+STEP_WORK_BODY = work(90000.0, "operations",
     "Work of a step with joints for each body of the scene; half as much for those of its largest component.")
 CUT_WORK = work(8000000.0, "operations",
     "Work for the intervals with joints that end where a step is cut short, beside its budget.")
@@ -152,7 +152,6 @@ PRESS_SWEEPS_ELASTIC = work(400, "sweeps", "Sweeps over elastic contacts of comp
 PRESS_RESIDUAL = accuracy(1e-09, "of |a| h and the speed", "Residual of sweeps over contacts of components.")
 PRESS_RESIDUAL_REST = accuracy(1e-12, "of |a| h and the speed", "Residual of these sweeps near rest.")
 PRESS_LOCKS = work(10, "number", "Attempts of the energy lock of components, at most.")
-PRESS_LOCKS_SPENT = work(1, "number", "Attempts of this lock once the work of the interval is spent, at most.")
 JOINTS_NEAR = accuracy(1e-09, "of the component", "Error of joints while many contacts have not converged.")
 FIT_ROUND_OFF = round_off(1e-12, "of the size of a body",
     "Way in an interval up to which columns are not made to fit what they missed.")
