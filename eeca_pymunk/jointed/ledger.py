@@ -55,13 +55,13 @@ def mark_edited(A: Scene, J: Joints, STATES: FloatArray, IDS: IntArray) -> None:
 
 @nonallocating
 def joint_budget(A: Scene, J: Joints, dt: float) -> float:
-    """Operations that a step of length dt may spend on joints: STEP_WORK + STEP_WORK_BODY (n - c/2), times `growth`,
-    with n bodies, of which the largest component has c. These count half, as what ends a step early is not in this
-    budget: some motions of a component."""
+    """Operations that a step of length dt may spend on joints: STEP_WORK + STEP_WORK_BODY (n - 2 c/3), times `growth`,
+    with n bodies, of which the largest component has c. These count by a third, as what ends a step early is not in
+    this budget: some motions of a component."""
     largest = 0
     for s in range(J.TALLY.components):
         largest = max(largest, J.COMPONENT[s].end_body - J.COMPONENT[s].first_body)
-    return float((STEP_WORK + STEP_WORK_BODY * (A.BODY.shape[0] - 0.5 * largest)) * growth(A, dt))
+    return float((STEP_WORK + STEP_WORK_BODY * (A.BODY.shape[0] - 2.0 / 3.0 * largest)) * growth(A, dt))
 
 
 @nonallocating

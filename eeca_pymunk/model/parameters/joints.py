@@ -112,8 +112,8 @@ STEP_WORK = work(32000000.0, "operations",
 INTERVAL_SHARE = work(0.25, "of what is left of the budget",
     "Work of a long interval after which it is solved again, shorter, if it has not converged: this, or the island's "
     "part of all bodies, if that is more.")
-STEP_WORK_BODY = work(90000.0, "operations",
-    "Work of a step with joints for each body of the scene; half as much for those of its largest component.")
+STEP_WORK_BODY = work(130000.0, "operations",
+    "Work of a step with joints for each body of the scene; a third as much for those of its largest component.")
 CUT_WORK = work(8000000.0, "operations",
     "Work for the intervals with joints that end where a step is cut short, beside its budget.")
 COMPONENT_WORK = work(1100.0, "operations", "Work of a step of a component, beside its iterations.")
