@@ -104,7 +104,7 @@ def prepare_response(W: Workspace, what: int, h: float) -> bool:
     give = W.J.JOINT[link[0].joint].compliance / h**2 if what == STEP else 0.0
     loops, sure = component.loops > 0 and give == 0.0, component.dependence == INDEPENDENT
     # Of a step an answer is a derivative, for iterations; at an instant it is a change of velocities.
-    tally.passes = 1 if give > 0.0 else CONDENSED_PASSES - 1 if sure and what == STEP else CONDENSED_PASSES
+    tally.passes = 1 if give > 0.0 or (sure and what == STEP) else CONDENSED_PASSES
     epsilon = 0.0 if not loops or (sure and (what == STEP or system == DUAL)) else REDUNDANT_EPSILON
     while True:
         for i in range(component.unknowns + component.impulses):

@@ -146,7 +146,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
                 return False
         elif system == DUAL:
             refresh(W)
-        passes = 1 if give > 0.0 or factors == KEPT else CONDENSED_PASSES - 1 if factors == NEW else CONDENSED_PASSES
+        passes = CONDENSED_PASSES if factors == FULL and not give > 0.0 else 1
         iterate(W, STEP, system, passes, h)
         renewed, factors = factors == NEW, FULL if factors == FULL else KEPT
     return False

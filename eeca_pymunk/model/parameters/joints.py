@@ -9,7 +9,8 @@ JOINT_TOUCH = round_off(1e-12, "of the component", "Gap of a limit below which i
 BOUNDED_SOLVES = work(6, "solves", "Linear systems of a step whose bounded impulses come to their bounds, at most.")
 MOST_BOUNDED = work(64, "bounded rows", "Number above which bounded rows are not solved together with contacts.")
 BOX_SECULAR = work(40, "iterations", "Iterations for the multiplier of a friction disc.")
-CONDENSED_PASSES = work(3, "number", "Refinements of a condensed solution.")
+CONDENSED_PASSES = work(3, "number",
+    "Passes of a condensed solution of rows that may be redundant, or that no iteration follows; else one.")
 REFINEMENT_WORK = work(400.0, "operations", "Work of each of them for the rows of a joint.")
 STIFFEST = round_off(10000000.0, "of the bodies' inertia", "Stiffness of rows in a condensed system, at most.")
 JOINT_SPEED_ROUND_OFF = round_off(1e-14, "of the speeds", "Velocity along a joint row that is round-off.")
