@@ -88,7 +88,7 @@ def side_by_side(*wanted: tuple[tuple[int, ...], npt.DTypeLike]) -> list[Any]:
     return [memory.array(*place) for place in places]
 
 
-def rotated(vectors: FloatArray, angle: FloatArray) -> FloatArray:
+def rotate_all(vectors: FloatArray, angle: FloatArray) -> FloatArray:
     """(..., 2) vectors rotated by angles (...)."""
     c, s = np.cos(angle), np.sin(angle)
     x, y = vectors[..., 0], vectors[..., 1]

@@ -20,7 +20,7 @@ from ..arrays import LINE, AnyArray, IntArray, Memory, address_of, lengths
 from .backend import start
 from .entries import table_fields
 from .kernels import Kernel, nonallocating
-from .tables import WORDS, Pointers, Table, words_of
+from .tables import WORDS, Pointers, Table, array_words
 
 T = TypeVar("T")
 COUNT = -1
@@ -80,7 +80,7 @@ class Plan(Generic[T]):
             rows.append((self.first_word[name], width * dtype.itemsize, width, *lengths(shape)))
         self.rows: IntArray = np.array(rows, np.int64)
         for name, array in constant.items():
-            self.words[self.first_word[name] :][:WORDS] = words_of(array)
+            self.words[self.first_word[name] :][:WORDS] = array_words(array)
         self.end = self.first_word[own[zeros]] if zeros < len(own) else None
 
 

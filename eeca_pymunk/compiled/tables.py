@@ -97,10 +97,10 @@ def _words(name: str, field: str, dtype: np.dtype[Any] | None, dimensions: int, 
         )
     if not a.flags.c_contiguous:
         raise TypeError(f"{name}.{field} of shape {a.shape} has strides {a.strides}: it must be C-contiguous")
-    return words_of(a)
+    return array_words(a)
 
 
-def words_of(array: Any) -> tuple[int, ...]:
+def array_words(array: Any) -> tuple[int, ...]:
     """The numbers of one array."""
     return address_of(array), array.size, *lengths(array.shape)
 

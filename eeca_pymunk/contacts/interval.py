@@ -192,14 +192,14 @@ def step_island(
             problem, L, VN, FREE, rounds, INTERVAL_RESIDUAL * scale, coarse, A.RESTING[isle.WHO[0]], most, OUT[0]
         )
         # Few contacts are solved to INTERVAL_UNMET; more are left as far as their budget of sweeps solves them.
-        quick, exactly = fast + pull * h, solved_exactly(n, m)
+        top_speed, exactly = fast + pull * h, solved_exactly(n, m)
         if not exactly:
             stop_at_walls(A, problem, n, np.zeros(m, np.int64), L, VN)
         velocities(problem, L, FREE, VN)  # without the round-off of many sweeps
-        wedged = exactly and (worst > WEDGED * scale or excessive(L, m, isle.IM, n, quick))
+        wedged = exactly and (worst > WEDGED * scale or excessive(L, m, isle.IM, n, top_speed))
         OUT[0].lock = lock(problem, L, VN, FREE, owed, elastic)
         if wedged or (exactly and OUT[0].lock < 1.0 - WEDGED):
-            worst = unwedge(problem, L, VN, FREE, INTERVAL_RESIDUAL * scale, quick, OUT[0])
+            worst = unwedge(problem, L, VN, FREE, INTERVAL_RESIDUAL * scale, top_speed, OUT[0])
             OUT[0].lock = lock(problem, L, VN, FREE, owed, elastic)
         OUT[0].residual, OUT[0].tolerance = worst, INTERVAL_UNMET * scale if exactly else np.inf
         OUT[0].restitution, OUT[0].friction = works(problem, L, VN)

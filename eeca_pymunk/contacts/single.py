@@ -40,7 +40,7 @@ def alone(A: Scene, i: int, other: int, t: float) -> bool:
             if o == other:
                 continue
             if o < A.COUNT.disks:
-                # Bounding circles suffice for most.
+                # Bounding circles suffice for most, wider by more than the round-off of `touches`.
                 h = t - BODY[o].since
                 if not even:
                     ax, ay = BODY[o].ax, BODY[o].ay

@@ -32,7 +32,7 @@ SAME, MASS, SURFACE, FILTER, OUTLINE = -1, 0, 1, 2, 3
 Changes: TypeAlias = list[tuple[int, int]]  # kind, and row of BODY or SHAPE
 
 
-def words_of(changes: Changes) -> list[int]:
+def change_words(changes: Changes) -> list[int]:
     """Changes as kernels take them: how many, then kind and row of each."""
     return [len(changes), *chain.from_iterable(changes)]
 
@@ -113,7 +113,7 @@ def place_beside(A: Scene, STATUS: IntArray) -> None:
 @nonallocating
 def disturb_changed(A: Scene, CHANGES: IntArray) -> None:
     """Let the islands at rest be solved again that bodies with another mass belong to, and shapes with another surface
-    touch. CHANGES: see `words_of`."""
+    touch. CHANGES: see `change_words`."""
     for c in range(CHANGES[0]):
         kind, row = CHANGES[1 + 2 * c], CHANGES[2 + 2 * c]
         if kind == MASS:
@@ -163,7 +163,7 @@ def renew(TABLE: Table, CHANGES: IntArray) -> bool:
     False if another one is needed: this one has margin circles, a grid of static shapes, or too small a pool.
 
     Args:
-        CHANGES: see `words_of`; other numbers may follow.
+        CHANGES: see `change_words`; other numbers may follow.
     """
     A = scene_of(TABLE)
     STATUS = np.full(A.SHAPE.shape[0], SAME)

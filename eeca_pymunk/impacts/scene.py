@@ -25,7 +25,7 @@ from ..model.step import IMPACTS_FULL, LOG_FULL, PUSHES_FULL, Missed, needs_memo
 from ..pairs.setup import with_more_room
 from ..report import Details, of_events
 from . import step as stages
-from .edits import Changes, renew, words_of
+from .edits import Changes, change_words, renew
 from .memory import lengthened
 from .remembering import UNBOUND, Remembering
 from .run import RunBuffers, run
@@ -183,7 +183,7 @@ class EventLoop(Remembering):
         rows now."""
         if list(measured) != self.measured:
             return False
-        return bool(renew(self.table, self._memory.words(words_of(changes))))
+        return bool(renew(self.table, self._memory.words(change_words(changes))))
 
     def go_on_from(self, before: EventLoop, kept: Kept) -> None:
         """Before the first step: go on with the results of the loop before, for the rows that are the same."""

@@ -24,7 +24,7 @@ from ..islands.at_rest import disturb
 from ..model.contacts import LASTED
 from ..model.scene import Scene, scene_of
 from ..pairs.rules import may_collide
-from .edits import FILTER, OUTLINE, SAME, Changes, disturb_changed, drop_sides, place_beside, words_of
+from .edits import FILTER, OUTLINE, SAME, Changes, change_words, disturb_changed, drop_sides, place_beside
 
 
 class Kept(NamedTuple):
@@ -46,7 +46,7 @@ class Kept(NamedTuple):
     def words(self) -> list[int]:
         """The numbers for `take_over`."""
         bodies, shapes, outlines, changes = self
-        return [len(bodies), len(shapes), *bodies, *shapes, *outlines, *words_of(changes)]
+        return [len(bodies), len(shapes), *bodies, *shapes, *outlines, *change_words(changes)]
 
 
 def kept_in_place(n: int, k: int, changes: Changes) -> Kept:

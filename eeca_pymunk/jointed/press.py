@@ -41,11 +41,11 @@ GIVEN_UP, UNSOLVED, SOLVED = -1, 0, 1  # what becomes of the contacts of an inte
 
 @kernel
 def solve_gently(
-    A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, free: bool, quick: float, filled: bool
+    A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, free: bool, top_speed: float, filled: bool
 ) -> None:
-    """Impulses L (m, 2) by sweeps that begin at 0; none if these are excessive for bodies of the speed `quick`; and the
-    motion under them. Columns are those about the motion without impulses; if they are `filled`, as there is no work
-    for others, those about the present motion, under L."""
+    """Impulses L (m, 2) by sweeps that begin at 0; none if these are excessive for bodies of the speed `top_speed`; and
+    the motion under them. Columns are those about the motion without impulses; or, if they are `filled` and there is no
+    work for others, about the present one, under L."""
     isle, groups, ROWS, _, C, m, n, _, _, _ = interval
     if not filled:
         L[:m] = 0.0
@@ -64,7 +64,7 @@ def solve_gently(
     for i in range(m):
         L[i, 0], L[i, 1] = BOTH[i, 0], BOTH[i, 1]
     advance(A, J, interval, L, B, False, np.empty((0, 3)))
-    if excessive(L, m, isle.IM, n, quick):
+    if excessive(L, m, isle.IM, n, top_speed):
         L[:] = 0.0
         advance(A, J, interval, L, B, False, np.empty((0, 3)))
 
@@ -118,7 +118,7 @@ def solve_contacts(
     isle, groups, ROWS, motion, C, m, n, _, h, few = interval
     fill_free(groups, C, ROWS, isle.IM, isle.II, m)
     rates(ROWS, isle.V, m)
-    SLIP, limited, quick, manner = take_slips(ROWS, m), False, fast + pull * h, manner_of(A, interval)
+    SLIP, limited, top_speed, manner = take_slips(ROWS, m), False, fast + pull * h, manner_of(A, interval)
     elastic, exactly = manner.elastic, manner.exactly
     scale, agree, enough, fine = aims(pull * h, slow, fast, elastic)
     # While many contacts have not converged, joints need not be exact before the last step of the components.
@@ -182,7 +182,7 @@ def solve_contacts(
             fill_free(groups, C, ROWS, isle.IM, isle.II, m)
         if outer == 0:
             EFFECT, most_pull = accelerations(interval, L, B)
-            if most_pull * h > joints.GUESS_SPEED * quick and L.any():
+            if most_pull * h > joints.GUESS_SPEED * top_speed and L.any():
                 L[:] = 0.0
                 # The guess is bad: the bodies do not move as the columns say.
                 advance(A, J, interval, L, B, True, UNKNOWN)
@@ -202,7 +202,7 @@ def solve_contacts(
             NOW[i] = B.ROWS[i].now
         sweeps = joints.COLUMN_SWEEPS if build else 0
         worst, rough = solve_laws(
-            A, J, interval, problem, manner, L, FORESEEN, scale, fine, quick, sweeps, outer == 0
+            A, J, interval, problem, manner, L, FORESEEN, scale, fine, top_speed, sweeps, outer == 0
         )  # fmt: skip
         converged = worst <= 10.0 * enough
         if farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n) <= 1e-3 * agree:
@@ -226,11 +226,11 @@ def solve_contacts(
     if not converged and gives_up(J, 0.0):
         return GIVEN_UP
     # Impulses that are no solution may let walls do any work.
-    quick = fast + pull * h
-    if excessive(L, m, isle.IM, n, quick) or (not converged and few):
+    top_speed = fast + pull * h
+    if excessive(L, m, isle.IM, n, top_speed) or (not converged and few):
         if gives_up(J, work_of_columns(J, groups, ROWS, m)):
             return GIVEN_UP
-        solve_gently(A, J, interval, L, B, free, quick, filled)
+        solve_gently(A, J, interval, L, B, free, top_speed, filled)
         converged, bent = False, np.inf if free else 0.0
     if bent > joints.ARM_ERROR:
         bent = advance_aligned(A, J, interval, L, B, free)

@@ -93,13 +93,13 @@ def begin_laws(interval: Interval, problem: JointedProblem, L: FloatArray, FORES
 @kernel
 def solve_laws(
     A: Scene, J: Joints, interval: Interval, problem: JointedProblem, manner: Manner, L: FloatArray,
-    FORESEEN: FloatArray, scale: float, fine: float, quick: float, sweeps: int, first: bool,
+    FORESEEN: FloatArray, scale: float, fine: float, top_speed: float, sweeps: int, first: bool,
 ) -> tuple[float, bool]:  # fmt: skip
     """Solve the laws of the contacts with the columns, from impulses L, which are replaced. FORESEEN: out, the
     velocities by the columns.
 
     Args:
-        scale, fine: see `aims`.  quick: largest speed that contacts may explain.  sweeps: before the first homotopy.
+        scale, fine: see `aims`.  top_speed: the largest that contacts may explain.  sweeps: before the first homotopy.
         first: whether this is the first solution of the interval.
 
     Returns:
@@ -115,7 +115,7 @@ def solve_laws(
             worst = solve_wedged(problem, BOTH, FORESEEN, fine, manner.sweeps, work)
     else:
         worst = sweep_conjugate(problem, BOTH, FORESEEN, fine, manner.sweeps)[1]
-    rough = first and manner.exactly and excessive(BOTH, m, interval.isle.IM, interval.n, quick)
+    rough = first and manner.exactly and excessive(BOTH, m, interval.isle.IM, interval.n, top_speed)
     if rough:
         # Far from the solution laws may contradict one another, by as much as the columns are wrong.
         copy(L, USED)

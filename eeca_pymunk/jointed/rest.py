@@ -26,7 +26,7 @@ from .gathered import save_joints
 
 
 @nonallocating
-def reach_of(A: Scene, i: int) -> float:
+def lever_of(A: Scene, i: int) -> float:
     """Length by which the spin of body i adds to its speed: that of its shapes, or its radius of gyration."""
     body = A.BODY[i]
     gyration = math.sqrt(body.inv_mass / body.inv_inertia) if body.inv_inertia > 0.0 else 0.0
@@ -36,7 +36,7 @@ def reach_of(A: Scene, i: int) -> float:
 @nonallocating
 def speed_of_forces(A: Scene, J: Joints, i: int) -> float:
     """Speed that the largest single force on body i (acceleration, or one joint) would give its points in this step."""
-    reach, s = reach_of(A, i), J.OF[i]
+    reach, s = lever_of(A, i), J.OF[i]
     found = (math.hypot(A.PULL[i, 0], A.PULL[i, 1]) + abs(A.PULL[i, 2]) * reach) * A.PAR.dt
     for k in range(J.COMPONENT[s].first_joint if s >= 0 else 0, J.COMPONENT[s].end_joint if s >= 0 else 0):
         joint = J.JOINT[J.COUPLING[k].joint]
@@ -52,7 +52,7 @@ def is_still(A: Scene, J: Joints, root: int) -> bool:
     REST_SPEED, and none was hit."""
     i = root
     while i >= 0:
-        body, rest, reach, most = A.BODY[i], A.RESTING[i], reach_of(A, i), REST_SPEED * speed_of_forces(A, J, i)
+        body, rest, reach, most = A.BODY[i], A.RESTING[i], lever_of(A, i), REST_SPEED * speed_of_forces(A, J, i)
         if A.MEMBER[i].busy > 0 or point_speed(body.vx, body.vy, body.spin, reach) > most:
             return False
         if point_speed(rest.end_vx, rest.end_vy, rest.end_spin, reach) > most:

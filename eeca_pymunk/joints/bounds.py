@@ -29,7 +29,7 @@ def limit_gap(W: Workspace, k: int, side: int) -> float:
     elif kind == SLIDE and side < 0:
         bounded = bound > 0.0
     else:
-        bounded = kind in (SLIDE, ROTARY_LIMIT, GROOVE) and abs(bound) < 1e300
+        bounded = kind in (SLIDE, ROTARY_LIMIT, GROOVE) and abs(bound) < math.inf
     if not bounded:
         return math.inf
     left = hinge.target[W.link[k].rows - 1] if W.link[k].bounded == 0 else 0.0

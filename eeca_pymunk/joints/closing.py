@@ -35,8 +35,11 @@ def find_apart(W: Workspace, h: float) -> tuple[bool, bool, bool, bool]:
 
     Rows must be those of the present poses. Joints that will still be apart are marked APART, or LEFT_APART if a step
     has left them so; they keep the rest of their error over the step, so that it does no work. Elastic joints
-    (GIVES_WAY) stay as they are. Returns whether any was EDITED since the last step, whether any is TAKEN_OVER
-    (`unknown`), whether any is to be closed (`apart`), and whether no edit has left them apart (`own`).
+    (GIVES_WAY) stay as they are.
+
+    Returns:
+        edited: whether any joint was EDITED since the last step.  unknown: whether any is TAKEN_OVER.
+        apart: whether any is to be closed.  own: whether steps alone, and no edit, have left joints apart.
     """
     joint, hinge, link = W.J.JOINT, W.J.HINGE, W.link
     edited, unknown, apart, own = False, False, False, True
@@ -130,7 +133,8 @@ def close_joints(W: Workspace, h: float, ledger: JointLedger) -> bool:
         turned = work_of_shift(W) if own else 0.0
         # Closing what a step left apart is paid from the motion.
         locked = lock_energy(W, cost - turned, ledger) if own and cost > turned else 0.0
-        # Rows that contradict one another are not closed, nor those whose closing the motion cannot pay.
+        # Rows that contradict one another are not closed, nor those whose closing the motion cannot pay, to the
+        # round-off of the lock.
         if not farthest(W) <= before or (own and locked < cost - turned - 1e-9 * abs(cost)):
             go_back(W)
             compute_rows(W)

@@ -9,8 +9,9 @@ of the homogeneous solution (-1)^k:
     1, t, t^2, s^2, (-1)^k / s, (p_{k+1} - p_k)/s_k with p_{k+1} = s_k^2/2 - p_k
 
 are six functions that six parts determine. WEIGHTS[p] extrapolates each of them to part p exactly, from the last part
-to the sixth last; likewise impulses over the lengths of their parts. Newton's method then begins with errors smaller by
-(h rate)^2 than with the last accelerations. Its result does not depend on where it begins.
+to the sixth last (`tests/joints/test_foresight.py`); likewise impulses over the lengths of their parts. Newton's method
+then begins with errors smaller by (h rate)^2 than with the last accelerations. Its result does not depend on where it
+begins.
 
 Before each part `ladder.take_parts` tests whether six parts in steps of this length are stored (`recalls`), begins with
 the extrapolated values if so (`predict_part`), and stores each part that was solved (`remember_part`). An edit, a

@@ -2,8 +2,8 @@
 
 Order 2 (midpoint with discrete gradients), or 4 by Suzuki's composition (s, s, 1 - 4s, s, s) h, s = 1/(4 - 4^(1/3)), if
 nothing in the component dissipates, drives or meets a limit. The rungs are tried in turn: ORDER_4, WHOLE_STEP, three
-of more parts, then those of elastic joints, from ELASTIC_RUNG on. PARTS_ON and COMPLIANCE_ON have their numbers of
-parts, and the compliances of the joints over (h/7)^2.
+of more parts, then those of elastic joints, from ELASTIC_RUNG on. PARTS_ON has their numbers of parts, COMPLIANCE_ON
+the compliances of joints over (h / ELASTIC_PARTS)^2: beside the bodies, joints are as soft in a part for any h.
 
 Joints that contradict one another (`contradicts`) become elastic at once: all rungs before would fail alike. Where a
 shorter interval is tried instead, exact joints take the step as a whole or not at all if the interval is long
@@ -177,6 +177,15 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
     """Take the step h by the first rung of the ladder that succeeds: EXACT, HALVED or ELASTIC; LINEAR if none does,
     with everything as at the start. PART_LEDGER has the energies.
 
+    | | whether |
+    |---|---|
+    | yields | a joint is elastic since an earlier step: rungs of exact joints would fail again |
+    | loops, sure | rows may be redundant; and were found to be independent at the start of the step |
+    | cold | a rung begins without impulses: dependent rows that do not pull hard (`taut`); after a fail all loops |
+    | dear | a shorter interval may be tried, and the budget does not pay RESOLUTION times for the rungs so far |
+    | again | a rung has begun with predicted values, or impulses of loops: it is tried once more without |
+    | tight | redundant rows have failed in the whole step: it is tried once more with the least `epsilon` |
+
     Args:
         touched: whether joints were edited.  own: whether only steps have left them apart, see `repaid`.
     """
@@ -197,7 +206,6 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
         if outcome == TAKEN and (rung >= ELASTIC_RUNG or repaid(W, h, length, own)):
             first.compliance = compliance
             return EXACT if rung <= WHOLE_STEP else HALVED if rung < ELASTIC_RUNG else ELASTIC
-        # A rung that began with predicted values, or with impulses of redundant rows, is tried again without these.
         sure = component.dependence == INDEPENDENT
         again = (cold != loops and not (sure and rung == ORDER_4)) or (rung == ORDER_4 and recalls(W, h))
         if sure:  # rows may become dependent within the step, as where it passes a dead centre

@@ -154,7 +154,7 @@ def at_limit(W: Workspace, S: Parts) -> int:
             S.limit, S.when, S.secants, S.events, S.foreseen = -1, S.left, 0, S.events - 1, 0
             return GOES_ON
     most = joints.LIMIT_SECANTS_HASTE if in_haste(W) else joints.LIMIT_SECANTS
-    if abs(gap_now) > 0.1 * touch and S.secants < most:
+    if abs(gap_now) > 0.1 * touch and S.secants < most:  # the rest of `touch` is for round-off of the next solve
         seek(W, S, gap_now)
         return GOES_ON
     if abs(gap_now) > touch:  # not found: land

@@ -6,6 +6,8 @@ does not depend on it.
 
 from __future__ import annotations
 
+from math import inf
+
 from ..compiled import nonallocating
 from ..model.joint_steps import LINEAR_STEP, STEP
 from ..model.joints import CONDENSED, DEPENDENT, DUAL, OTHERWISE, Workspace
@@ -98,7 +100,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
     component.factored = 0
     # since: iteration in which the solve has begun again, with FULL.  renewed: whether the last iteration was NEW.
     # pace: by which factor the last iteration has made the error smaller.
-    best, last, pace, stalls, since, renewed = 1e300, 1e300, 1.0, 0, 0, False
+    best, last, pace, stalls, since, renewed = inf, inf, 1.0, 0, 0, False
     sure = component.dependence != DEPENDENT  # impulses of redundant rows leave more round-off
     for iteration in range(NEWTON_ITERATIONS + 1):
         built = factors != KEPT
@@ -133,7 +135,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
                 if loops:
                     drop_impulses(W)
                     first_iterate(W, STEP, h)
-                    best = 1e300
+                    best = inf
         component.factored = 0
         if factors != KEPT:
             if not built:

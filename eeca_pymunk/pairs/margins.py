@@ -102,7 +102,7 @@ def margin_at(A: Scene, BOUND: FloatArray, place: int) -> float:
 @nonallocating
 def set_cell(A: Scene) -> None:
     """Set the length of the cells of level 0: twice the radius of the smallest margin circle and its shape together."""
-    least = 1e300
+    least = math.inf
     for s in range(A.GRID.moving):
         least = min(least, A.SHAPE[s].bound + A.MARK[s].margin)
     A.GRID.cell = 2.0 * least

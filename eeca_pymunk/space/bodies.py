@@ -11,7 +11,7 @@ import numpy as np
 import pymunk
 from pymunk import batch
 
-from ..arrays import BoolArray, FloatArray, IntArray, rotated
+from ..arrays import BoolArray, FloatArray, IntArray, rotate_all
 from ..compiled.records import Rows, columns, from_bytes, put
 from ..energy.invariants import Invariants, traces
 from ..errors import NotFiniteError
@@ -212,7 +212,7 @@ class Bodies:
         """Energy and momenta in an (N, 9) state."""
         d, center = self.dynamic, state[:, POSITION]
         if self.center_of_gravity.any():
-            center = center + rotated(self.center_of_gravity, state[:, ANGLE])
+            center = center + rotate_all(self.center_of_gravity, state[:, ANGLE])
         motion = center[d][None], state[d, VELOCITY][None], state[d, ANGULAR_VELOCITY][None]
         kinetic, potential, linear, angular = traces(self.mass[d], self.moment[d], *motion, gravity)
         return Invariants(float(kinetic[0]), float(potential[0]), linear[0], float(angular[0]))

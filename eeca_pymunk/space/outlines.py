@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import pymunk
 
-from ..arrays import BoolArray, FloatArray, IntArray, rotated
+from ..arrays import BoolArray, FloatArray, IntArray, rotate_all
 from ..errors import UnsupportedFeature
 from .private import shapes as private_shapes
 
@@ -73,7 +73,7 @@ def to_world(local: FloatArray, owner: IntArray, position: FloatArray, angle: Fl
     world = local.copy()
     moved = np.flatnonzero(owner >= 0)
     row = owner[moved]
-    world[moved] = position[row] + rotated(local[moved], angle[row])
+    world[moved] = position[row] + rotate_all(local[moved], angle[row])
     return world
 
 

@@ -116,15 +116,20 @@ def test_a_rope_of_slack_links_takes_its_time() -> None:
     assert np.mean(stepper.parts) >= 0.9
 
 
-@pytest.mark.parametrize("case", ["cloth", "rope"])
-def test_steps_that_end_early_end_soon(case: str) -> None:
+@pytest.mark.parametrize(("make", "dt", "most"), [
+    (lambda: crowds.cloth(13), 1 / 30, 1.8), (lambda: crowds.slack_rope(180), 1 / 30, 1.8),
+    (lambda: crowds.net(180), DT, 1.6),
+])  # fmt: skip
+def test_steps_that_end_early_end_soon(make: Callable[[], pymunk.Space], dt: float, most: float) -> None:
     """A cloth of 169 knots, and a rope of 180 slack links whose joints give way in intervals of any length. Steps took
     2.8 budgets: ten attempts of the energy lock, and five at an interval that ends the step, though their work was
-    spent, and gentle sweeps for what is solved again in a shorter interval."""
-    stepper = Counting(crowds.cloth(13) if case == "cloth" else crowds.slack_rope(180))
+    spent, and gentle sweeps for what is solved again in a shorter interval. A net of 180 disks, where the columns of
+    some hundred contacts take half of a budget: 1.9 if they are computed once more for impulses that are excessive in a
+    long interval, and 1.4 if that is tried shorter."""
+    stepper = Counting(make())
     for _ in range(80):
-        stepper.step(1 / 30)
-    assert 0.5 < max(stepper.works) <= 1.8
+        stepper.step(dt)
+    assert 0.5 < max(stepper.works) <= most
 
 
 def pinned_on_a_floor(friction: float, off: float, mass: float, box: bool) -> pymunk.Space:
