@@ -132,12 +132,19 @@ def end_of_interval(A: Scene, J: Joints, i: int, t: float) -> int:
     return int(members(A, i, A.BLOCK))
 
 
+@inlined
+def bodies_of(A: Scene, i: int) -> int:
+    """Number of bodies of the island of body i, 0 if it is in none."""
+    return A.MEMBER[A.STATE[i].island].bodies if A.STATE[i].island >= 0 else 0
+
+
 @kernel
 def process_events(A: Scene, J: Joints, may_persist: bool) -> int:
     """Process all events of the step, with simultaneous impacts and islands. After a status other than DONE: provide
     more memory, and call again. may_persist: as in `run_events`."""
     COUNT, STATE = A.COUNT, A.STATE
-    few = -1
+    # worked: work of the events so far of so many bodies of islands, `solved`, and of the predictions that followed.
+    few, bodies, solved, worked, before = -1, 0, 0, 0.0, 0.0
     while True:
         if few < 0 or COUNT.pushes > 2 * few + _ROOM:
             drop_ended(A)
@@ -149,12 +156,16 @@ def process_events(A: Scene, J: Joints, may_persist: bool) -> int:
             return status
         t, i = A.PAR.now, COUNT.event_body
         s, o = STATE[i].own, STATE[i].other
-        if COUNT.work > most_looks(A, J):
+        if bodies > 0:
+            solved, worked = solved + bodies, worked + COUNT.work - before
+        j = i if o < 0 else A.LINK[o].owner
+        bodies, before = bodies_of(A, i) + (bodies_of(A, j) if j != i else 0), COUNT.work
+        # No event begins without work for what it will probably take.
+        if COUNT.work + worked * bodies / max(solved, 1) > most_looks(A, J):
             return cut_short(A, J, i, t)
         if COUNT.logged + COUNT.pushes + max(8 * STATE.shape[0], COUNT.room) > A.LOG.shape[0]:
             COUNT.heap = push_event(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
             return LOG_FULL
-        j = i if o == RENEW else A.LINK[o].owner
         met = o != RENEW
         if met and remembers(A, s, o):
             note_sides(A, min(s, o), max(s, o), t)

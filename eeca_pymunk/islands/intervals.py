@@ -8,15 +8,20 @@ import numpy as np
 
 from ..arrays import FlagArray, FloatArray, IntArray
 from ..compiled import kernel, nonallocating
+from ..compiled.records import Rows
 from ..contacts.correction import lifting
 from ..contacts.counts import count_solve, note_lock, note_unmet
 from ..contacts.interval import make_contacts, step_island
-from ..model.contacts import Problem
+from ..geometry.flight import norm, pose
+from ..geometry.gap import gap_at
+from ..geometry.sides import pair_of, remembers
+from ..model.contacts import Problem, Row
 from ..model.islands import Island
 from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES
 from ..model.scene import Scene
 from ..model.step import AGAIN, CONTACTS, DONE, PUSHES_FULL
+from ..pairs.rules import barred
 from . import candidates
 from .at_rest import put_to_rest
 from .depths import left_to_lift, times_too_long
@@ -142,6 +147,8 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
             budget, payable = payment(A, isle, ROWS, L, VN, n, m, lost, before, placed, False)
             problem, middle = Problem(ROWS, isle.IM, isle.II, isle.POSE, n, m), isle.POSE + 0.5 * h * V
             lifting(problem, middle, VN, isle.ACC, h, isle.EXTENT, budget, left_to_lift(A, t + h), JUMP)
+            if len(A.SIDE) > 0 and lifts_through(A, isle, middle + 0.5 * h * VN, JUMP, ROWS, n, m, t + h):
+                JUMP[:] = 0.0
         note_lock(A, OUT[0])
     at_rest = OUT[0].at_rest > 0
     if OUT[0].residual > OUT[0].tolerance:
@@ -162,6 +169,35 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
         if at_rest:
             put_to_rest(A, head)
     return DONE, 0.0
+
+
+@nonallocating
+def lifts_through(
+    A: Scene, isle: Island, END: FloatArray, JUMP: FloatArray, ROWS: Rows[Row], n: int, m: int, end: float
+) -> bool:
+    """Whether penetration corrections JUMP (k, 6) of the n bodies of an island, at poses END (k, 3) at instant `end`,
+    may lead thin shapes through others with which they have none of the m contacts: these have not touched within the
+    interval, but are nearer than the correction moves them."""
+    for q in range(n):
+        way = norm(JUMP[q, 0], JUMP[q, 1]) + abs(JUMP[q, 2]) * isle.EXTENT[q]
+        i = int(isle.WHO[q])
+        for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes if way > 0.0 else 0):
+            for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
+                o = int(A.POOL[w])
+                if not remembers(A, s, o) or barred(A, s, o):
+                    continue
+                both, (x, y, angle) = way, pose(A.BODY, A.LINK[o].owner, end)
+                for p in range(n):
+                    if isle.WHO[p] == A.LINK[o].owner:
+                        both += norm(JUMP[p, 0], JUMP[p, 1]) + abs(JUMP[p, 2]) * isle.EXTENT[p]
+                        x, y, angle = END[p, 0], END[p, 1], END[p, 2]
+                if gap_at(A, s, END[q, 0], END[q, 1], END[q, 2], o, x, y, angle)[0] < both:
+                    pair, touches = pair_of(A, s, o), False
+                    for z in range(m):
+                        touches = touches or ROWS[z].key >> 1 == pair
+                    if not touches:
+                        return True
+    return False
 
 
 @nonallocating

@@ -17,9 +17,9 @@ def growth(A: Scene, dt: float) -> float:
 @inlined
 def look_work(A: Scene, a: int, b: int) -> float:
     """Work of a look at shapes a and b, in looks: those at shapes of many vertices take longer, by all pairs of these,
-    or from MANY_CORNERS on by three for each."""
+    or from MANY_CORNERS on by six for each."""
     p, q = A.LINK[a].vertices, A.LINK[b].vertices
-    return float(1.0 + (p * q if min(p, q) < MANY_CORNERS else 3.0 * (p + q)) / VERTICES_LOOK)
+    return float(1.0 + (p * q if min(p, q) < MANY_CORNERS else 6.0 * (p + q)) / VERTICES_LOOK)
 
 
 @inlined

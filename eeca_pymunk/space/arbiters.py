@@ -75,18 +75,23 @@ def show_contacts() -> None:
 
 
 def touches_of(EVENT: Rows[Impulse], shapes: Sequence[pymunk.Shape]) -> list[Touch]:
-    """The pairs of the (m,) impulses of a step; `shapes` by row."""
-    found: dict[tuple[int, int], list[Any]] = {}
+    """The pairs of the (m,) impulses of a step, in which a pair may come in either order; `shapes` by row."""
+    found: dict[tuple[int, int], list[tuple[Any, float]]] = {}
     for e in EVENT:
-        found.setdefault((int(e["first"]), int(e["second"])), []).append(e)
+        pair = int(e["first"]), int(e["second"])
+        if pair[::-1] in found:
+            found[pair[::-1]].append((e, -1.0))
+        else:
+            found.setdefault(pair, []).append((e, 1.0))
     result = []
     for (a, b), events in found.items():
-        x = sum(e["normal"] * e["nx"] - e["tangential"] * e["ny"] for e in events)
-        y = sum(e["normal"] * e["ny"] + e["tangential"] * e["nx"] for e in events)
-        last = max(e["when"] for e in events)
-        late = [e for e in events if e["when"] == last][:2]
-        points = [(float(e["px"]), float(e["py"])) for e in late]
-        normal = float(late[0]["nx"]), float(late[0]["ny"])
+        x = sum(sign * (e["normal"] * e["nx"] - e["tangential"] * e["ny"]) for e, sign in events)
+        y = sum(sign * (e["normal"] * e["ny"] + e["tangential"] * e["nx"]) for e, sign in events)
+        last = max(e["when"] for e, _ in events)
+        late = [(e, sign) for e, sign in events if e["when"] == last][:2]
+        points = [(float(e["px"]), float(e["py"])) for e, _ in late]
+        one, sign = late[0]
+        normal = sign * float(one["nx"]), sign * float(one["ny"])
         result.append(Touch(shapes[a], shapes[b], (float(x), float(y)), normal, points))
     return result
 
