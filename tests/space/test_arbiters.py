@@ -10,7 +10,10 @@ import pytest
 from pymunk import batch
 
 import eeca_pymunk as ep
+from eeca_pymunk.compiled.records import rows
+from eeca_pymunk.model.contacts import Impulse
 from eeca_pymunk.model.parameters.rest import REST_SPEED
+from eeca_pymunk.space.arbiters import touches_of
 
 DT, G = 1 / 60, 9.81
 
@@ -207,3 +210,17 @@ def test_reading_arbiters_calls_no_handler_that_was_added_since_the_step(handled
     assert calls == []
     stepper.step(DT)
     assert calls == 2 * ["pre_solve"] + 2 * ["post_solve"]
+
+
+def test_impulses_of_a_pair_count_in_both_orders() -> None:
+    """Within a step a pair may be hit as (a, b) and as (b, a): along the opposite normal, on the other shape."""
+    a, b = (pymunk.Circle(pymunk.Body(1.0, 1.0), 1.0) for _ in range(2))
+    events = rows(Impulse, 2)
+    for k, (first, second, side) in enumerate(((0, 1, 1.0), (1, 0, -1.0))):
+        event = events[k]
+        event.first, event.second, event.when, event.nx, event.ny = first, second, float(k), side * 0.6, side * 0.8
+        event.normal, event.tangential, event.px, event.py = 5.0 + k, 0.5, float(k), 0.0
+    (touch,) = touches_of(events, (a, b))
+    assert (touch.a, touch.b, touch.points) == (a, b, [(1.0, 0.0)])
+    np.testing.assert_allclose(touch.impulse, (11.0 * 0.6 - 1.0 * 0.8, 11.0 * 0.8 + 1.0 * 0.6), rtol=1e-15)
+    np.testing.assert_allclose(touch.normal, (0.6, 0.8), rtol=1e-15)
