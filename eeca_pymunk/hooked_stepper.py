@@ -55,7 +55,7 @@ class HookedStepper(PackedSpace):
         """
         gx, gy = world.gravity
         joints = world.joints
-        if world.rules is not self._ruled or not (joints is None or joints.unchanged()):
+        if world.rules is not self._ruled or not (joints is None or joints.unchanged(world.state)):
             self.adjust(world, dt)
         return self._method.step(world.reading, dt, gx, gy, half_damping)
 

@@ -71,7 +71,7 @@ class RunningStepper(PackedStepper):
         world = self.current()
         joints = world.joints
         if joints is not None:
-            joints.catch_up()
+            joints.catch_up(world.state, world.bodies.row)
             self._rejoin(world, joints)
 
     def compiles(self) -> bool:

@@ -17,12 +17,11 @@ from .welds import weld
 
 
 @nonallocating
-def may_hold(J: Joints, n: int) -> bool:
-    """Whether two joints that may hold a body end at bodies n + i that never move."""
+def may_hold(J: Joints) -> bool:
+    """Whether two joints that may hold a body end at bodies that do not move (`STILL`)."""
     joint, still, ends = J.JOINT, J.STILL, 0
-    for j in range(len(joint)):
-        a, b = joint[j].body[0], joint[j].body[1]
-        fixed = (a >= n and still[a - n] > 0) or (b >= n and still[b - n] > 0)
+    for j in range(len(joint) if len(still) > 0 else 0):
+        fixed = still[joint[j].body[0]] > 0 or still[joint[j].body[1]] > 0
         if fixed and joint[j].bounded == 0 and joint[j].kind in (PIN, PIVOT, SLIDE, GEAR):
             ends += 1
     return ends >= 2
@@ -50,14 +49,15 @@ def hold(table: Table, joints: Table) -> bool:
     A, J = scene_of(table), joints_of(joints)
     BODY, SHAPE, LINK = A.BODY, A.SHAPE, A.LINK
     before, found, changed = J.TALLY.pinned, 0, False
-    if may_hold(J, len(BODY)):
+    if may_hold(J):
         bodies = together(BODY, J.PARTNER)
         still, spins = np.zeros(len(bodies), np.int64), np.zeros(len(bodies), np.int64)
         spins[: len(BODY)] = CENTRE
         for i in range(len(BODY)):
             still[i] = 0 if BODY[i].inv_mass > 0.0 else -1  # joints hold no body whose motion they cannot change
-        for i in range(len(J.PARTNER)):
-            still[len(BODY) + i] = 1 if J.STILL[i] > 0 else -1
+        for i in range(len(bodies)):
+            if i >= len(BODY) or BODY[i].inv_mass == 0.0:
+                still[i] = 1 if J.STILL[i] > 0 else -1
         for s in range(len(LINK)):
             if SHAPE[s].friction > 0.0:
                 spins[LINK[s].owner] = WHOLLY

@@ -106,7 +106,7 @@ class Linkage(NamedTuple):
 
     joint: Rows[Joint]  # (j,) between rows of BODY, or len(BODY) + row of PARTNER
     PARTNER: Rows[Body]  # (x,) bodies that joints cannot move
-    still: IntArray  # (x,) 1 for those that never move
+    still: IntArray  # (n + x,) 1 for bodies that do not move; empty if there is none
 
 
 NO_LINKAGE = Linkage(rows(Joint, 0), rows(Body, 0), np.zeros(0, np.int64))
@@ -133,7 +133,7 @@ class JointMemory:
         while True:
             counts = {
                 "TALLY": 1, "PROGRESS": 1, "PARTS": 1, "PART_LEDGER": 1, "STIFF": 6, "OF": n, "JOINT": j, "PARTNER": x,
-                "STILL": x, "PINNED": n if x else 0, "ROOM": len(_OF_ONE),
+                "STILL": len(STILL), "PINNED": n if len(STILL) else 0, "ROOM": len(_OF_ONE),
                 "COMPONENT": j, "JOINED": 2 * j, "COUPLING": j, "KEPT": j, "STEPPED": j,
                 **dict(zip(_OF_ONE, self._most, strict=True)),
             }  # fmt: skip

@@ -32,8 +32,9 @@ class JointRows(Listing):
         rates: of springs with functions, the rate of length and the dt of the last step, see `write_law`.
         replan: whether kinds, anchors or bounds of joints have changed since `planned` was called, so that components
             need a new plan.
-        ends_moved: whether lengths or anchors have changed since then, or poses of static bodies outside the space, so
-            that other bodies may be held by joints (`..joints.pinned`).
+        ends_moved: whether lengths or anchors have changed since then, or poses of static bodies outside the space, or
+            of kinematic ones at rest, so that other bodies may be held by joints (`..joints.pinned`).
+        still: see `Linkage`.
     """
 
     def __init__(self, space: pymunk.Space, row: Mapping[pymunk.Body, int], n: int, past: JointRows | None) -> None:
@@ -54,6 +55,7 @@ class JointRows(Listing):
         for j in self.fresh:
             self.values[j].put(self._memory, j, *self.joint["body"][j].tolist())
         self.partners: Partners = Partners(others, space, self.joint, n, None if past is None else past.partners)
+        self.still[n:] = self.partners.still[: len(self.still)]
         self._edits, self._timestamp = ConstraintEdits(self.row), private.timestamp(space)
         self._clock = clock()
         self.rates: dict[pymunk.Constraint, Rate] = {} if past is None else past.rates
@@ -64,6 +66,11 @@ class JointRows(Listing):
         self._n, self._row_of = n, {**row, **{body: n + i for i, body in enumerate(others)}}
         self.joint["body"] = np.array([self._row_of[body] for body in self.bodies], np.int64)[self.ends]
         self.replan, self.ends_moved, self._held = True, False, frozenset[int]()
+        self._carriers = [body for body in self.bodies if body in row and private.may_rest(body)]  # kinematic
+        self.still: IntArray = np.zeros(n + len(others) if others or self._carriers else 0, np.int64)
+        # From the first step on: places of the carriers among all bodies; poses of all, None of those that move.
+        self._places: list[int] = []
+        self._poses: list[list[float] | None] | None = None
 
     def renumber(self, row: Mapping[pymunk.Body, int], n: int, edited: Collection[Any] | None) -> bool:
         """Use other rows of bodies, see `__init__`. False, with nothing done, if constraints or partners are others.
@@ -76,13 +83,14 @@ class JointRows(Listing):
         self._number(row, n, others)
         self.fresh = []
         self.partners.renumber(self.space, n, anew)
+        self.still[n:] = self.partners.still[: len(self.still)]
         self.parted = None
         return True
 
     @property
     def linkage(self) -> Linkage:
         """The arrays that the event loop takes."""
-        return Linkage(self.joint, self.partners.PARTNER, self.partners.still)
+        return Linkage(self.joint, self.partners.PARTNER, self.still)
 
     def refresh(self, anew: bool = False) -> bool:
         """Read edited constraints again; returns whether a new plan of components is needed. Edits of bodies in the
@@ -134,8 +142,9 @@ class JointRows(Listing):
         self._held = frozenset(held)
 
     def _is_fixed(self, body: pymunk.Body) -> bool:
-        """Whether gears can hold others on this body: it never moves, or joints hold it."""
-        return body.body_type == pymunk.Body.STATIC or self._row_of[body] in self._held
+        """Whether gears can hold others on this body: it does not move, or joints hold it."""
+        row = self._row_of[body]
+        return body.body_type == pymunk.Body.STATIC or row in self._held or bool(self.still[row : row + 1].any())
 
     def calls_back(self) -> bool:
         """Whether a constraint has a function that is called once a step."""
@@ -152,19 +161,29 @@ class JointRows(Listing):
         """Whether there are edited constraints that were not read since."""
         return len(self._edits.rows) > 0
 
-    def unchanged(self) -> bool:
-        """Whether `update` has nothing to do: nothing has changed, but poses of partners, which are read here."""
+    def unchanged(self, state: FloatArray) -> bool:
+        """Whether `update` has nothing to do: nothing has changed, but poses of partners, which are read here. state:
+        (N, 9) at the start of the step."""
         if self.partners.outside and self._clock != clock():
             return False
         if self._edits.rows or self.replan or self.ends_moved or self.parted is None or self.functions:
             return False
         self.ends_moved = len(self.partners.outside) > 0 and self.partners.read() > 0
-        return not self.ends_moved
+        return not (self.ends_moved or (self._carriers and self._poses_of_carriers(state) != self._poses))
 
-    def catch_up(self) -> None:
-        """Read edited constraints and moved partners again."""
+    def _poses_of_carriers(self, state: FloatArray) -> list[list[float] | None]:
+        """The poses of the kinematic bodies of the space that joints hold; None for those that move."""
+        return [None if any(at[3:]) else at[:3] for at in state[self._places, :6].tolist()]
+
+    def catch_up(self, state: FloatArray, place: Mapping[pymunk.Body, int]) -> None:
+        """Read edited constraints and moved partners again, and which kinematic bodies are at rest. Arguments as of
+        `update`."""
         self.refresh()
         self.ends_moved |= len(self.partners.outside) > 0 and self.partners.read() > 0
+        self._places = [place[body] for body in self._carriers]
+        if self._carriers and (now := self._poses_of_carriers(state)) != self._poses:
+            self._poses, self.ends_moved = now, True
+            self.still[[self._row_of[body] for body in self._carriers]] = [pose is not None for pose in now]
 
     def update(self, state: FloatArray, place: Mapping[pymunk.Body, int], dt: float) -> None:
         """Update what the step needs: edited constraints, poses of partners, laws of springs with functions.
@@ -176,7 +195,7 @@ class JointRows(Listing):
             ValueError, UnsupportedFeature, NotFiniteError: as the first reading does.  NotFiniteError: a function of a
                 spring has not returned a finite number.
         """
-        self.catch_up()
+        self.catch_up(state, place)
         if self.functions:
             with FunctionsCalled(self.space), private.locked(self.space):
                 for j in self.functions:

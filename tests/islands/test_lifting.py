@@ -73,8 +73,8 @@ def test_what_is_pressed_on_a_wall_is_not_lifted_through_it(
     width: float, moment: float, angle: float, thrown: list[Thrown]
 ) -> None:
     """Bodies thrown at 300 to 500 m/s come to overlap a rod or plank, which is near a wall, but does not touch it in
-    the last interval of a step. Its correction, by up to a quarter of the smallest body, led its end through the wall, on
-    whose other side it then lay for a second."""
+    the last interval of a step. Its correction, by up to a quarter of the smallest body, led its end through it, and it
+    then lay on the other side for a second."""
     space = pymunk.Space()
     space.gravity = 0.0, -9.81
     for a, b in itertools.pairwise(((-4, 0), (4, 0), (4, 12), (-4, 12), (-4, 0))):

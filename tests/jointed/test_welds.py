@@ -149,6 +149,7 @@ def test_what_may_move_is_not_welded(edit: str) -> None:
         pivot.anchor_a += 0.01, 0.0
     else:
         post = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+        post.velocity = 0.0, 1e-3
         space.remove(pivot)
         space.add(post, pymunk.PivotJoint(post, planks[0], (-0.4, 0.0)))
     for _ in range(10):

@@ -134,6 +134,12 @@ def position_function(body: pymunk.Body) -> Callable[..., None] | None:
     return body._position_func
 
 
+def may_rest(body: pymunk.Body) -> bool:
+    """Whether a body is kinematic, and moved by its velocity alone."""
+    kinematic = lib.cpBodyGetType(body._body) == lib.CP_BODY_TYPE_KINEMATIC
+    return kinematic and velocity_function(body) is None and position_function(body) is None
+
+
 @contextmanager
 def locked(space: pymunk.Space) -> Iterator[None]:
     """Within this block additions and removals wait for `finish_step` or the end of pymunk's next step."""
