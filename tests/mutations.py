@@ -37,7 +37,14 @@ MUTATIONS = (
     # Sleeping.
     Mutation("sleeping: what a kinematic body carries", "sleepers.py", "            awake[PAIRS[p, 1]] = 1",
              "            awake[PAIRS[p, 0]] = 1", "space/test_sleeping.py", "groups_sleep"),
+    # What no contact of an interval tells.
+    Mutation("corrections: through a wall that is not touched", "islands/intervals.py",
+             "            if len(A.SIDE) > 0 and", "            if len(A.SIDE) < 0 and", "islands/test_lifting.py", "lifted_through"),
+    Mutation("straight chains: a kinematic body that moves", "space/joints.py", "None if any(at[3:]) else at[:3]",
+             "at[:3]", "jointed/test_straight.py", "kinematic"),
     # Arbiters.
+    Mutation("arbiters: pairs in both orders", "space/arbiters.py", "append((e, -1.0))", "append((e, 1.0))",
+             "space/test_arbiters.py", "both_orders"),
     Mutation("arbiters: making them calls handlers", "space/private/rest.py",
              "held = private.functions(space)", "held = []", "space/test_arbiters.py", "calls_no_handler"),
     # Edits.
@@ -146,7 +153,7 @@ MUTATIONS = (
              "A.SHAPE[b].extent if fast_b else", "A.SHAPE[b].rounding if fast_b else", "prediction/test_turning.py",
              "fast_shapes"),
     Mutation("work: looks at many vertices count as others", "prediction/work.py",
-             "1.0 + (p * q if min(p, q) < MANY_CORNERS else 3.0 * (p + q)) / VERTICES_LOOK", "1.0",
+             "1.0 + (p * q if min(p, q) < MANY_CORNERS else 6.0 * (p + q)) / VERTICES_LOOK", "1.0",
              "prediction/test_turning.py", "many_vertices"),
     Mutation("loop: walls of a slow container have orbits", "pairs/grid.py", "if turn > 2.0 * math.pi and turn",
              "if turn", "impacts/test_loop.py", "turns_slowly"),
