@@ -60,6 +60,7 @@ def begin(A: Scene, IDS: IntArray) -> None:
     BODY, STATE, PAR, COUNT = A.BODY, A.STATE, A.PAR, A.COUNT
     COUNT.heap, COUNT.logged, COUNT.blocks, COUNT.room = 0, 0, 0, 0
     COUNT.solves, COUNT.solved, COUNT.direct, COUNT.work = 0, 0, 0, 0.0
+    COUNT.met, COUNT.meets, COUNT.met_work, COUNT.before = 0, 0, 0.0, 0.0
     if COUNT.unmet > 0:
         A.FLAG[:] = 0
         COUNT.unmet = 0

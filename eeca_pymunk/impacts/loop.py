@@ -138,13 +138,23 @@ def bodies_of(A: Scene, i: int) -> int:
     return A.MEMBER[A.STATE[i].island].bodies if A.STATE[i].island >= 0 else 0
 
 
+@nonallocating
+def work_of_event(A: Scene, i: int, j: int) -> float:
+    """What an event of bodies i and j will probably take, with the predictions that follow: for each body of their
+    islands as much as such events of the step have taken so far. The last event ends here."""
+    COUNT = A.COUNT
+    if COUNT.meets > 0 and COUNT.work > COUNT.before:  # else the same event is tried again, with more memory
+        COUNT.met, COUNT.met_work = COUNT.met + COUNT.meets, COUNT.met_work + COUNT.work - COUNT.before
+    COUNT.meets, COUNT.before = bodies_of(A, i) + (bodies_of(A, j) if j != i else 0), COUNT.work
+    return float(COUNT.met_work * COUNT.meets / max(COUNT.met, 1))
+
+
 @kernel
 def process_events(A: Scene, J: Joints, may_persist: bool) -> int:
     """Process all events of the step, with simultaneous impacts and islands. After a status other than DONE: provide
     more memory, and call again. may_persist: as in `run_events`."""
     COUNT, STATE = A.COUNT, A.STATE
-    # worked: work of the events so far of so many bodies of islands, `solved`, and of the predictions that followed.
-    few, bodies, solved, worked, before = -1, 0, 0, 0.0, 0.0
+    few = -1
     while True:
         if few < 0 or COUNT.pushes > 2 * few + _ROOM:
             drop_ended(A)
@@ -156,12 +166,8 @@ def process_events(A: Scene, J: Joints, may_persist: bool) -> int:
             return status
         t, i = A.PAR.now, COUNT.event_body
         s, o = STATE[i].own, STATE[i].other
-        if bodies > 0:
-            solved, worked = solved + bodies, worked + COUNT.work - before
         j = i if o < 0 else A.LINK[o].owner
-        bodies, before = bodies_of(A, i) + (bodies_of(A, j) if j != i else 0), COUNT.work
-        # No event begins without work for what it will probably take.
-        if COUNT.work + worked * bodies / max(solved, 1) > most_looks(A, J):
+        if COUNT.work + work_of_event(A, i, j) > most_looks(A, J):
             return cut_short(A, J, i, t)
         if COUNT.logged + COUNT.pushes + max(8 * STATE.shape[0], COUNT.room) > A.LOG.shape[0]:
             COUNT.heap = push_event(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)

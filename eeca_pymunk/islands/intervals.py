@@ -176,22 +176,19 @@ def lifts_through(
     A: Scene, isle: Island, END: FloatArray, JUMP: FloatArray, ROWS: Rows[Row], n: int, m: int, end: float
 ) -> bool:
     """Whether penetration corrections JUMP (k, 6) of the n bodies of an island, at poses END (k, 3) at instant `end`,
-    may lead thin shapes through others with which they have none of the m contacts: these have not touched within the
-    interval, but are nearer than the correction moves them."""
+    may lead a thin shape through one of a body without mobility with which it has none of the m contacts: it has not
+    touched that within the interval, but is nearer than the correction moves it."""
     for q in range(n):
         way = norm(JUMP[q, 0], JUMP[q, 1]) + abs(JUMP[q, 2]) * isle.EXTENT[q]
         i = int(isle.WHO[q])
         for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes if way > 0.0 else 0):
             for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
                 o = int(A.POOL[w])
-                if not remembers(A, s, o) or barred(A, s, o):
+                wall = int(A.LINK[o].owner)
+                if A.BODY[wall].inv_mass > 0.0 or not remembers(A, s, o) or barred(A, s, o):
                     continue
-                both, (x, y, angle) = way, pose(A.BODY, A.LINK[o].owner, end)
-                for p in range(n):
-                    if isle.WHO[p] == A.LINK[o].owner:
-                        both += norm(JUMP[p, 0], JUMP[p, 1]) + abs(JUMP[p, 2]) * isle.EXTENT[p]
-                        x, y, angle = END[p, 0], END[p, 1], END[p, 2]
-                if gap_at(A, s, END[q, 0], END[q, 1], END[q, 2], o, x, y, angle)[0] < both:
+                x, y, angle = pose(A.BODY, wall, end)
+                if gap_at(A, s, END[q, 0], END[q, 1], END[q, 2], o, x, y, angle)[0] < way:
                     pair, touches = pair_of(A, s, o), False
                     for z in range(m):
                         touches = touches or ROWS[z].key >> 1 == pair
