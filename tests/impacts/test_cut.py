@@ -66,16 +66,18 @@ def test_an_island_beyond_the_cut_closes_its_ledger(begun: bool, beyond: int, mo
 
 
 def test_no_event_begins_without_work_for_it() -> None:
-    """150 flat polygons of 24 corners fall on each other: an impact on one of them is solved with all that are near,
-    and predicted anew for these, which takes a third of the budget. Steps took up to 1.6 budgets."""
+    """190 flat polygons of 40 corners fall on each other: an impact on one of them is solved with all that are near,
+    and predicted anew for these, which takes up to half of the budget. What it will take is known by earlier ones, on
+    average: at most one of 44 steps that end early takes more than 1.25 budgets, with gravity changed by up to 3e-9; 10
+    to 14 of 34 if an event begins with any work that is left, up to 1.6 budgets."""
     chance, space = Random(2), crowds.container(5.0, 80.0)
-    outline = [(0.6 * math.cos(math.tau * k / 24), 0.06 * math.sin(math.tau * k / 24)) for k in range(24)]
-    for i in range(150):
+    outline = [(0.6 * math.cos(math.tau * k / 40), 0.06 * math.sin(math.tau * k / 40)) for k in range(40)]
+    for i in range(190):
         place, angle = (-4.2 + (i % 7) * 1.35, 0.8 + i // 7 * 1.3), chance.uniform(0.0, 6.0)
         body = crowds.put(space, lambda b: pymunk.Poly(b, outline), place, angle=angle, elasticity=0.1)
         body.angular_velocity = chance.uniform(-5.0, 5.0)
     stepper, works = ep.EECA(space), list[float]()
-    for _ in range(90):
+    for _ in range(75):
         works += [one.value / one.limit for one in stepper.step(1 / 30).unmet if one.name == "solves"]
     assert len(works) > 10
-    assert max(works) <= 1.25
+    assert sum(work > 1.25 for work in works) <= 3

@@ -189,7 +189,7 @@ def test_a_search_ends_at_the_latest_instant_that_matters() -> None:
 
 
 def test_looks_at_shapes_of_many_vertices_count_more() -> None:
-    """By sixteen pairs of corners, and by three for each of eighty corners, in units of forty."""
+    """By sixteen pairs of corners, and by six for each of eighty corners, in units of forty."""
     works = []
     for corners in (4, 40):
         turns = [2.0 * math.pi * k / corners for k in range(corners)]
@@ -197,7 +197,7 @@ def test_looks_at_shapes_of_many_vertices_count_more() -> None:
         world = World([Thing(shape, rate=(1.0, 0.0, 0.0)), Thing(shape, (3.0, 0.0, 0.0))])
         assert next_impact(world, 0, 1) == (pytest.approx(1.0, rel=1e-12), True)
         works.append(world.scene.COUNT.work)
-    assert works[1] / works[0] == pytest.approx((1.0 + 240.0 / 40.0) / (1.0 + 16.0 / 40.0), rel=1e-12)
+    assert works[1] / works[0] == pytest.approx((1.0 + 480.0 / 40.0) / (1.0 + 16.0 / 40.0), rel=1e-12)
 
 
 def test_a_forecast_does_not_depend_on_where_a_clock_stands() -> None:
