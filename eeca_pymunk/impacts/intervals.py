@@ -92,8 +92,9 @@ def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
     own, other = A.STATE[i].own, A.STATE[i].other
     if other < 0:  # the end of an interval, without a partner
         own, other = A.STATE[i].first_shape if A.STATE[i].shapes > 0 else -1, -1
-    # What was left did not suffice for an interval, and counts as spent.
-    note_unmet(A, SOLVES, own, other, max(A.COUNT.work + most_work(A) - most_looks(A, J), most_work(A)), most_work(A))
+    most = most_work(A)
+    # What was left did not suffice for what comes next, and counts as spent.
+    note_unmet(A, SOLVES, own, other, max(A.COUNT.work + most - most_looks(A, J), most), most)
     A.PAR.dt = t
     A.COUNT.heap = 0
     if J.TALLY.components > 0:

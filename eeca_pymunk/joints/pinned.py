@@ -53,11 +53,8 @@ def hold(table: Table, joints: Table) -> bool:
         bodies = together(BODY, J.PARTNER)
         still, spins = np.zeros(len(bodies), np.int64), np.zeros(len(bodies), np.int64)
         spins[: len(BODY)] = CENTRE
-        for i in range(len(BODY)):
-            still[i] = 0 if BODY[i].inv_mass > 0.0 else -1  # joints hold no body whose motion they cannot change
-        for i in range(len(bodies)):
-            if i >= len(BODY) or BODY[i].inv_mass == 0.0:
-                still[i] = 1 if J.STILL[i] > 0 else -1
+        for i in range(len(bodies)):  # joints hold no body whose motion they cannot change
+            still[i] = 0 if i < len(BODY) and BODY[i].inv_mass > 0.0 else 1 if J.STILL[i] > 0 else -1
         for s in range(len(LINK)):
             if SHAPE[s].friction > 0.0:
                 spins[LINK[s].owner] = WHOLLY

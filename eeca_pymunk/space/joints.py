@@ -55,7 +55,7 @@ class JointRows(Listing):
         for j in self.fresh:
             self.values[j].put(self._memory, j, *self.joint["body"][j].tolist())
         self.partners: Partners = Partners(others, space, self.joint, n, None if past is None else past.partners)
-        self.still[n:] = self.partners.still[: len(self.still)]
+        self.still[n:] = self.partners.still
         self._edits, self._timestamp = ConstraintEdits(self.row), private.timestamp(space)
         self._clock = clock()
         self.rates: dict[pymunk.Constraint, Rate] = {} if past is None else past.rates
@@ -83,7 +83,7 @@ class JointRows(Listing):
         self._number(row, n, others)
         self.fresh = []
         self.partners.renumber(self.space, n, anew)
-        self.still[n:] = self.partners.still[: len(self.still)]
+        self.still[n:] = self.partners.still
         self.parted = None
         return True
 
