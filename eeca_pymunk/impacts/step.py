@@ -4,7 +4,7 @@ written to it."""
 from __future__ import annotations
 
 from ..compiled import Table, kernel
-from ..islands.support import renew_support
+from ..islands.loads import renew_support
 from ..jointed.ledger import account_joints, load_welds, note_spent, start_joints
 from ..joints.pinned import put_pinned
 from ..model.joints import Joints, joints_of

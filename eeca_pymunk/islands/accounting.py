@@ -25,6 +25,7 @@ from ..model.scene import Scene, scene_of
 from ..pairs.rules import far_apart, mark_pair
 from ..rows.energy import offset_gain
 from .at_rest import log_contact, set_awake, wake_supported
+from .loads import renew_loads
 from .membership import members_of, unite
 from .rest import spins_freely
 from .shortened import losses, repay
@@ -104,8 +105,11 @@ def remove_angular_momentum(A: Scene, root: int, excess: float) -> None:
 @nonallocating
 def wake(A: Scene, root: int, t: float) -> int:
     """End the rest of an island at instant t, and that of the islands that it supports, directly or through others: the
-    intervals of all end at t, and from then on they are one island. Returns its root."""
+    intervals of all end at t, and from then on they are one island. Their forces are those of their loads up to t.
+    Returns its root."""
     MEMBER, one = A.MEMBER, root
+    if t > 0.0:
+        renew_loads(A, t)
     MEMBER[root].rest = CHANGED
     wake_supported(A)
     # Before others are united with it, which may become the root.

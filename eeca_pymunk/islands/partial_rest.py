@@ -26,10 +26,10 @@ from .accounting import close_interval
 from .at_rest import put_to_rest, set_awake, stop
 from .candidates import pairs_within
 from .intervals import begin_interval, set_lifts
+from .loads import add_loads
 from .local import bodies_of, clear_places, local_island, open_interval, set_places
 from .membership import lossy, unite
 from .rest import candidate_speed, postpone_test, speed
-from .support import add_loads
 
 
 @nonallocating
@@ -60,7 +60,7 @@ def test_rest(A: Scene, MINE: IntArray, V0: FloatArray, with_supports: int, free
     near = pairs_within(A, root, 0.0, A.PAR.dt, True, MINE)
     LOAD = np.zeros((n, 3))
     if not freezing:
-        add_loads(A, root, False, LOAD)
+        add_loads(A, root, A.PAR.dt, LOAD)
     p = len(near)
     isle = local_island(A, MINE, near, 0.0)
     clear_places(A, MINE)
