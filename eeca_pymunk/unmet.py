@@ -28,7 +28,8 @@ class Unmet(NamedTuple):
         "solves": work of the step, in looks (see the glossary): that of its events, and the part of the limit that
             joints have taken of theirs. The step ends early.
         "contacts": residual velocity of the persistent contacts of an island of up to `COLUMN_CONTACTS` contacts, or
-            with which joints force a contact deeper, length/time.
+            with which joints force a contact deeper, or which loads that have changed within the step give bodies at
+            rest, length/time.
         "joints": status of the solve of jointed bodies.
     """
 

@@ -8,7 +8,8 @@ Gaps above -OVERLAP_LEFT of the size are not corrected; within a step only those
 not reach (`..islands.depths.left_to_lift`).
 
 Displacements change the orbital angular momentum by sum m delta x v. If an island is free (without bodies that impulses
-do not move), a common rotation of its velocities about the centre of mass removes that change.
+do not move), a common rotation of the velocities of bodies that press on each other, about their centre of mass,
+removes that change.
 """
 
 from __future__ import annotations
@@ -41,13 +42,14 @@ from .works import work_of_forces
 
 @kernel
 def lifting(
-    problem: Problem, POSE: FloatArray, VN: FloatArray, ACC: FloatArray, h: float, EXTENT: FloatArray, budget: float,
-    left: float, JUMP: FloatArray,
+    problem: Problem, L: FloatArray, POSE: FloatArray, VN: FloatArray, ACC: FloatArray, h: float, EXTENT: FloatArray,
+    budget: float, left: float, JUMP: FloatArray,
 ) -> None:  # fmt: skip
     """Compute the corrections JUMP (k, 6) of pose and velocity at the end of an interval of length h.
 
     Args:
-        problem: its contacts, with gaps at the start.  POSE: (k, 3) at the middle of the interval.
+        problem: its contacts, with gaps at the start.  L: (m, 2) their impulses.
+        POSE: (k, 3) at the middle of the interval.
         VN: (k, 3) velocities at the end.  ACC: (k, 3) accelerations without contacts.
         EXTENT: (k,) lengths from the bodies' centres of mass to their farthest points.
         budget: energy that the correction may cost; below 0 nothing is corrected, with 0 what costs nothing.
@@ -68,18 +70,16 @@ def lifting(
     D = admissible(D, EXTENT, n, size) * D
     END = POSE + 0.5 * h * VN
     NEW = END + D
-    turn = x = y = 0.0
-    touched = np.zeros(n, np.uint8)
+    GROUP, TURN, ONE = np.arange(n), np.zeros((n, 3)), np.empty(n, np.uint8)
     for i in range(m if len(IM) == n else 0):
-        # Bodies without contacts leave the island.
-        touched[ROWS[i].a] = 1
-        touched[ROWS[i].b] = 1
+        if L[i, 0] > 0.0 or GAPS[i] < 0.0:
+            connect(GROUP, ROWS[i].a, ROWS[i].b)
     for tries in range(CORRECTION_TRIES):
         work, square = -work_of_forces(ACC, IM, II, n, D), 0.0
         if len(IM) == n:
             NEW = END + D
-            turn, x, y, spin, inertia = unturn(NEW, D, VN, IM, II, touched, 0.0)
-            work, square = work + turn * spin, 0.5 * inertia * turn * turn
+            spun, square = unturn_groups(NEW, D, VN, IM, II, GROUP, ONE, np.zeros(n), TURN)
+            work += spun
         if not work + square > budget + CORRECTION_ROUND_OFF * work_of_forces(np.abs(ACC), IM, II, n, np.abs(D)):
             break
         # p D cost p linear - p^2 square = most, as the part p of D changes `spin`, which is that after D; the moment
@@ -90,8 +90,16 @@ def lifting(
     for i in range(n):
         for c in range(3):
             JUMP[i, c] = D[i, c]
-    if turn != 0.0:
-        turn_by(NEW, touched, turn, x, y, JUMP, 3)
+    turn_groups(NEW, GROUP, ONE, TURN, JUMP, 3)
+
+
+@nonallocating
+def connect(GROUP: IntArray, one: int, other: int) -> None:
+    """Unite the groups of two bodies; GROUP (n,) has the least body of each one's."""
+    least, most = min(GROUP[one], GROUP[other]), max(GROUP[one], GROUP[other])
+    for q in range(len(GROUP) if least < most else 0):
+        if GROUP[q] == most:
+            GROUP[q] = least
 
 
 @nonallocating
@@ -145,6 +153,42 @@ def unturn(
         spin += (rx * wy - ry * wx) / IM[i] + V[i, 2] / II[i]
         inertia += (rx * rx + ry * ry) / IM[i] + 1.0 / II[i]
     return -gained / inertia, x, y, spin, inertia
+
+
+@nonallocating
+def members(GROUP: IntArray, g: int, ONE: FlagArray) -> bool:
+    """Set the flags ONE (n,) of the bodies of group g; False if that is no group, or a single body."""
+    size = 0
+    for q in range(len(GROUP)):
+        ONE[q] = 1 if GROUP[q] == g else 0
+        size += ONE[q]
+    return size > 1
+
+
+@nonallocating
+def unturn_groups(
+    NEW: FloatArray, D: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray, GROUP: IntArray, ONE: FlagArray,
+    EXCESS: FloatArray, TURN: FloatArray,
+) -> tuple[float, float]:  # fmt: skip
+    """`unturn` for each group of bodies, EXCESS (n,) being that of group g at g: sets TURN (n, 3), the spin and the
+    centre of each. ONE (n,): scratch. Returns the changes of kinetic energy of first and second order in the spins."""
+    first, second = 0.0, 0.0
+    for g in range(len(GROUP)):
+        TURN[g, 0] = 0.0
+        if members(GROUP, g, ONE):
+            turn, x, y, spin, inertia = unturn(NEW, D, V, IM, II, ONE, EXCESS[g])
+            TURN[g, 0], TURN[g, 1], TURN[g, 2] = turn, x, y
+            first, second = first + turn * spin, second + 0.5 * inertia * turn * turn
+    return first, second
+
+
+@nonallocating
+def turn_groups(NEW: FloatArray, GROUP: IntArray, ONE: FlagArray, TURN: FloatArray, V: FloatArray, at: int) -> None:
+    """`turn_by` for each group of bodies, with TURN of `unturn_groups`."""
+    for g in range(len(GROUP)):
+        if TURN[g, 0] != 0.0:
+            members(GROUP, g, ONE)
+            turn_by(NEW, ONE, TURN[g, 0], TURN[g, 1], TURN[g, 2], V, at)
 
 
 @nonallocating

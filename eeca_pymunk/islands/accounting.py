@@ -12,10 +12,7 @@ also have changed the angular momentum, since the arms are those of the middle o
 
 from __future__ import annotations
 
-import numpy as np
-
-from ..compiled import Table, kernel, nonallocating
-from ..contacts.correction import turn_by, unturn
+from ..compiled import Table, nonallocating
 from ..geometry.flight import move_to, norm
 from ..geometry.gap import gap
 from ..geometry.sides import note_side, remembers
@@ -26,9 +23,10 @@ from ..pairs.rules import far_apart, mark_pair
 from ..rows.energy import offset_gain
 from .at_rest import log_contact, set_awake, wake_supported
 from .loads import renew_loads
-from .membership import members_of, unite
-from .rest import spins_freely
+from .local import contact_range
+from .membership import unite
 from .shortened import losses, repay
+from .turned import keep_angular_momentum, report_lift
 
 
 @nonallocating
@@ -59,47 +57,6 @@ def account_contact(A: Scene, c: int, t: float) -> None:
     PAR.external += f * pushed.work
     if f > 0.0:
         log_contact(A, c, f, f * pushed.length)
-
-
-@nonallocating
-def angular_gain(A: Scene, c: int, t: float) -> float:
-    """Angular momentum that contact c adds if its interval h is cut after s, since its arms are those of the middle of
-    the whole: -(1/2) s (h - s) (v_b - v_a) x f, with the force f and v at the start of the interval. t: the instant of
-    the cut. Bodies without mobility do not count."""
-    pushed, BODY = A.PUSHED[c], A.BODY
-    i, j = A.LINK[A.PUSHED_BY[c].a].owner, A.LINK[A.PUSHED_BY[c].b].owner
-    s, h = t - pushed.start, pushed.length
-    fx = (pushed.normal * pushed.nx - pushed.tangential * pushed.ny) / h
-    fy = (pushed.normal * pushed.ny + pushed.tangential * pushed.nx) / h
-    back_i, back_j = BODY[i].since - pushed.start, BODY[j].since - pushed.start
-    vx = BODY[j].vx - back_j * BODY[j].ax - BODY[i].vx + back_i * BODY[i].ax
-    vy = BODY[j].vy - back_j * BODY[j].ay - BODY[i].vy + back_i * BODY[i].ay
-    return -0.5 * s * max(h - s, 0.0) * (vx * fy - vy * fx)
-
-
-@kernel
-def remove_angular_momentum(A: Scene, root: int, excess: float) -> None:
-    """Remove the angular momentum `excess` of a free island, whose bodies are at one instant, by a common rotation;
-    free spins stay as they are. The change of energy counts as restitution."""
-    MINE = members_of(A, root)
-    n = len(MINE)
-    POSE, V, IM, II = np.empty((n, 3)), np.empty((n, 3)), np.empty(n), np.empty(n)
-    for q in range(n):
-        body = A.BODY[MINE[q]]
-        POSE[q, 0], POSE[q, 1], V[q, 0], V[q, 1], V[q, 2] = body.x, body.y, body.vx, body.vy, body.spin
-        IM[q], II[q] = body.inv_mass, body.inv_inertia
-        if II[q] > 0.0 and spins_freely(A, MINE[q]):
-            II[q] = np.inf
-    ALL = np.ones(n, np.uint8)
-    turn, x, y, angular, inertia = unturn(POSE, np.zeros((n, 2)), V, IM, II, ALL, excess)
-    turn_by(POSE, ALL, turn, x, y, V, 0)
-    for q in range(n):
-        body = A.BODY[MINE[q]]
-        body.vx, body.vy = V[q, 0], V[q, 1]
-        body.spin = V[q, 2] if II[q] < np.inf else body.spin
-    lost = -turn * (angular + 0.5 * inertia * turn)
-    A.PAR.restitution += lost
-    A.RESTING[root].lost += lost
 
 
 @nonallocating
@@ -136,23 +93,16 @@ def end_interval(A: Scene, root: int, t: float) -> None:
 def close_interval(A: Scene, root: int, t: float) -> None:
     """End the interval of one island without joints at instant t: account its contacts, and move its bodies to their
     poses at t."""
-    free, excess = True, 0.0
     repay(A, root, t)
-    for c in range(A.COUNT.pushes):
-        if A.PUSHED_BY[c].root == root:
-            for shape in (A.PUSHED_BY[c].a, A.PUSHED_BY[c].b):
-                j = A.LINK[shape].owner
-                free = free and A.BODY[j].inv_mass > 0.0 and A.STATE[j].island == root
-            if free:
-                excess += angular_gain(A, c, t)
-            account_contact(A, c, t)
+    first, end = contact_range(A, root)
+    for c in range(first, end):
+        account_contact(A, c, t)
     A.MEMBER[root].open = 0
     i = root
     while i >= 0:
         move_to(A.BODY, i, t)
         i = A.MEMBER[i].following
-    if free and excess != 0.0:
-        remove_angular_momentum(A, root, excess)
+    keep_angular_momentum(A, root, first, end, t)
 
 
 @nonallocating
@@ -205,6 +155,7 @@ def apply_correction(A: Scene, root: int, end: float) -> None:
                 move_to_end(A, i, end)
             i = A.MEMBER[i].following
         return
+    report_lift(A, root)
     while i >= 0:
         move_to(BODY, i, end)
         linear = PULL[i, 0] * RESTING[i].lift_x + PULL[i, 1] * RESTING[i].lift_y

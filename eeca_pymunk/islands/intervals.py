@@ -146,7 +146,7 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
             lost, before = OUT[0].restitution + OUT[0].friction, A.RESTING[root].lost
             budget, payable = payment(A, isle, ROWS, L, VN, n, m, lost, before, placed, False)
             problem, middle = Problem(ROWS, isle.IM, isle.II, isle.POSE, n, m), isle.POSE + 0.5 * h * V
-            lifting(problem, middle, VN, isle.ACC, h, isle.EXTENT, budget, left_to_lift(A, t + h), JUMP)
+            lifting(problem, L, middle, VN, isle.ACC, h, isle.EXTENT, budget, left_to_lift(A, t + h), JUMP)
             if len(A.SIDE) > 0 and lifts_through(A, isle, middle + 0.5 * h * VN, JUMP, ROWS, n, m, t + h):
                 JUMP[:] = 0.0
         note_lock(A, OUT[0])

@@ -52,6 +52,22 @@ def clear_places(A: Scene, MINE: IntArray) -> None:
         A.PLACE[MINE[q]] = -1
 
 
+@kernel
+def take_places(A: Scene) -> IntArray:
+    """Reset A.PLACE of all bodies; returns what it was, for `give_places`: an impact gathers its bodies there, and ends
+    the intervals of their islands meanwhile."""
+    GATHERED = A.PLACE.copy()
+    A.PLACE[:] = -1
+    return GATHERED
+
+
+@nonallocating
+def give_places(A: Scene, GATHERED: IntArray) -> None:
+    """Set A.PLACE as it was before `take_places`."""
+    for i in range(len(GATHERED)):
+        A.PLACE[i] = GATHERED[i]
+
+
 @nonallocating
 def needs_memory(A: Scene, p: int) -> bool:
     """Whether the contacts of p more pairs of shapes need more memory (PUSHES_FULL)."""

@@ -3,9 +3,9 @@
 Forces of an interval are right for the whole of it: a soft landing pushes before the shapes touch. Cut after s, an
 impulse J with the mean relative velocity u has lost D = -J.u, and has given energy if that is negative. Then the island
 is solved again, over the interval from its start to the cut, and gives none. Where that is no interval (bodies would
-move too far, or too far from the paths on which impacts were predicted), all impulses of bodies that touch are scaled
-by one q instead. With E = sum J.u > 0 and the energy C = sum m w^2 / 2 of the changes of velocity w that they cause,
-scaled impulses give q (E - C) + q^2 C, which is 0 for q = 1 - E / C.
+move too far, or too far from the paths on which impacts were predicted), all impulses of bodies that press on each
+other are scaled by one q instead. With E = sum J.u > 0 and the energy C = sum m w^2 / 2 of the changes of velocity w
+that they cause, scaled impulses give q (E - C) + q^2 C, which is 0 for q = 1 - E / C.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import inlined, kernel, nonallocating
+from ..contacts.correction import connect
 from ..contacts.counts import count_solve
 from ..contacts.interval import make_contacts, step_island
 from ..geometry.flight import move_to, norm
@@ -24,7 +25,15 @@ from ..pairs.rules import mark_pair
 from ..rows.energy import scale_to_lose
 from .candidates import sweeps_of
 from .depths import times_too_long
-from .local import clear_places, contact_range, local_island, number_bodies, write_contacts
+from .local import (
+    clear_places,
+    contact_range,
+    give_places,
+    local_island,
+    number_bodies,
+    take_places,
+    write_contacts,
+)
 
 
 @inlined
@@ -75,30 +84,27 @@ def leave_paths(A: Scene, MINE: IntArray, VN: FloatArray, s: float) -> bool:
 
 
 @kernel
-def touching_groups(A: Scene, MINE: IntArray, first: int, end: int) -> IntArray:
-    """Of the bodies MINE, which have their places: the groups that contacts [first, end) connect, as the least place of
-    each."""
+def pressing_groups(A: Scene, MINE: IntArray, first: int, end: int) -> IntArray:
+    """Of the bodies MINE, which have their places: the groups that forces of contacts [first, end) connect, as the
+    least place of each."""
     GROUP = np.arange(len(MINE))
     for c in range(first, end):
         one, two = A.PLACE[A.LINK[A.PUSHED_BY[c].a].owner], A.PLACE[A.LINK[A.PUSHED_BY[c].b].owner]
-        if one >= 0 and two >= 0:
-            least, other = min(GROUP[one], GROUP[two]), max(GROUP[one], GROUP[two])
-            for q in range(len(MINE)):
-                if GROUP[q] == other:
-                    GROUP[q] = least
+        if one >= 0 and two >= 0 and A.PUSHED[c].normal > 0.0:
+            connect(GROUP, one, two)
     return GROUP
 
 
 @kernel
 def scale_impulses(A: Scene, root: int, t: float) -> None:
     """Scale the impulses of an island, whose bodies are at the start of its interval, so that they give no energy up to
-    instant t: q in the docstring of the module, or 0, for each group of bodies that touch. The energy is that of a
-    height, so that bodies sink by it: those whose contacts have given none keep their impulses."""
+    instant t: q in the docstring of the module, or 0, for each group of bodies that press on each other. The energy is
+    that of a height, so that bodies sink by it: those whose contacts have given none keep their impulses."""
     first, end = contact_range(A, root)
     start = A.PUSHED[first].start
     MINE = number_bodies(A, root)
     n = len(MINE)
-    GROUP, LOST, SQUARE, Q = touching_groups(A, MINE, first, end), np.zeros(n), np.zeros(n), np.ones(n)
+    GROUP, LOST, SQUARE, Q = pressing_groups(A, MINE, first, end), np.zeros(n), np.zeros(n), np.ones(n)
     for c in range(first, end):
         normal, tangential = losses(A, c, t)
         LOST[group_of(A, GROUP, c)] += normal + tangential
@@ -167,15 +173,10 @@ def solve_again(A: Scene, root: int, t: float, first: int, end: int) -> None:
 @kernel
 def repay(A: Scene, root: int, t: float) -> None:
     """Before the interval of an island ends at instant t: if its contacts have given energy up to t, solve them again
-    for the time up to t; if they become more, or move too far for one interval, scale their impulses.
-
-    A.PLACE stays as it is: an impact gathers its bodies there, and ends the intervals of their islands meanwhile.
-    """
+    for the time up to t; if they become more, or move too far for one interval, scale their impulses."""
     first, end = contact_range(A, root)
     if not gave_energy(A, first, end, t):
         return
-    GATHERED = A.PLACE.copy()
-    A.PLACE[:] = -1
+    GATHERED = take_places(A)
     solve_again(A, root, t, first, end)
-    for i in range(len(GATHERED)):
-        A.PLACE[i] = GATHERED[i]
+    give_places(A, GATHERED)

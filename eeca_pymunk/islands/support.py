@@ -14,11 +14,11 @@ from __future__ import annotations
 
 from ..compiled import kernel
 from ..model.bodies import AT_REST
-from ..model.parameters.rest import SUPPORT_ROUNDS
+from ..model.parameters.rest import SUPPORT_FACTORS, SUPPORT_ROUNDS
 from ..model.scene import Scene
 from .accounting import wake
 from .intervals import begin_interval
-from .loads import mark_loaded, supports_load
+from .loads import mark_loaded, unsupported
 from .membership import members_of
 from .rest import postpone_test
 
@@ -48,7 +48,7 @@ def support(A: Scene) -> None:
                 continue
             more = True
             # After SUPPORT_ROUNDS: islands that support each other are solved as one.
-            if rounds < SUPPORT_ROUNDS and supports_load(A, i, A.PAR.dt):
+            if rounds < SUPPORT_ROUNDS and unsupported(A, i, A.PAR.dt, SUPPORT_FACTORS) == 0.0:
                 MEMBER[i].new_forces = 1
             else:
                 postpone_test(A, members_of(A, i))

@@ -12,6 +12,7 @@ from 1 mm to 50 m, steps of 1/240 to 1/10 s, with gravity or without; joints and
   each 1/30 s. Steps that do are repeated, as the machine may have been busy, and scenes that have one are counted: a
   soak prints their number, tests measure no times. Events spend their budget only;
 * saved and loaded half-way the run goes on bit by bit;
+* the contacts of a report change the momentum of each body by what it changes, without joints and functions that push;
 * time goes on: not `STANDS` steps in a row leave all that moves where it is;
 * joints of a step that has converged hold, and none exceeds its `max_force` (`joined.py`).
 """
@@ -41,6 +42,8 @@ CLOSES = 1e-11
 CHANGES = 1e-12  # by which the change of a ledger may differ from that of the space's own energy, over the scale
 OVERSPENT = 1.5  # work of a step whose budget is spent, over the budget: the last event may go beyond
 STANDS = 5
+ADDS_UP = 1e-2  # of all its impulses
+PUT_TO_REST = 0.5  # of g dt: how fast a body may be that a step puts to rest
 ROUND_OFF = 2.3e-16
 SPRING_ROUND_OFF = 16.0 * ROUND_OFF
 OUT, BEYOND = 0.5, 1e-3  # of a body's least size: how far it may be outside; how far the wall does not keep it inside
@@ -228,6 +231,7 @@ class Composition:
                 saved = self.saved()
             self.drive(k)
             outside = Outside(self.space, self.box, self.pushed)
+            moved = [(b, b.velocity) for b in self.bodies if not b.is_sleeping]
             start = self.saved() if found.longest > 0.5 * self._longest() else None
             clock = time.thread_time()
             report = self.stepper.step(self.dt)
@@ -241,6 +245,7 @@ class Composition:
                 half.append(state)
             self._check(k, report, state, energies, found, outside)
             self._check_joints(k, report, found)
+            self._check_impulses(k, report, moved)
             found.stands = found.stands + 1 if state == before and self.moves(state) else 0
             if found.stands >= STANDS:
                 raise Broken(f"step {k}: time stands still")
@@ -305,6 +310,26 @@ class Composition:
                 raise Broken(f"step {k}: {joint} is {off:.1e} apart")
             if report.converged and held > HOLDS and before <= HOLDS:
                 raise Broken(f"step {k}: {joint} is {off:.1e} apart in a step that has converged")
+
+    def _check_impulses(self, k: int, report: ep.StepReport, moved: list[tuple[pymunk.Body, pymunk.Vec2d]]) -> None:
+        if self.space.constraints or self.pushed or any(one.name in ("solves", "contacts") for one in report.unmet):
+            return
+        contacts, normal = report.contacts, report.contacts.normal
+        impulse = report.impulse[:, None] * normal
+        impulse += report.friction[:, None] * np.stack([-normal[:, 1], normal[:, 0]], 1)
+        for body, velocity in moved:
+            if body.is_sleeping or body not in contacts.bodies:
+                continue
+            i = contacts.bodies.index(body)
+            change = body.mass * (body.velocity - velocity - self.dt * pymunk.Vec2d(*self.space.gravity))
+            acted = (contacts.body_b == i) * 1.0 - (contacts.body_a == i)
+            sizes = float(np.hypot(*impulse.T) @ abs(acted))
+            size = sizes + body.mass * (self.dt * abs(self.space.gravity[1]) + ROUND_OFF / CHANGES * velocity.length)
+            off = math.hypot(*(acted @ impulse - change))
+            stopped = velocity.length < PUT_TO_REST * self.dt * abs(self.space.gravity[1]) and not body.velocity.length
+            off -= body.mass * velocity.length if stopped else 0.0
+            if sizes > 0.0 and off > ADDS_UP * size:
+                raise Broken(f"step {k}: impulses change a momentum by {off / size:.1e} of them more than it changes")
 
     def _check(
         self,
