@@ -27,7 +27,7 @@ from .hooked_stepper import HookedStepper
 from .layout import WRITTEN
 from .model.parameters.rest import WAKE_ALL
 from .model.step import EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES
-from .reentry import BUSY, refuse_within
+from .reentry import BUSY, STEPPING, enter, refuse_within
 from .report import Details, StepReport
 from .space.sleeping import Sleep
 from .space.world import World
@@ -60,13 +60,18 @@ class PackedStepper(HookedStepper):
     def step(self, dt: float) -> StepReport:
         if BUSY:
             refuse_within(self.space)
-        dt = float(dt)
-        if not 0.0 < dt < inf and check_dt(dt) == 0.0:
-            return StepReport.without_contacts(self.time)
-        world = self._world
-        if world is None or not world.current():
-            world = self._update_world()
-        return self._step(world, dt) if self._sleep is None else self._sleeping_step(self._sleep, world, dt)
+        outermost = enter(self.space)
+        try:
+            dt = float(dt)
+            if not 0.0 < dt < inf and check_dt(dt) == 0.0:
+                return StepReport.without_contacts(self.time)
+            world = self._world
+            if world is None or not world.current():
+                world = self._update_world()
+            return self._step(world, dt) if self._sleep is None else self._sleeping_step(self._sleep, world, dt)
+        finally:
+            if outermost:
+                del STEPPING[self.space]
 
     def _sleeping_step(self, sleep: Sleep, world: World, dt: float) -> StepReport:
         """A step of a space in which bodies may sleep."""

@@ -1,13 +1,16 @@
-"""Re-entry: functions of the program that are called within a step of a space cannot step that space."""
+"""Re-entry: functions of the program that are called within a step of a space cannot step that space, nor can another
+thread step it meanwhile."""
 
 from __future__ import annotations
 
+from threading import get_ident
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import pymunk
 
 BUSY: set[pymunk.Space] = set()  # spaces within whose step functions are being called
+STEPPING: dict[pymunk.Space, int] = {}  # spaces that are being stepped, by which thread
 
 
 class FunctionsCalled:
@@ -28,10 +31,33 @@ class FunctionsCalled:
             BUSY.discard(self._space)
 
 
+def of_another_thread(space: pymunk.Space) -> RuntimeError:
+    """The error of a thread that steps a space while another one does."""
+    return RuntimeError(
+        f"step or run was called for {space} while another thread steps it: give each thread a space and a stepper of "
+        "its own, or let them wait for each other"
+    )
+
+
 def refuse_within(space: pymunk.Space) -> None:
     """RuntimeError if the space is in BUSY."""
     if space in BUSY:
+        if STEPPING.get(space, get_ident()) != get_ident():
+            raise of_another_thread(space)
         raise RuntimeError(
             f"step, run or set_state was called for {space} from within its own step, by a collision handler or a "
             "function of a body or constraint: step it when that step has returned, or in space.add_post_step_callback"
         )
+
+
+def enter(space: pymunk.Space) -> bool:
+    """Begin a step of a space, or a run; returns whether this is the outermost one, which at its end has to delete the
+    space from STEPPING: post-step callbacks may step it again.
+
+    Raises:
+        RuntimeError: another thread steps it.
+    """
+    thread, outermost = get_ident(), space not in STEPPING
+    if STEPPING.setdefault(space, thread) != thread:
+        raise of_another_thread(space)
+    return outermost

@@ -18,7 +18,7 @@ from .layout import BODY_ROW, READ, WRITTEN
 from .model.run import BETWEEN
 from .model.step import FORCES
 from .packed_stepper import PackedStepper
-from .reentry import refuse_within
+from .reentry import STEPPING, enter, refuse_within
 from .report import RunReport
 from .space.world import World
 from .states import get_state, set_state
@@ -175,8 +175,19 @@ class RunningStepper(PackedStepper):
             events: whether impacts are stored.  progress: whether to show a progress bar.
 
         Raises:
-            as `step` does; the space is then at the end of the step before.
+            as `step` does; the space is then at the end of the step before.  RuntimeError: another thread steps it.
         """
+        outermost = enter(self.space)
+        try:
+            return self._buffered(steps, dt, kept, every, events, progress)
+        finally:
+            if outermost:
+                del STEPPING[self.space]
+
+    def _buffered(
+        self, steps: int, dt: float, kept: Sequence[pymunk.Body], every: int, events: bool, progress: bool
+    ) -> RunBuffers:
+        """`buffered_run`, in the one thread that may step the space."""
         world = self.adjusted(dt)
         rows = np.array([world.bodies.row[body] for body in kept], np.int64)
         moments = 1 + steps // every if every else 0

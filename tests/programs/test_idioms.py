@@ -320,6 +320,60 @@ def test_spaces_in_threads_of_their_own_do_not_meet() -> None:
     assert [ends[0] for ends in together] == alone
 
 
+@pytest.mark.parametrize("handled", [True, False])
+def test_one_space_is_stepped_by_one_thread_at_a_time(handled: bool) -> None:
+    """A thread that comes while another one steps gets an error, and breaks nothing: afterwards each may step it."""
+    space, _ = ground()
+    for k in range(4):
+        box_on(space, 0.1 * k, 1.0 + 1.2 * k)
+    if handled:
+        space.on_collision(pre_solve=lambda *_: None)
+    stepper = ep.EECA(space)
+    refused: list[str] = []
+
+    def play(go_on: Callable[[], object]) -> None:
+        for _ in range(60):
+            try:
+                go_on()
+            except RuntimeError as error:
+                refused.append(str(error))
+
+    threads = [threading.Thread(target=play, args=(lambda: stepper.step(DT),)) for _ in range(3)]
+    threads.append(threading.Thread(target=play, args=(lambda: stepper.run(20, DT),)))
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert all("another thread" in error for error in refused)
+    assert abs(stepper.step(DT).ledger.residual) < 1e-9  # type: ignore[union-attr]
+    assert all(0.0 < body.position.y < 4.0 for body in space.bodies)
+
+
+def test_a_thread_that_comes_within_a_function_of_another_ones_step_is_told_so() -> None:
+    space, _ = ground()
+    body = box_on(space, 0.0, 1.0)
+    stepper, told = ep.EECA(space), []
+
+    def come() -> None:
+        for go_on in (lambda: stepper.step(DT), lambda: stepper.run(2, DT)):
+            with pytest.raises(RuntimeError, match="another thread"):
+                go_on()
+            told.append(go_on)
+
+    def push(body: pymunk.Body, gravity: tuple[float, float], damping: float, dt: float) -> None:
+        if not told:
+            other = threading.Thread(target=come)
+            other.start()
+            other.join()
+        pymunk.Body.update_velocity(body, gravity, damping, dt)
+
+    body.velocity_func = push
+    stepper.step(DT)
+    assert len(told) == 2
+    body.velocity_func = pymunk.Body.update_velocity
+    run(stepper, 2)
+
+
 @pytest.mark.parametrize("way", [copy.deepcopy, lambda s: s.copy(), lambda s: pickle.loads(pickle.dumps(s))])
 def test_a_saved_game_goes_on_as_the_first_did(way: Callable[[pymunk.Space], pymunk.Space]) -> None:
     space, _ = ground()
