@@ -8,14 +8,13 @@ import numpy as np
 
 from ..arrays import FlagArray, FloatArray, IntArray
 from ..compiled import kernel, nonallocating
-from ..compiled.records import Rows
 from ..contacts.correction import lifting
 from ..contacts.counts import count_solve, note_lock, note_unmet
 from ..contacts.interval import make_contacts, step_island
 from ..geometry.flight import norm, pose
 from ..geometry.gap import gap_at
-from ..geometry.sides import pair_of, remembers
-from ..model.contacts import Problem, Row
+from ..geometry.widths import depth_limit, half_width
+from ..model.contacts import Problem
 from ..model.islands import Island
 from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES
@@ -147,7 +146,7 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
             budget, payable = payment(A, isle, ROWS, L, VN, n, m, lost, before, placed, False)
             problem, middle = Problem(ROWS, isle.IM, isle.II, isle.POSE, n, m), isle.POSE + 0.5 * h * V
             lifting(problem, L, middle, VN, isle.ACC, h, isle.EXTENT, budget, left_to_lift(A, t + h), JUMP)
-            if len(A.SIDE) > 0 and lifts_through(A, isle, middle + 0.5 * h * VN, JUMP, ROWS, n, m, t + h):
+            if lifts_through(A, isle, middle + 0.5 * h * VN, JUMP, n, t + h):
                 JUMP[:] = 0.0
         note_lock(A, OUT[0])
     at_rest = OUT[0].at_rest > 0
@@ -172,28 +171,26 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
 
 
 @nonallocating
-def lifts_through(
-    A: Scene, isle: Island, END: FloatArray, JUMP: FloatArray, ROWS: Rows[Row], n: int, m: int, end: float
-) -> bool:
+def lifts_through(A: Scene, isle: Island, END: FloatArray, JUMP: FloatArray, n: int, end: float) -> bool:
     """Whether penetration corrections JUMP (k, 6) of the n bodies of an island, at poses END (k, 3) at instant `end`,
-    may lead a thin shape through one of a body without mobility with which it has none of the m contacts: it has not
-    touched that within the interval, but is nearer than the correction moves it."""
+    lead a shape into one of a body without mobility, deeper than an interval may: contacts of the interval have neither
+    all walls nor all corners that they may reach. Shapes are looked at that they move by more than half their width."""
     for q in range(n):
+        x, y, angle = END[q, 0], END[q, 1], END[q, 2]
         way = norm(JUMP[q, 0], JUMP[q, 1]) + abs(JUMP[q, 2]) * isle.EXTENT[q]
         i = int(isle.WHO[q])
         for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes if way > 0.0 else 0):
+            if half_width(A, s) >= way:
+                continue
             for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
                 o = int(A.POOL[w])
                 wall = int(A.LINK[o].owner)
-                if A.BODY[wall].inv_mass > 0.0 or not remembers(A, s, o) or barred(A, s, o):
+                if A.BODY[wall].inv_mass > 0.0 or barred(A, s, o):
                     continue
-                x, y, angle = pose(A.BODY, wall, end)
-                if gap_at(A, s, END[q, 0], END[q, 1], END[q, 2], o, x, y, angle)[0] < way:
-                    pair, touches = pair_of(A, s, o), False
-                    for z in range(m):
-                        touches = touches or ROWS[z].key >> 1 == pair
-                    if not touches:
-                        return True
+                wx, wy, turn = pose(A.BODY, wall, end)
+                after = gap_at(A, s, x + JUMP[q, 0], y + JUMP[q, 1], angle + JUMP[q, 2], o, wx, wy, turn)[0]
+                if after < -depth_limit(A, s, o) and after < gap_at(A, s, x, y, angle, o, wx, wy, turn)[0]:
+                    return True
     return False
 
 

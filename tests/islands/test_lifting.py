@@ -94,3 +94,46 @@ def test_what_is_pressed_on_a_wall_is_not_lifted_through_it(
     for _ in range(30):
         stepper.step(DT)
         assert rod.position.x <= 4.0 - half + 1e-3
+
+
+def test_a_plank_between_a_wall_and_what_is_heavy_is_not_turned_through_the_wall() -> None:
+    """As above, but the plank touches the wall with one corner, and the correction leads another one through it: half
+    of the plank's width was outside for a step."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -9.81
+    for a, b in itertools.pairwise(((-4, 0), (4, 0), (4, 12), (-4, 12), (-4, 0))):
+        space.add(pymunk.Segment(space.static_body, a, b, 0.0))
+
+    def thrown(
+        moment: float, place: tuple[float, float], angle: float, velocity: tuple[float, float], spin: float,
+        mass: float, corners: list[tuple[float, float]], elasticity: float,
+    ) -> pymunk.Body:  # fmt: skip
+        body = pymunk.Body(mass, moment)
+        body.position, body.angle, body.velocity, body.angular_velocity = place, angle, velocity, spin
+        shape = pymunk.Poly(body, corners)
+        shape.elasticity = elasticity
+        space.add(body, shape)
+        return body
+
+    def ring(count: int, radius: float) -> list[tuple[float, float]]:
+        turns = (2.0 * math.pi * k / count for k in range(count))
+        return [(radius * math.cos(turn), radius * math.sin(turn)) for turn in turns]
+
+    plank = thrown(
+        0.06770833333333333, (3.9, 6.0), 1.5914947409862747, (5.0, 25.32971711245618), 0.0, 1.0,
+        [(0.45, -0.025), (0.45, 0.025), (-0.45, 0.025), (-0.45, -0.025)], 0.0,
+    )  # fmt: skip
+    thrown(
+        3.2078393094077975, (2.2, 4.5), 3.665542529631307, (170.71839278812092, 116.75708062473598), 6.61299085435552,
+        51.325428950524774, ring(3, 0.5), 0.0,
+    )  # fmt: skip
+    thrown(
+        8.735750091292918, (2.2, 5.9), 1.3754001009000274, (476.71074762580037, 173.31583362993632),
+        -2.0312387513695853, 93.57660191827904, ring(9, 0.45), 0.5,
+    )  # fmt: skip
+    for shape in space.shapes:
+        shape.friction = 0.5
+    stepper = ep.EECA(space)
+    for _ in range(10):
+        stepper.step(DT)
+        assert plank.position.x <= 4.0 - 0.02
