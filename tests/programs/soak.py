@@ -1,7 +1,7 @@
 """Ten thousand random programs of API calls: `python -m tests.programs.soak [COUNT] [--minutes M] [--joints]`.
 
-`--compositions` plays random scenes of `varied.py` in their place, and prints the longest step of all; with `--off
-RULE` under a copy of the package without one of its heuristics (`comparisons.ablation.OFF`).
+`--compositions` plays random scenes of `varied.py` in their place (`--rare`: of `rare.py`), and prints the longest step
+of all; with `--off RULE` under a copy of the package without one of its heuristics (`comparisons.ablation.OFF`).
 
 Goes on after a failure, and prints its seed and calls; with `--shrink`, which draws more slowly and less widely, the
 shortest program that fails in the same way, with what was drawn. `--gain 1e-5` takes a gain of energy above that part
@@ -24,6 +24,7 @@ from comparisons.ablation import package_without
 
 from .compositions import Broken
 from .fuzz import GAIN, Drawn, Program, Thrown
+from .rare import Rare
 from .varied import Varied
 
 _BATCH = 100  # programs between two looks at the clock
@@ -60,13 +61,13 @@ def plain(count: int, start: int, gain: float, joints: bool, length: int) -> str
     return "\n".join(told)
 
 
-def compositions(count: int, minutes: float, start: int, joints: bool) -> int:
+def compositions(count: int, minutes: float, start: int, joints: bool, kind: type[Varied]) -> int:
     """Play so many compositions, or for so long; how many break a law or have a step that takes too long."""
     clock, failed, longest, unconverged, late, done = time.perf_counter(), 0, 0.0, 0, 0, 0
     with tqdm(total=count, unit="scene", desc="compositions") as bar:
         while done < count and time.perf_counter() - clock < 60.0 * minutes:
             try:
-                found = Varied(start + done, joints).play()
+                found = kind(start + done, joints).play()
                 longest, unconverged = max(longest, found.longest), unconverged + found.unconverged
                 if found.late:
                     tqdm.write(f"seed {start + done}: a step takes too long")
@@ -107,6 +108,7 @@ if __name__ == "__main__":
     parser.add_argument("--gain", type=float, default=GAIN)
     parser.add_argument("--joints", action="store_true", help="join bodies, too")
     parser.add_argument("--compositions", action="store_true", help="scenes in containers that turn and shake")
+    parser.add_argument("--rare", action="store_true", help="compositions with the bodies of rare.py")
     parser.add_argument("--shrink", action="store_true", help="draw by hypothesis, and shrink what fails")
     parser.add_argument("--off", help="a heuristic, of compositions")
     one = parser.parse_args()
@@ -116,5 +118,7 @@ if __name__ == "__main__":
             command = [sys.executable, "-m", "tests.programs.soak", *arguments]
             raise SystemExit(subprocess.run(command, cwd=folder, env=environment).returncode)
     if one.compositions:
-        raise SystemExit(min(compositions(one.count, one.minutes, one.seed, one.joints), 1))
+        raise SystemExit(
+            min(compositions(one.count, one.minutes, one.seed, one.joints, Rare if one.rare else Varied), 1)
+        )
     raise SystemExit(min(soak(one.count, one.minutes, one.seed, one.gain, one.joints, one.shrink), 1))
