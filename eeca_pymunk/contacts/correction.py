@@ -93,6 +93,16 @@ def lifting(
     turn_groups(NEW, GROUP, ONE, TURN, JUMP, 3)
 
 
+@kernel
+def straight(problem: Problem) -> Problem:
+    """The problem of bodies that do not turn."""
+    ROWS, IM, II, POSE, n, m = problem
+    KEEP = ROWS[:m].copy()
+    for i in range(m):
+        KEEP[i].k_n = 1.0 / (IM[KEEP[i].a] + IM[KEEP[i].b])
+    return Problem(KEEP, IM, np.zeros_like(II), POSE, n, m)
+
+
 @nonallocating
 def connect(GROUP: IntArray, one: int, other: int) -> None:
     """Unite the groups of two bodies; GROUP (n,) has the least body of each one's."""

@@ -11,6 +11,7 @@ from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..contacts.memory import shapes_of
 from ..contacts.turning import gap_rate
+from ..geometry.flight import norm, pose
 from ..geometry.gap import gap_along, gap_at
 from ..geometry.sides import held_side, remembers
 from ..geometry.widths import depth_limit, half_width, smaller
@@ -18,6 +19,7 @@ from ..model.contacts import Row
 from ..model.islands import Island, IslandContacts
 from ..model.parameters import intervals
 from ..model.scene import Scene
+from ..pairs.rules import barred
 from ..rows.build import normal_rate
 from .candidates import before_end, excess_way
 
@@ -28,6 +30,30 @@ def left_to_lift(A: Scene, end: float) -> float:
     at the end of the step. Within it contacts are lifted only if that correction, which moves no point by more than
     CORRECTION_STEP, may not reach: what a wall that turns fast carries along sinks in each interval."""
     return 0.5 * intervals.CORRECTION_STEP if before_end(A, end) else intervals.OVERLAP_LEFT
+
+
+@nonallocating
+def lifts_through(A: Scene, isle: Island, END: FloatArray, JUMP: FloatArray, n: int, end: float) -> bool:
+    """Whether penetration corrections JUMP (k, 6) of the n bodies of an island, at poses END (k, 3) at instant `end`,
+    lead a shape into one of a body without mobility, deeper than an interval may: contacts of the interval have neither
+    all walls nor all corners that they may reach. Shapes are looked at that they move by a quarter of their width."""
+    for q in range(n):
+        x, y, angle = END[q, 0], END[q, 1], END[q, 2]
+        way = norm(JUMP[q, 0], JUMP[q, 1]) + abs(JUMP[q, 2]) * isle.EXTENT[q]
+        i = int(isle.WHO[q])
+        for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes if way > 0.0 else 0):
+            if half_width(A, s) >= 2.0 * way:
+                continue
+            for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
+                o = int(A.POOL[w])
+                wall = int(A.LINK[o].owner)
+                if A.BODY[wall].inv_mass > 0.0 or barred(A, s, o):
+                    continue
+                wx, wy, turn = pose(A.BODY, wall, end)
+                after = gap_at(A, s, x + JUMP[q, 0], y + JUMP[q, 1], angle + JUMP[q, 2], o, wx, wy, turn)[0]
+                if after < -depth_limit(A, s, o) and after < gap_at(A, s, x, y, angle, o, wx, wy, turn)[0]:
+                    return True
+    return False
 
 
 @nonallocating

@@ -8,22 +8,18 @@ import numpy as np
 
 from ..arrays import FlagArray, FloatArray, IntArray
 from ..compiled import kernel, nonallocating
-from ..contacts.correction import lifting
+from ..contacts.correction import lifting, straight
 from ..contacts.counts import count_solve, note_lock, note_unmet
 from ..contacts.interval import make_contacts, step_island
-from ..geometry.flight import norm, pose
-from ..geometry.gap import gap_at
-from ..geometry.widths import depth_limit, half_width
 from ..model.contacts import Problem
 from ..model.islands import Island
 from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES
 from ..model.scene import Scene
 from ..model.step import AGAIN, CONTACTS, DONE, PUSHES_FULL
-from ..pairs.rules import barred
 from . import candidates
 from .at_rest import put_to_rest
-from .depths import left_to_lift, times_too_long
+from .depths import left_to_lift, lifts_through, times_too_long
 from .local import clear_places, local_island, needs_memory, number_bodies, open_interval
 from .membership import lossy
 from .payment import payment, was_placed
@@ -145,8 +141,13 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
             lost, before = OUT[0].restitution + OUT[0].friction, A.RESTING[root].lost
             budget, payable = payment(A, isle, ROWS, L, VN, n, m, lost, before, placed, False)
             problem, middle = Problem(ROWS, isle.IM, isle.II, isle.POSE, n, m), isle.POSE + 0.5 * h * V
-            lifting(problem, L, middle, VN, isle.ACC, h, isle.EXTENT, budget, left_to_lift(A, t + h), JUMP)
-            if lifts_through(A, isle, middle + 0.5 * h * VN, JUMP, n, t + h):
+            left, last_pose = left_to_lift(A, t + h), middle + 0.5 * h * VN
+            lifting(problem, L, middle, VN, isle.ACC, h, isle.EXTENT, budget, left, JUMP)
+            through = lifts_through(A, isle, last_pose, JUMP, n, t + h)
+            if through and k > n:
+                lifting(straight(problem), L, middle, VN, isle.ACC, h, isle.EXTENT, budget, left, JUMP)
+                through = lifts_through(A, isle, last_pose, JUMP, n, t + h)
+            if through:
                 JUMP[:] = 0.0
         note_lock(A, OUT[0])
     at_rest = OUT[0].at_rest > 0
@@ -168,30 +169,6 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
         if at_rest:
             put_to_rest(A, head)
     return DONE, 0.0
-
-
-@nonallocating
-def lifts_through(A: Scene, isle: Island, END: FloatArray, JUMP: FloatArray, n: int, end: float) -> bool:
-    """Whether penetration corrections JUMP (k, 6) of the n bodies of an island, at poses END (k, 3) at instant `end`,
-    lead a shape into one of a body without mobility, deeper than an interval may: contacts of the interval have neither
-    all walls nor all corners that they may reach. Shapes are looked at that they move by more than half their width."""
-    for q in range(n):
-        x, y, angle = END[q, 0], END[q, 1], END[q, 2]
-        way = norm(JUMP[q, 0], JUMP[q, 1]) + abs(JUMP[q, 2]) * isle.EXTENT[q]
-        i = int(isle.WHO[q])
-        for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes if way > 0.0 else 0):
-            if half_width(A, s) >= way:
-                continue
-            for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
-                o = int(A.POOL[w])
-                wall = int(A.LINK[o].owner)
-                if A.BODY[wall].inv_mass > 0.0 or barred(A, s, o):
-                    continue
-                wx, wy, turn = pose(A.BODY, wall, end)
-                after = gap_at(A, s, x + JUMP[q, 0], y + JUMP[q, 1], angle + JUMP[q, 2], o, wx, wy, turn)[0]
-                if after < -depth_limit(A, s, o) and after < gap_at(A, s, x, y, angle, o, wx, wy, turn)[0]:
-                    return True
-    return False
 
 
 @nonallocating

@@ -11,7 +11,7 @@ from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..contacts.correction import admissible, least_of, turn_by, unturn
 from ..contacts.works import work_of_forces
-from ..islands.depths import left_to_lift
+from ..islands.depths import left_to_lift, lifts_through
 from ..islands.payment import payment
 from ..joints.bounds import stand_as_stepped
 from ..joints.workspace import workspace
@@ -129,6 +129,8 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, budget: float) -> 
     round_off = CORRECTION_ROUND_OFF * work_of_forces(np.abs(isle.ACC), isle.IM, isle.II, n, np.abs(D))
     if cost * part > max(0.5 * budget, round_off * part):  # the other half is for what closing joints costs
         part = 0.5 * budget / cost
+    if lifts_through(A, isle, END, part * D, n, t + h):
+        return 0.0
     STORED = np.zeros(len(groups.COMPONENT))
     ALL = np.ones(n if free else 0, np.uint8)  # in an island that is not free no body is rotated
     for _ in range(4):
