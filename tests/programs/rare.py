@@ -25,12 +25,12 @@ class Rare(Varied):
     def _vary(self) -> None:
         super()._vary()
         C = Random(f"rare {self.drawn[0]}")
-        drawn = {name for name, share in KINDS.items() if C.random() < share}
-        if "thrown" in drawn:
+        self.has |= {name for name, share in KINDS.items() if C.random() < share}
+        if "thrown" in self.has:
             self._throw(C)
-        if "flat" in drawn:
+        if "flat" in self.has:
             self._flatten(C)
-        if "posts" in drawn and self.space.constraints and not self.turns:
+        if "posts" in self.has and self.space.constraints and not self.turns:
             self._span(C)
 
     def _keep(self, body: pymunk.Body, shape: pymunk.Shape, least: float) -> pymunk.Body:

@@ -19,7 +19,7 @@ EDGE_TIE = round_off(1.0 + 1e-09, "ratio of squared lengths",
     "Edges whose squared lengths differ by less count as equally long.")
 FACE_WIDTH = accuracy(1e-06, "of the larger shape",
     "Width of a common face below which it is one point. Smaller: two contacts at one place, singular.")
-SLENDER = heuristic(0.5, "area over (length / 2)^2",
+SLENDER = heuristic(0.7, "area over (length / 2)^2",
     "Polygons below it are thin and remember sides as segments do: planks in a container that turns stay inside.")
 FLUSH = heuristic(0.0005, "of the smaller shape",
     "Distance, and overlap on either side, up to which thin shapes of which nothing is known lie flush: the geometry "
