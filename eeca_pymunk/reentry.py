@@ -31,11 +31,27 @@ class FunctionsCalled:
             BUSY.discard(self._space)
 
 
+class Entered:
+    """Within this block the space is in STEPPING, unless another thread steps it, see `enter`."""
+
+    __slots__ = ("_outermost", "_space")
+
+    def __init__(self, space: pymunk.Space) -> None:
+        self._space = space
+
+    def __enter__(self) -> None:
+        self._outermost = enter(self._space)
+
+    def __exit__(self, *_: object) -> None:
+        if self._outermost:
+            del STEPPING[self._space]
+
+
 def of_another_thread(space: pymunk.Space) -> RuntimeError:
     """The error of a thread that steps a space while another one does."""
     return RuntimeError(
-        f"step or run was called for {space} while another thread steps it: give each thread a space and a stepper of "
-        "its own, or let them wait for each other"
+        f"step, run, get_state or set_state was called for {space} while another thread steps it: give each thread a "
+        "space and a stepper of its own, or let them wait for each other"
     )
 
 
@@ -51,8 +67,8 @@ def refuse_within(space: pymunk.Space) -> None:
 
 
 def enter(space: pymunk.Space) -> bool:
-    """Begin a step of a space, or a run; returns whether this is the outermost one, which at its end has to delete the
-    space from STEPPING: post-step callbacks may step it again.
+    """Begin a step of a space, or what else reads or writes it; returns whether this is the outermost one, which at its
+    end has to delete the space from STEPPING: post-step callbacks may step it again.
 
     Raises:
         RuntimeError: another thread steps it.

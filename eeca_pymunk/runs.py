@@ -18,7 +18,7 @@ from .layout import BODY_ROW, READ, WRITTEN
 from .model.run import BETWEEN
 from .model.step import FORCES
 from .packed_stepper import PackedStepper
-from .reentry import STEPPING, enter, refuse_within
+from .reentry import Entered, refuse_within
 from .report import RunReport
 from .space.world import World
 from .states import get_state, set_state
@@ -99,8 +99,12 @@ class RunningStepper(PackedStepper):
         process or in another one with an equal space.
 
         If some bodies sleep, the results of earlier steps are left out: paths then agree up to round-off.
+
+        Raises:
+            RuntimeError: another thread steps the space.
         """
-        return get_state(self)
+        with Entered(self.space):
+            return get_state(self)
 
     def set_state(self, state: npt.ArrayLike) -> None:
         """Return to a state.
@@ -113,10 +117,12 @@ class RunningStepper(PackedStepper):
                 Sleeping bodies wake.
 
         Raises:
-            RuntimeError: called by a function within a step.
+            RuntimeError: called by a function within a step, or while another thread steps the space.
             ValueError: it is neither, belongs to another space, or is not finite; nothing is changed.
         """
-        set_state(self, np.asarray(state))
+        refuse_within(self.space)
+        with Entered(self.space):
+            set_state(self, np.asarray(state))
 
     def reset_to(self, world: World, state: FloatArray) -> None:
         """Forget results of earlier steps, after the bodies of the space have been set to `state` (N, 9)."""
@@ -177,12 +183,8 @@ class RunningStepper(PackedStepper):
         Raises:
             as `step` does; the space is then at the end of the step before.  RuntimeError: another thread steps it.
         """
-        outermost = enter(self.space)
-        try:
+        with Entered(self.space):
             return self._buffered(steps, dt, kept, every, events, progress)
-        finally:
-            if outermost:
-                del STEPPING[self.space]
 
     def _buffered(
         self, steps: int, dt: float, kept: Sequence[pymunk.Body], every: int, events: bool, progress: bool

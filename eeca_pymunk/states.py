@@ -19,7 +19,6 @@ from .compiled.records import RECORD_TYPES, numbers
 from .impacts.scene import EventLoop
 from .layout import STATE_COLUMNS, WRITTEN
 from .model.joints import EDITED, OF_STEPS, RATCHET
-from .reentry import refuse_within
 from .saved import differences
 from .space.bodies import moving
 from .space.constraints import forget_notches
@@ -54,7 +53,6 @@ def get_state(stepper: RunningStepper) -> IntArray:
 
 def set_state(stepper: RunningStepper, state: AnyArray) -> None:
     """See `RunningStepper.set_state`."""
-    refuse_within(stepper.space)
     if state.ndim == 1 and state.dtype == np.int64:
         _recall(stepper, state)
     else:

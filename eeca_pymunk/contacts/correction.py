@@ -66,13 +66,15 @@ def lifting(
     if deepest >= -left * size or not budget >= 0.0:
         return
     D = np.zeros((len(IM), 3))
-    lift_above_walls(problem, n, GAPS, D, LIFT_RESIDUAL * OVERLAP_LEFT * size, CORRECTION_SWEEPS + CORRECTION_WORK // m)
+    MU = lift_above_walls(
+        problem, n, GAPS, D, LIFT_RESIDUAL * OVERLAP_LEFT * size, CORRECTION_SWEEPS + CORRECTION_WORK // m
+    )
     D = admissible(D, EXTENT, n, size) * D
     END = POSE + 0.5 * h * VN
     NEW = END + D
     GROUP, TURN, ONE = np.arange(n), np.zeros((n, 3)), np.empty(n, np.uint8)
     for i in range(m if len(IM) == n else 0):
-        if L[i, 0] > 0.0 or GAPS[i] < 0.0:
+        if L[i, 0] > 0.0 or MU[i] > 0.0:
             connect(GROUP, ROWS[i].a, ROWS[i].b)
     for tries in range(CORRECTION_TRIES):
         work, square = -work_of_forces(ACC, IM, II, n, D), 0.0

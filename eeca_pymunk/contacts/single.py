@@ -75,18 +75,23 @@ def strike_disk(A: Scene, i: int, o: int, t: float) -> None:
     centres, so that normal and tangential direction are independent:
 
         lam = (1 + e) |u_n| / (1/m_i + 1/m_j),   beta = -u_t / A_tt, at most mu lam,   A_tt = sum 1/m + r^2/I.
+
+    Two disks that overlap act on each other at one point, halfway between their surfaces.
     """
     BODY, PAR = A.BODY, A.PAR
     disk = o < A.COUNT.disks
     j = o if disk else A.LINK[o].owner
     move_to(BODY, i, t)
     x, y = BODY[i].x, BODY[i].y
+    r_i, r_j = BODY[i].extent, 0.0
     if disk:
         move_to(BODY, j, t)
         nx, ny = BODY[j].x - x, BODY[j].y - y
         d = math.sqrt(nx * nx + ny * ny)
         nx, ny = nx / d, ny / d
-        px, py = x + BODY[i].extent * nx, y + BODY[i].extent * ny
+        r_i = 0.5 * (d + r_i - BODY[j].extent)
+        r_j = r_i - d
+        px, py = x + r_i * nx, y + r_i * ny
     else:
         _, nx, ny, px, py = gap_at(A, i, x, y, BODY[i].angle, o, BODY[j].x, BODY[j].y, BODY[j].angle)
     e, mu, sx, sy = BODY[i].elasticity * BODY[j].elasticity, BODY[i].friction * BODY[j].friction, 0.0, 0.0
@@ -97,7 +102,6 @@ def strike_disk(A: Scene, i: int, o: int, t: float) -> None:
     free = BODY[i].inv_mass + BODY[j].inv_mass
     lam = (1.0 + e) * max(-u, 0.0) / free
     beta = 0.0
-    r_i, r_j = BODY[i].extent, -BODY[j].extent if disk else 0.0
     if mu > 0.0:
         surface = nx * sy - ny * sx
         slip = nx * vy - ny * vx + surface + r_j * BODY[j].spin - r_i * BODY[i].spin

@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FlagArray, FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
-from ..contacts.correction import admissible, least_of, turn_by, unturn
+from ..contacts.correction import admissible, connect, least_of, members, turn_groups, unturn_groups
 from ..contacts.works import work_of_forces
 from ..islands.depths import left_to_lift, lifts_through
 from ..islands.payment import payment
@@ -64,7 +64,7 @@ def lift_island(A: Scene, J: Joints, interval: Interval, L: FloatArray, root: in
     isle, groups, ROWS, motion, _, m, n, _, _, _ = interval
     loss = lost(interval, L)
     budget, payable = payment(A, isle, ROWS, L, motion.V, n, m, loss, A.RESTING[root].lost, False, True)
-    spent = correct_overlaps(A, J, interval, budget)
+    spent = correct_overlaps(A, J, interval, L, budget)
     for s in groups.JOINTED:
         stand_as_stepped(workspace(J, s))
     paid, one = min(spent, payable), J.STEPPED[groups.JOINTED[0]]
@@ -73,26 +73,28 @@ def lift_island(A: Scene, J: Joints, interval: Interval, L: FloatArray, root: in
 
 
 @nonallocating
-def keep_centre(D: FloatArray, IM: FloatArray, n: int) -> None:
-    """Add a common displacement to D (k, 3) of n bodies, with which their centre of mass stays: columns that were
-    fitted to motions (`secant`) do not conserve momentum exactly."""
+def keep_centre(D: FloatArray, IM: FloatArray, ONE: FlagArray) -> None:
+    """Add a common displacement to D (k, 3) of the bodies with flags ONE (n,), with which their centre of mass stays:
+    columns that were fitted to motions (`secant`) do not conserve momentum exactly."""
     mass = x = y = 0.0
-    for i in range(n):
-        mass, x, y = mass + 1.0 / IM[i], x + D[i, 0] / IM[i], y + D[i, 1] / IM[i]
-    for i in range(n):
-        D[i, 0] -= x / mass
-        D[i, 1] -= y / mass
+    for i in range(len(ONE)):
+        if ONE[i] != 0:
+            mass, x, y = mass + 1.0 / IM[i], x + D[i, 0] / IM[i], y + D[i, 1] / IM[i]
+    for i in range(len(ONE)):
+        if ONE[i] != 0:
+            D[i, 0] -= x / mass
+            D[i, 1] -= y / mass
 
 
 @kernel
-def correct_overlaps(A: Scene, J: Joints, interval: Interval, budget: float) -> float:
+def correct_overlaps(A: Scene, J: Joints, interval: Interval, L: FloatArray, budget: float) -> float:
     """Move the poses at the end of an island's motion out of each other, at a cost of at most `budget`, not at all if
     that is below 0; returns the cost.
 
     It is -m a.D for displacements D, rotations included, and the energy that springs gain. D is along the joints, and
     limits that a solution passes, which hold in the next; errors of second order are then closed. A free island keeps
-    its centre of mass and its angular momentum: velocities at the end rotate by what the displacements have changed of
-    it.
+    its centre of mass, and components in it that impulses L (m, 2) press on each other keep their angular momentum:
+    their velocities at the end rotate by what the displacements have changed of it.
     """
     isle, groups, ROWS, motion, C, m, n, t, h, _ = interval
     V, WAY, END = motion.V, motion.WAY, motion.END
@@ -109,11 +111,11 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, budget: float) -> 
         # prescribe speeds at its end.
         if s >= 0 and J.COMPONENT[s].bounded_joints > 0:
             fill_at_end(A, J, interval, C, g, ROWS, m)
-    D = np.zeros_like(V)
+    D, MU = np.zeros_like(V), np.zeros(m)
     for _ in range(IMPACT_LIMITS):
         KEEP, D[:] = ROWS[:m].copy(), 0.0
         set_effective_masses(groups, C, KEEP, m)
-        raise_gaps(JointedProblem(KEEP, C, room_for_rows(0, 0), m), n, GAPS, D, JOINTED_LIFT_ERROR * -deepest)
+        MU = raise_gaps(JointedProblem(KEEP, C, room_for_rows(0, 0), m), n, GAPS, D, JOINTED_LIFT_ERROR * -deepest)
         again = False
         for g in range(len(groups.COMPONENT)):
             s = groups.COMPONENT[g]
@@ -122,8 +124,15 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, budget: float) -> 
         if not again:
             break
     free = is_free(isle, groups, n, J)
-    if free:
-        keep_centre(D, isle.IM, n)
+    GROUP, NONE = groups.GROUP[: n if free else 0].copy(), np.zeros(n)
+    ONE, TURN = np.empty(n, np.uint8), np.zeros((n, 3))
+    if free:  # in an island that is not free no body is rotated
+        for i in range(m):
+            if L[i, 0] > 0.0 or MU[i] > 0.0:
+                connect(GROUP, ROWS[i].a, ROWS[i].b)
+        for g in range(n):
+            if members(GROUP, g, ONE):
+                keep_centre(D, isle.IM, ONE)
     cost, part = -work_of_forces(isle.ACC, isle.IM, isle.II, n, D), admissible(D, isle.EXTENT, n, size)
     # Contacts that contradict one another give displacements without bound, of which only a part is taken.
     round_off = CORRECTION_ROUND_OFF * work_of_forces(np.abs(isle.ACC), isle.IM, isle.II, n, np.abs(D))
@@ -132,7 +141,6 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, budget: float) -> 
     if lifts_through(A, isle, END, part * D, n, t + h):
         return 0.0
     STORED = np.zeros(len(groups.COMPONENT))
-    ALL = np.ones(n if free else 0, np.uint8)  # in an island that is not free no body is rotated
     for _ in range(4):
         spent = 0.0
         NEW = END + part * D
@@ -146,10 +154,10 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, budget: float) -> 
                 STORED[g] = close_at_poses(A, J, s, END, NEW, V, isle.IM, isle.II, t + h, h)
                 spent += STORED[g]
         spent -= work_of_forces(isle.ACC, isle.IM, isle.II, n, NEW - END)
-        turn, x, y, spin, inertia = unturn(NEW, NEW - END, V, isle.IM, isle.II, ALL, 0.0)
-        spent += turn * spin + 0.5 * inertia * turn * turn
+        gained, square = unturn_groups(NEW, NEW - END, V, isle.IM, isle.II, GROUP, ONE, NONE, TURN)
+        spent += gained + square
         if spent <= budget + round_off * part and math.isfinite(spent):
-            turn_by(NEW, ALL, turn, x, y, V, 0)
+            turn_groups(NEW, GROUP, ONE, TURN, V, 0)
             for g in range(len(groups.COMPONENT)):
                 s = groups.COMPONENT[g]
                 if s >= 0:

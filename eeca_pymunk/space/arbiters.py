@@ -108,9 +108,11 @@ def _with_impulses(arbiters: Sequence[Any], found: dict[frozenset[int], Touch]) 
     kept, missing = [], dict(found)
     try:
         for arbiter in arbiters:
-            if arbiter.count == 0 or private_arbiters.asleep(arbiter):
+            if arbiter.count == 0:
                 continue
             touch = missing.pop(private_arbiters.arbiter_key(arbiter), None)
+            if touch is None and private_arbiters.asleep(arbiter):
+                continue
             impulse = None
             if touch is not None:  # the shapes of the arbiter may be in the other order
                 sign = 1.0 if private_arbiters.second_is(arbiter, touch.b) else -1.0

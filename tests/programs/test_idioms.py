@@ -352,13 +352,17 @@ def test_one_space_is_stepped_by_one_thread_at_a_time(handled: bool) -> None:
 def test_a_thread_that_comes_within_a_function_of_another_ones_step_is_told_so() -> None:
     space, _ = ground()
     body = box_on(space, 0.0, 1.0)
-    stepper, told = ep.EECA(space), []
+    stepper = ep.EECA(space)
+    kept, told = stepper.get_state(), []
 
     def come() -> None:
-        for go_on in (lambda: stepper.step(DT), lambda: stepper.run(2, DT)):
+        calls: tuple[Callable[[], object], ...] = (
+            lambda: stepper.step(DT), lambda: stepper.run(2, DT), stepper.get_state, lambda: stepper.set_state(kept)
+        )  # fmt: skip
+        for call in calls:
             with pytest.raises(RuntimeError, match="another thread"):
-                go_on()
-            told.append(go_on)
+                call()
+            told.append(call)
 
     def push(body: pymunk.Body, gravity: tuple[float, float], damping: float, dt: float) -> None:
         if not told:
@@ -369,7 +373,7 @@ def test_a_thread_that_comes_within_a_function_of_another_ones_step_is_told_so()
 
     body.velocity_func = push
     stepper.step(DT)
-    assert len(told) == 2
+    assert len(told) == 4
     body.velocity_func = pymunk.Body.update_velocity
     run(stepper, 2)
 

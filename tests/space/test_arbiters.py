@@ -224,3 +224,22 @@ def test_impulses_of_a_pair_count_in_both_orders() -> None:
     assert (touch.a, touch.b, touch.points) == (a, b, [(1.0, 0.0)])
     np.testing.assert_allclose(touch.impulse, (11.0 * 0.6 - 1.0 * 0.8, 11.0 * 0.8 + 1.0 * 0.6), rtol=1e-15)
     np.testing.assert_allclose(touch.normal, (0.6, 0.8), rtol=1e-15)
+
+
+@pytest.mark.parametrize("handled", [False, True])
+def test_a_pair_that_falls_asleep_has_one_arbiter(handled: bool) -> None:
+    """With the impulse of the step in which it does, its weight."""
+    space = pymunk.Space()
+    space.gravity, space.sleep_time_threshold = (0.0, -10.0), 0.1
+    body = pymunk.Body(1.0, 1.0)
+    body.position = 0.0, 0.1
+    floor = pymunk.Segment(space.static_body, (-5.0, 0.0), (5.0, 0.0), 0.0)
+    space.add(body, pymunk.Poly.create_box(body, (0.2, 0.2)), floor)
+    if handled:
+        space.on_collision(post_solve=lambda *_: None)
+    stepper = ep.EECA(space)
+    while not body.is_sleeping:
+        stepper.step(1 / 60)
+    impulses: list[float] = []
+    body.each_arbiter(lambda arbiter: impulses.append(arbiter.total_impulse.y))
+    assert impulses == pytest.approx([10.0 / 60.0])
