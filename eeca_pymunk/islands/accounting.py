@@ -155,9 +155,10 @@ def apply_correction(A: Scene, root: int, end: float) -> None:
                 move_to_end(A, i, end)
             i = A.MEMBER[i].following
         return
-    report_lift(A, root)
+    turned = False
     while i >= 0:
         move_to(BODY, i, end)
+        turned = turned or RESTING[i].lift_vx != 0.0 or RESTING[i].lift_vy != 0.0
         linear = PULL[i, 0] * RESTING[i].lift_x + PULL[i, 1] * RESTING[i].lift_y
         linear -= RESTING[i].lift_vx * (BODY[i].vx + 0.5 * RESTING[i].lift_vx)
         linear -= RESTING[i].lift_vy * (BODY[i].vy + 0.5 * RESTING[i].lift_vy)
@@ -172,6 +173,8 @@ def apply_correction(A: Scene, root: int, end: float) -> None:
         BODY[i].vy += RESTING[i].lift_vy
         BODY[i].spin += RESTING[i].lift_spin
         i = A.MEMBER[i].following
+    if turned:
+        report_lift(A, root)
     paid = min(spent, RESTING[root].payable)
     PAR.external += spent - paid
     PAR.restitution -= paid

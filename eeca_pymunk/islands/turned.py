@@ -82,18 +82,15 @@ def keep_angular_momentum(A: Scene, root: int, first: int, end: int, t: float) -
 @kernel
 def report_lift(A: Scene, root: int) -> None:
     """`report_turn`, for the rotation that is part of the correction of a free island."""
-    MINE, turned = members_of(A, root), False
+    MINE, GATHERED = members_of(A, root), take_places(A)
+    set_places(A, MINE)
     DP = np.empty((len(MINE), 2))
     for q in range(len(MINE)):
         lift = A.RESTING[MINE[q]]
         DP[q, 0] = lift.lift_vx / A.BODY[MINE[q]].inv_mass
         DP[q, 1] = lift.lift_vy / A.BODY[MINE[q]].inv_mass
-        turned = turned or DP[q, 0] != 0.0 or DP[q, 1] != 0.0
-    if turned:
-        GATHERED = take_places(A)
-        set_places(A, MINE)
-        report_turn(A, MINE, DP)
-        give_places(A, GATHERED)
+    report_turn(A, MINE, DP)
+    give_places(A, GATHERED)
 
 
 @kernel
