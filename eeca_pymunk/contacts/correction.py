@@ -96,7 +96,7 @@ def lifting(
 
 
 @kernel
-def straight(problem: Problem) -> Problem:
+def without_turning(problem: Problem) -> Problem:
     """The problem of bodies that do not turn."""
     ROWS, IM, II, POSE, n, m = problem
     KEEP = ROWS[:m].copy()
@@ -168,7 +168,7 @@ def unturn(
 
 
 @nonallocating
-def members(GROUP: IntArray, g: int, ONE: FlagArray) -> bool:
+def mark_group(GROUP: IntArray, g: int, ONE: FlagArray) -> bool:
     """Set the flags ONE (n,) of the bodies of group g; False if that is no group, or a single body."""
     size = 0
     for q in range(len(GROUP)):
@@ -187,7 +187,7 @@ def unturn_groups(
     first, second = 0.0, 0.0
     for g in range(len(GROUP)):
         TURN[g, 0] = 0.0
-        if members(GROUP, g, ONE):
+        if mark_group(GROUP, g, ONE):
             turn, x, y, spin, inertia = unturn(NEW, D, V, IM, II, ONE, EXCESS[g])
             TURN[g, 0], TURN[g, 1], TURN[g, 2] = turn, x, y
             first, second = first + turn * spin, second + 0.5 * inertia * turn * turn
@@ -199,7 +199,7 @@ def turn_groups(NEW: FloatArray, GROUP: IntArray, ONE: FlagArray, TURN: FloatArr
     """`turn_by` for each group of bodies, with TURN of `unturn_groups`."""
     for g in range(len(GROUP)):
         if TURN[g, 0] != 0.0:
-            members(GROUP, g, ONE)
+            mark_group(GROUP, g, ONE)
             turn_by(NEW, ONE, TURN[g, 0], TURN[g, 1], TURN[g, 2], V, at)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arrays import FlagArray, FloatArray, IntArray
 from ..compiled import kernel, nonallocating
-from ..contacts.correction import lifting, straight
+from ..contacts.correction import lifting, without_turning
 from ..contacts.counts import count_solve, note_lock, note_unmet
 from ..contacts.interval import make_contacts, step_island
 from ..model.contacts import Problem
@@ -145,7 +145,7 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
             lifting(problem, L, middle, VN, isle.ACC, h, isle.EXTENT, budget, left, JUMP)
             through = lifts_through(A, isle, last_pose, JUMP, n, t + h)
             if through and k > n:
-                lifting(straight(problem), L, middle, VN, isle.ACC, h, isle.EXTENT, budget, left, JUMP)
+                lifting(without_turning(problem), L, middle, VN, isle.ACC, h, isle.EXTENT, budget, left, JUMP)
                 through = lifts_through(A, isle, last_pose, JUMP, n, t + h)
             if through:
                 JUMP[:] = 0.0

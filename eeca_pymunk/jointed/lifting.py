@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import FlagArray, FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
-from ..contacts.correction import admissible, connect, least_of, members, turn_groups, unturn_groups
+from ..contacts.correction import admissible, connect, least_of, mark_group, turn_groups, unturn_groups
 from ..contacts.works import work_of_forces
 from ..islands.depths import left_to_lift, lifts_through
 from ..islands.payment import payment
@@ -131,7 +131,7 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, L: FloatArray, bud
             if L[i, 0] > 0.0 or MU[i] > 0.0:
                 connect(GROUP, ROWS[i].a, ROWS[i].b)
         for g in range(n):
-            if members(GROUP, g, ONE):
+            if mark_group(GROUP, g, ONE):
                 keep_centre(D, isle.IM, ONE)
     cost, part = -work_of_forces(isle.ACC, isle.IM, isle.II, n, D), admissible(D, isle.EXTENT, n, size)
     # Contacts that contradict one another give displacements without bound, of which only a part is taken.
