@@ -136,7 +136,7 @@ class Pile:
         if m > 0:
             problem, middle = Problem(c.ROWS, self.im, self.ii, self.pose, n, m), self.pose + 0.5 * h * V
             budget = -1.0 if conserves(c.ROWS, m) else float(self.losses.sum())
-            lifting(problem, middle, c.VN, self.acc, h, self.extent, budget, OVERLAP_LEFT, c.JUMP)
+            lifting(problem, c.L, middle, c.VN, self.acc, h, self.extent, budget, OVERLAP_LEFT, c.JUMP)
 
     def carried(self, vn: np.ndarray) -> float:
         """External work of the contacts, with velocities `vn` after the step."""

@@ -21,9 +21,8 @@ def test_it_costs_what_it_may_where_a_common_rotation_keeps_the_angular_momentum
     ROWS[0].a, ROWS[0].b, ROWS[0].nx, ROWS[0].gap, ROWS[0].k_n, ROWS[0].a_nn = 0, 1, 1.0, -0.2, 0.5, 2.0
     POSE, V = np.array([[-0.4, 0.0, 0.0], [0.4, 0.0, 0.0]]), np.array([[0.0, -1.0, -10.0], [0.0, 1.0, -10.0]])
     JUMP = np.zeros((2, 6))
-    lifting(
-        Problem(ROWS, IM, II, POSE, 2, 1), POSE, V, np.zeros((2, 3)), 0.0, np.full(2, 0.5), budget, OVERLAP_LEFT, JUMP
-    )
+    problem, L, extent = Problem(ROWS, IM, II, POSE, 2, 1), np.zeros((1, 2)), np.full(2, 0.5)
+    lifting(problem, L, POSE, V, np.zeros((2, 3)), 0.0, extent, budget, OVERLAP_LEFT, JUMP)
     before, after = kinetic_energy(V, IM, II, 2), kinetic_energy(V + JUMP[:, 3:], IM, II, 2)
     assert 0.97 * budget <= after - before <= budget
     NEW, W = POSE + JUMP[:, :3], V + JUMP[:, 3:]
