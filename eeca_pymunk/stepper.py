@@ -41,7 +41,8 @@ class Stepper(ABC):
 
     A step completes, or raises and leaves the space unchanged. There is one exception: if a post-step callback raises,
     the step has been taken, and bodies and `time` are at its end, as under pymunk. Between steps shapes and bodies may
-    be added, removed and edited. Functions that are called within a step cannot step the same space: RuntimeError.
+    be added, removed and edited. Functions that are called within a step cannot step the same space, nor can another
+    thread meanwhile: RuntimeError.
 
     Attributes:
         space: the pymunk space.  time: sum of the dt of all steps so far.
