@@ -6,6 +6,7 @@ Work is counted in *looks*, about the time of one look at the gap of two shapes.
 from __future__ import annotations
 
 from ..compiled import nonallocating
+from ..compiled.records import Rows
 from ..model.contacts import Solved
 from ..model.parameters.events import BODY_LOOKS, DIRECT_LOOKS, EVENT_LOOKS, OPERATION_LOOKS, PAIR_LOOKS, SWEEP_LOOKS
 from ..model.parameters.impulses import DENSE_CONTACTS
@@ -25,9 +26,10 @@ def note_unmet(A: Scene, kind: int, a: int, b: int, value: float, limit: float) 
 
 
 @nonallocating
-def looks_of(contacts: int, out: Solved) -> float:
+def looks_of(contacts: int, OUT: Rows[Solved]) -> float:
     """Work of a solve of so many contacts: of sweeps, direct solves, with dense matrices for few contacts, and
-    homotopies."""
+    homotopies. OUT (1,): its report; an array, since a row does not keep its array from being freed before a call."""
+    out = OUT[0]
     each = SWEEP_LOOKS * out.sweeps + DIRECT_LOOKS * min(contacts, DENSE_CONTACTS) * out.direct
     return float(contacts * each + OPERATION_LOOKS * out.operations)
 
@@ -40,14 +42,14 @@ def spend(A: Scene, bodies: int, pairs: int, solve: float) -> None:
 
 
 @nonallocating
-def note_lock(A: Scene, out: Solved) -> None:
+def note_lock(A: Scene, OUT: Rows[Solved]) -> None:
     """Report the scale of an energy lock if it is the farthest from 1 in this step."""
-    if abs(out.lock - 1.0) > abs(A.PAR.lock - 1.0):
-        A.PAR.lock = out.lock
+    if abs(OUT[0].lock - 1.0) > abs(A.PAR.lock - 1.0):
+        A.PAR.lock = OUT[0].lock
 
 
 @nonallocating
-def count_solve(A: Scene, n: int, p: int, m: int, out: Solved) -> None:
+def count_solve(A: Scene, n: int, p: int, m: int, OUT: Rows[Solved]) -> None:
     """Count the solve of an island of n bodies with m contacts of p pairs, and its work."""
     A.COUNT.solved += n
-    spend(A, n, 2 * p, looks_of(m, out))
+    spend(A, n, 2 * p, looks_of(m, OUT))

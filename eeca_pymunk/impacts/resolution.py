@@ -42,7 +42,7 @@ def finish_block(
     if status != CONVERGED:
         a, b = shapes_of(A, ROWS[0])
         note_unmet(A, IMPACT, a, b, OUT[0].residual, OUT[0].tolerance)
-    note_lock(A, OUT[0])
+    note_lock(A, OUT)
     A.PAR.restitution += OUT[0].restitution
     A.PAR.frictional += OUT[0].friction
     A.PAR.external += external_work(ROWS, L, V, V, block.IM, block.II, len(ROWS))
@@ -119,7 +119,7 @@ def strike(A: Scene, a: int, b: int, t: float, lasts: bool) -> int:
         status = solve_freely(problem, L, block.V, FREE, owed, status, False, OUT)
     lost = OUT[0].restitution + OUT[0].friction - owed
     finish_block(A, block, n, m, L, OUT, status, t)
-    spend(A, n, m, looks_of(rows, OUT[0]))
+    spend(A, n, m, looks_of(rows, OUT))
     return unite_block(A, a, b, t, n, lasts, lost, A.COUNT.work / most_work(A))
 
 

@@ -129,13 +129,13 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
         if stuck < h:
             # The interval ends where slip ends, as the law of friction changes there.
             h = min(max(stuck, shortest), h)
-            count_solve(A, n, p, m, OUT[0])
+            count_solve(A, n, p, m, OUT)
             m = step_island(A, isle, contacts, n, h, sweeps, least, owed, 0.0)
         far = 0.0
         if not last and OUT[0].at_rest == 0:
             far = times_too_long(A, isle, contacts, m, h)
         if far > INTERVAL_RETRY:
-            count_solve(A, n, p, m, OUT[0])
+            count_solve(A, n, p, m, OUT)
             return AGAIN, h / far
         if m > 0 and OUT[0].at_rest == 0:
             lost, before = OUT[0].restitution + OUT[0].friction, A.RESTING[root].lost
@@ -149,13 +149,13 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
                 through = lifts_through(A, isle, last_pose, JUMP, n, t + h)
             if through:
                 JUMP[:] = 0.0
-        note_lock(A, OUT[0])
+        note_lock(A, OUT)
     at_rest = OUT[0].at_rest > 0
     if OUT[0].residual > OUT[0].tolerance:
         note_unmet(A, CONTACTS, isle.PAIRS[0, 0], isle.PAIRS[0, 1], OUT[0].residual, OUT[0].tolerance)
     COUNT.solves += 1
     COUNT.direct += OUT[0].direct
-    count_solve(A, n, p, m, OUT[0])
+    count_solve(A, n, p, m, OUT)
     TOUCHED = np.zeros(k, np.uint8)
     for z in range(m):
         TOUCHED[ROWS[z].a] = TOUCHED[ROWS[z].b] = 1

@@ -18,7 +18,7 @@ from ..pairs.rules import law
 from ..rows.build import place_row
 from ..rows.equilibrium import equilibrium, fastest_point
 from ..rows.sweeps import velocities
-from .local import clear_places, contact_range
+from .local import contact_range, give_places, take_places
 from .membership import members_of
 from .rest import candidate_speed, spins_freely
 
@@ -66,7 +66,7 @@ def unsupported(A: Scene, root: int, t: float, factors: int) -> float:
     impulses of its contacts. 0 if others can support these loads: then the impulses, which are those of a whole step,
     are set to the mean forces found, by this number of factorisations at most."""
     BODY, planned = A.BODY, A.PAR.planned / t
-    MINE = members_of(A, root)
+    MINE, GATHERED = members_of(A, root), take_places(A)
     n = len(MINE)
     # One local body, the last, stands for all fixed ones that support the island.
     POSE, IMS, IIS, FELT = np.zeros((n + 1, 3)), np.zeros(n + 1), np.zeros(n + 1), np.zeros(n + 1)
@@ -97,7 +97,7 @@ def unsupported(A: Scene, root: int, t: float, factors: int) -> float:
         place_row(row, pushed.px, pushed.py, POSE, IMS, IIS)
         L[m, 0], L[m, 1], OF[m] = pushed.normal / planned, pushed.tangential / planned, c
         m += 1
-    clear_places(A, MINE)
+    give_places(A, GATHERED)
     problem, slow = Problem(ROWS, IMS, IIS, POSE, n, m), REST_SPEED * A.PAR.pulled * t
     LEFT = np.zeros((n + 1, 3))
     velocities(problem, L[:m], START, LEFT)

@@ -156,7 +156,7 @@ def solve_again(A: Scene, root: int, t: float, first: int, end: int) -> None:
     VN, OUT, owed = contacts.VN, contacts.OUT, max(-A.RESTING[root].lost, 0.0)
     m = step_island(A, isle, contacts, n, s, sweeps_of(n, start), 0.0, owed, 0.0)
     A.COUNT.direct += OUT[0].direct
-    count_solve(A, n, len(found), m, OUT[0])
+    count_solve(A, n, len(found), m, OUT)
     too_long = m < 0 or m > end - first or times_too_long(A, isle, contacts, m, s) > INTERVAL_RETRY
     if too_long or leave_paths(A, MINE, VN, s):
         scale_impulses(A, root, t)

@@ -41,7 +41,7 @@ def clear_errors(W: Workspace, h: float, length: float) -> None:
     works cancel only up to that."""
     part, load = W.J.PART_LEDGER, load_of(W, h, length)
     least = JOINT_GAIN * (kinetic_of(W, SAVED) + kinetic_of(W, NOW) + load)
-    part.closed += restore_momenta(W, h, length, load)
+    part.closed += restore_momenta(W, h)
     apart = unexplained(W) - (part.supports + part.closed - part.limited)
     if not abs(apart) <= least:
         close_ledger(W)

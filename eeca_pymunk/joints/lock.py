@@ -34,11 +34,11 @@ def turns_freely(W: Workspace) -> bool:
 
 
 @nonallocating
-def restore_momenta(W: Workspace, h: float, length: float, load: float) -> float:
+def restore_momenta(W: Workspace, h: float) -> float:
     """Change the velocities v0 at the end of the step h by those of a rigid body, so that the momentum of a component
     without partners, and its angular momentum if it `turns_freely`, are those of the start and of the accelerations; if
     h = 0, those of `v_kept` at the same poses. Returns the change of the kinetic energy. Nothing changes where momenta
-    are right to JOINT_GAIN of the sums of their magnitudes and of `load` h, by forces over the size `length`.
+    are right to JOINT_GAIN of the sums of their magnitudes.
 
     L1 = L0 + sum m x_m x a h + I alpha h with the means x_m of the places over the time h, as the arms of joints are
     those of the middle.
@@ -69,7 +69,6 @@ def restore_momenta(W: Workspace, h: float, length: float, load: float) -> float
             arms += (abs(now[2]) + abs(before[2])) / body.mobility[2]
     was, inertia = spin_about(W, x, y, vx, vy)
     spin = -turning / inertia if inertia > 0.0 and turns_freely(W) else 0.0
-    arms, size = arms + h * load, size + (h * load / length if load > 0.0 else 0.0)
     if not (abs(px) + abs(py) > JOINT_GAIN * size or abs(spin) * inertia > JOINT_GAIN * arms):
         return 0.0
     ux, uy = (-px / mass, -py / mass) if mass > 0.0 else (0.0, 0.0)
