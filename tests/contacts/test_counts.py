@@ -36,8 +36,8 @@ def test_what_a_solve_has_taken_is_work_of_the_step(field: str, amount: float, l
     work = []
     for taken in (0, amount):
         scene: Any = SimpleNamespace(COUNT=rows(Count, 1)[0])
-        out = rows(Solved, 1)[0]
-        setattr(out, field, taken)
+        out = rows(Solved, 1)
+        setattr(out[0], field, taken)
         for _ in range(times):
             count_solve(scene, 1, 1, 3, out)
         work.append(float(scene.COUNT.work))
