@@ -43,7 +43,7 @@ CHANGES = 1e-12  # by which the change of a ledger may differ from that of the s
 OVERSPENT = 1.5  # work of a step whose budget is spent, over the budget: the last event may go beyond
 STANDS = 5
 ADDS_UP = 2e-2  # of all its impulses
-PUT_TO_REST = 0.5  # of g dt: how fast a body may be that a step puts to rest
+PUT_TO_REST = 0.5  # of g dt: how fast a body may be that a step puts to rest, until it is hit
 ROUND_OFF = 2.3e-16
 SPRING_ROUND_OFF = 16.0 * ROUND_OFF
 OUT, BEYOND = 0.5, 1e-3  # of a body's least size: how far it may be outside; how far the wall does not keep it inside
@@ -326,8 +326,8 @@ class Composition:
             sizes = float(np.hypot(*impulse.T) @ abs(acted))
             size = sizes + body.mass * (self.dt * abs(self.space.gravity[1]) + ROUND_OFF / CHANGES * velocity.length)
             off = math.hypot(*(acted @ impulse - change))
-            stopped = velocity.length < PUT_TO_REST * self.dt * abs(self.space.gravity[1]) and not body.velocity.length
-            off -= body.mass * velocity.length if stopped else 0.0
+            slow = velocity.length < PUT_TO_REST * self.dt * abs(self.space.gravity[1])
+            off -= body.mass * velocity.length if slow else 0.0
             if sizes > 0.0 and off > ADDS_UP * size:
                 raise Broken(f"step {k}: impulses change a momentum by {off / size:.1e} of them more than it changes")
 
