@@ -124,7 +124,7 @@ MUTATIONS = (
              "        if VIA[q] >= 0:", "        if VIA[q] >= 10**9:",
              "programs/test_momenta.py", "report_the_rotation"),
     Mutation("correction: all bodies of an island turn together", "contacts/correction.py",
-             "        if GROUP[q] == most:", "        if True:", "programs/test_momenta.py", "exchange_no"),
+             "        if GROUP[q] == most:", "        if True:", "contacts/test_correction.py", "press_on_nobody"),
     Mutation("correction: whom others push aside is in no group", "contacts/correction.py",
              "if L[i, 0] > 0.0 or MU[i] > 0.0:", "if L[i, 0] > 0.0:", "islands/test_free_crowds.py", "False"),
     Mutation("jointed: whom others push aside is in no group", "jointed/lifting.py",

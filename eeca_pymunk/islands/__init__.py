@@ -13,7 +13,8 @@ Open `building.py` first: islands at the start of a step (`membership.py`: which
 `hits.py`: how many hits a step allows).
 `intervals.py` solves one (`candidates.py`: pairs and length of the interval; `depths.py`: how deep contacts may close;
 `local.py`: its bodies in local numbering); `payment.py` says what pays for penetration corrections; `accounting.py`
-ends it, `shortened.py` replaces the forces of a shortened interval that have given energy.
+ends it, `shortened.py` replaces the forces of a shortened interval that have given energy, `turned.py` keeps the
+angular momentum of bodies in flight.
 
 States of rest, `Member.rest` of the root of an island, and the transitions between them:
 

@@ -42,22 +42,22 @@ def keep_angular_momentum(A: Scene, root: int, first: int, end: int, t: float) -
     """Remove the angular momentum that contacts [first, end) of an island have given it, as their interval has ended at
     instant t, where its bodies are: by a common rotation of each group of bodies that press on each other, if the
     island is free. Free spins stay as they are. The change of energy counts as restitution."""
-    EXCESS, most = np.zeros(end - first), 0.0
+    most = 0.0
     for c in range(first, end):
         for shape in (A.PUSHED_BY[c].a, A.PUSHED_BY[c].b):
             j = A.LINK[shape].owner
             if A.BODY[j].inv_mass == 0.0 or A.STATE[j].island != root:
                 return
-        EXCESS[c - first] = angular_gain(A, c, t)
-        most = max(most, abs(EXCESS[c - first]))
+        most = max(most, abs(angular_gain(A, c, t)))
     if most == 0.0:
         return
     MINE, GATHERED = members_of(A, root), take_places(A)
     set_places(A, MINE)
     n = len(MINE)
-    GROUP, OF, TURN, ONE = pressing_groups(A, MINE, first, end), np.zeros(n), np.zeros((n, 3)), np.empty(n, np.uint8)
+    GROUP, EXCESS = pressing_groups(A, MINE, first, end), np.zeros(n)
+    TURN, ONE = np.zeros((n, 3)), np.empty(n, np.uint8)
     for c in range(first, end):
-        OF[GROUP[A.PLACE[A.LINK[A.PUSHED_BY[c].a].owner]]] += EXCESS[c - first]
+        EXCESS[GROUP[A.PLACE[A.LINK[A.PUSHED_BY[c].a].owner]]] += angular_gain(A, c, t)
     POSE, V, IM, II = np.empty((n, 3)), np.empty((n, 3)), np.empty(n), np.empty(n)
     for q in range(n):
         body = A.BODY[MINE[q]]
@@ -65,7 +65,7 @@ def keep_angular_momentum(A: Scene, root: int, first: int, end: int, t: float) -
         IM[q], II[q] = body.inv_mass, body.inv_inertia
         if II[q] > 0.0 and spins_freely(A, MINE[q]):
             II[q] = np.inf
-    gained, square = unturn_groups(POSE, np.zeros((n, 2)), V, IM, II, GROUP, ONE, OF, TURN)
+    gained, square = unturn_groups(POSE, np.zeros((n, 2)), V, IM, II, GROUP, ONE, EXCESS, TURN)
     turn_groups(POSE, GROUP, ONE, TURN, V, 0)
     DP = np.empty((n, 2))
     for q in range(n):
@@ -101,11 +101,10 @@ def report_turn(A: Scene, MINE: IntArray, DP: FloatArray) -> None:
     ORDER, PARENT, VIA = np.zeros(n, np.int64), np.full(n, -1), np.full(n, -1)
     found = 0
     for start in range(n):
-        if VIA[start] >= 0 or PARENT[start] == start:
+        if PARENT[start] >= 0:
             continue
         ORDER[found], PARENT[start] = start, start
-        found += 1
-        k = found - 1
+        k, found = found, found + 1
         while k < found:
             found = branches(A, ORDER, PARENT, VIA, k, found)
             k += 1

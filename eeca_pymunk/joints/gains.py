@@ -36,9 +36,9 @@ def gain_of_rows(W: Workspace, own: bool) -> float:
 
 @nonallocating
 def clear_errors(W: Workspace, h: float, length: float) -> None:
-    """Restore the momenta of a step, and close its ledger, where they are off by more than round-off of the energy and
-    of the work of forces over the size `length`: impulses that are large change both by their round-off, and their
-    works cancel only up to that."""
+    """Restore the momenta of a step, and close its ledger where it is open by more than round-off of the energy and of
+    the work of forces over the size `length`: impulses that are large change both by their round-off, and their works
+    cancel only up to that."""
     part, load = W.J.PART_LEDGER, load_of(W, h, length)
     least = JOINT_GAIN * (kinetic_of(W, SAVED) + kinetic_of(W, NOW) + load)
     part.closed += restore_momenta(W, h)

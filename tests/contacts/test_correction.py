@@ -31,3 +31,19 @@ def test_it_costs_what_it_may_where_a_common_rotation_keeps_the_angular_momentum
         for P, Q in ((POSE, V), (NEW, W))
     ]
     assert turning[1] == pytest.approx(turning[0], rel=1e-14)
+
+
+def test_bodies_that_press_on_nobody_do_not_turn_with_others() -> None:
+    """The two of the test above, and two beside them that are apart and touch nobody: these keep their velocities."""
+    ROWS, IM, II = rows(Row, 2), np.ones(4), np.full(4, 1.0 / 0.3)
+    for z, gap in enumerate((-0.2, 1.0)):
+        ROWS[z].a, ROWS[z].b, ROWS[z].nx, ROWS[z].gap, ROWS[z].k_n, ROWS[z].a_nn = 2 * z, 2 * z + 1, 1.0, gap, 0.5, 2.0
+    POSE = np.array([[-0.4, 0.0, 0.0], [0.4, 0.0, 0.0], [5.0, 0.0, 0.0], [7.0, 0.0, 0.0]])
+    V = np.array([[0.0, -1.0, -10.0], [0.0, 1.0, -10.0], [0.0, 3.0, 0.0], [1.0, 0.0, 2.0]])
+    JUMP, extent = np.zeros((4, 6)), np.full(4, 0.5)
+    lifting(
+        Problem(ROWS, IM, II, POSE, 4, 2), np.zeros((2, 2)), POSE, V, np.zeros((4, 3)), 0.0, extent, 0.5, OVERLAP_LEFT,
+        JUMP,
+    )  # fmt: skip
+    assert abs(JUMP[:2, 4]).min() > 0.0
+    assert not JUMP[2:].any()
