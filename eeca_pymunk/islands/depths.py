@@ -66,14 +66,26 @@ def known_depth(A: Scene, a: int, b: int) -> float:
 
 
 @nonallocating
+def room_of(A: Scene, a: int, b: int, gap: float) -> float:
+    """Way (length) that shapes a and b with this gap may close in an interval: the gap and `depth_limit`, of which from
+    half of the way to the middle of both on that part is left which is left of this way. So what rocks on a rounded
+    side, deeper and deeper, is integrated more finely, and does not rock through a wall. Joints may press bodies into
+    others with any force: with them it is the whole limit."""
+    width, most = half_width(A, a) + half_width(A, b), depth_limit(A, a, b)
+    held = max(A.MEMBER[A.LINK[a].owner].tied, A.MEMBER[A.LINK[b].owner].tied) >= 0
+    if not held and width > 0.0 and 2.0 * (width + gap) < width:
+        most = max(2.0 * (width + gap) / width * most, intervals.INTERVAL_DEPTH_LEAST * smaller(A, a, b))
+    return max(gap, 0.0) + most
+
+
+@nonallocating
 def too_deep(A: Scene, a: int, b: int, gap: float, closing: float) -> float:
     """How many times too long an interval is in which a contact of shapes a and b with this gap closes by `closing`
     (lengths); 0 if it is not."""
     if not closing > intervals.INTERVAL_DEPTH_LEAST * smaller(A, a, b):
         return 0.0
-    deep = depth_limit(A, a, b)
-    room = max(gap, 0.0) + deep
-    return max(closing / room, 1.01 * intervals.INTERVAL_RETRY) if closing > room + 0.5 * deep else 0.0
+    room = room_of(A, a, b, gap)
+    return max(closing / room, 1.01 * intervals.INTERVAL_RETRY) if closing > 1.5 * room - 0.5 * max(gap, 0.0) else 0.0
 
 
 @nonallocating
@@ -158,11 +170,11 @@ def deep_at_end(A: Scene, isle: Island, END: FloatArray, ROWS: Rows[Row], m: int
         after *= along
     elif along < 0.0:
         told = gap_along(A, a, END[p, 0], END[p, 1], END[p, 2], b, END[q, 0], END[q, 1], END[q, 2], mx, my)
-        after = max(told, -known_depth(A, a, b))
+        after = max(told, min(gap, 0.0) - known_depth(A, a, b))
     closing = gap - after
     if too_deep(A, a, b, gap, closing) == 0.0:
         return 0.0
-    S, V, room = isle.POSE, isle.V, max(gap, 0.0) + depth_limit(A, a, b)
+    S, V, room = isle.POSE, isle.V, room_of(A, a, b, gap)
     _, nx, ny, x, y = gap_at(A, a, S[p, 0], S[p, 1], S[p, 2], b, S[q, 0], S[q, 1], S[q, 2])
     way = max(-h * gap_rate(S, V, p, q, nx, ny, x, y), 0.0)
     root = math.sqrt(max(way * way + 4.0 * (closing - way) * room, 0.0))

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from ..arrays import FlagArray, FloatArray
+from ..arrays import FlagArray, FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..contacts.correction import admissible, connect, least_of, mark_group, turn_groups, unturn_groups
@@ -19,14 +19,14 @@ from ..model.contacts import Columns, JointedProblem, Row
 from ..model.joint_steps import SPEEDS
 from ..model.joints import Joints
 from ..model.parameters.intervals import CORRECTION_ROUND_OFF
-from ..model.parameters.joints import IMPACT_LIMITS, JOINTED_CORRECTION_SWEEPS, JOINTED_LIFT_ERROR
+from ..model.parameters.joints import IMPACT_LIMITS, JOINTED_CORRECTION_SWEEPS, JOINTED_LIFT_ERROR, MOMENTUM_LEFT
 from ..model.scene import Scene
 from ..newton.response import prepare_response
 from ..rows.bounded import room_for_rows
 from ..rows.build import normal_rate
 from ..rows.inplace import copy
 from ..rows.lifting import lift_above_walls
-from .advance import Interval
+from .advance import Interval, separation
 from .columns import fill_group, set_effective_masses
 from .component import close_at_poses, passes_limit
 from .gathered import find_places, gather_component
@@ -87,6 +87,41 @@ def keep_centre(D: FloatArray, IM: FloatArray, ONE: FlagArray) -> None:
 
 
 @kernel
+def pressing(interval: Interval, L: FloatArray, MU: FloatArray) -> IntArray:
+    """(n,) the groups of bodies that joints, and contacts with impulses L (m, 2) or corrections MU (m,), connect."""
+    GROUP, ROWS = interval.groups.GROUP[: interval.n].copy(), interval.ROWS
+    for i in range(interval.m):
+        if L[i, 0] > 0.0 or MU[i] > 0.0:
+            connect(GROUP, ROWS[i].a, ROWS[i].b)
+    return GROUP
+
+
+@kernel
+def keep_angular_momentum(J: Joints, interval: Interval, L: FloatArray) -> None:
+    """Remove the angular momentum that contacts of a free island give, whose points on both bodies are not one at their
+    mean places, as arms have not converged (`advance_aligned`): s x p for the impulse p and the way s between these
+    points, by a common rotation of the velocities of bodies that press on each other. Losses of contacts pay for it."""
+    isle, groups, ROWS, motion, _, m, n, _, _, _ = interval
+    if m == 0 or not is_free(isle, groups, n, J):
+        return
+    GROUP, EXCESS, TURN, ONE = pressing(interval, L, np.zeros(m)), np.zeros(n), np.zeros((n, 3)), np.empty(n, np.uint8)
+    size = most = 0.0
+    for i in range(m):
+        along, across = separation(ROWS[i], motion.MID)
+        EXCESS[GROUP[ROWS[i].a]] += along * L[i, 1] + across * L[i, 0]
+    for q in range(n):
+        x, y, v = motion.END[q, 0] - motion.END[0, 0], motion.END[q, 1] - motion.END[0, 1], motion.V[q]
+        size += (abs(v[0]) + abs(v[1])) * (abs(x) + abs(y)) / isle.IM[q]
+        size += abs(v[2]) / isle.II[q] if isle.II[q] > 0.0 else 0.0
+        most = max(most, abs(EXCESS[q]))
+    if not most > MOMENTUM_LEFT * size:
+        return
+    gained, square = unturn_groups(motion.END, np.zeros((n, 2)), motion.V, isle.IM, isle.II, GROUP, ONE, EXCESS, TURN)
+    turn_groups(motion.END, GROUP, ONE, TURN, motion.V, 0)
+    J.STEPPED[groups.JOINTED[0]].lifted += gained + square
+
+
+@kernel
 def correct_overlaps(A: Scene, J: Joints, interval: Interval, L: FloatArray, budget: float) -> float:
     """Move the poses at the end of an island's motion out of each other, at a cost of at most `budget`, not at all if
     that is below 0; returns the cost.
@@ -124,12 +159,10 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, L: FloatArray, bud
         if not again:
             break
     free = is_free(isle, groups, n, J)
-    GROUP, NONE = groups.GROUP[: n if free else 0].copy(), np.zeros(n)
+    # In an island that is not free no body is rotated.
+    GROUP, NONE = pressing(interval, L, MU) if free else np.empty(0, np.int64), np.zeros(n)
     ONE, TURN = np.empty(n, np.uint8), np.zeros((n, 3))
-    if free:  # in an island that is not free no body is rotated
-        for i in range(m):
-            if L[i, 0] > 0.0 or MU[i] > 0.0:
-                connect(GROUP, ROWS[i].a, ROWS[i].b)
+    if free:
         for g in range(n):
             if mark_group(GROUP, g, ONE):
                 keep_centre(D, isle.IM, ONE)

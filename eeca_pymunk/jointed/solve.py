@@ -34,7 +34,7 @@ from .gathered import restore_joints, save_joints, takes_shorter
 from .groups import find_groups
 from .ledger import has_work_for, work_left
 from .lengths import excess, forced_deeper, next_length, too_deep_on_way, within_sagitta
-from .lifting import lift_island
+from .lifting import keep_angular_momentum, lift_island
 from .losses import slip_of
 from .press import GIVEN_UP, SOLVED, solve_contacts
 from .press_laws import few_act
@@ -202,6 +202,7 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
         s = groups.COMPONENT[groups.GROUP[q]]
         if s >= 0:
             account_turning(A, J, s, MINE[q], motion.END[q, 2], motion.WAY[q, 2])
+    keep_angular_momentum(J, interval, L)
     # Corrected at the end of the interval: within a short one, paths would be steep.
     WHERE, HELD = motion.END.copy(), np.zeros(m)
     if not conserves(ROWS, m):

@@ -14,7 +14,7 @@ from ..newton.rows import joint_rows, shared_part, shares_point
 from .bounds import hold_passed, limit_gap, passed_side
 from .correct import CHANGE, KEPT, NOW, fitting_loss, kinetic_of, project, restore_speeds, speeds_fit
 from .frame import move_apart, work_of_shift
-from .lock import lock_energy
+from .lock import lock_energy, restore_momenta
 from .start import closing_share, compute_rows, springs_of
 
 
@@ -129,9 +129,9 @@ def close_joints(W: Workspace, h: float, ledger: JointLedger) -> bool:
         before, supports, carried = farthest(W), ledger.supports, ledger.carried
         project(W, POSES)
         taken = springs_of(W) - stored
-        cost = taken + closing_work(W)
-        turned = work_of_shift(W) if own else 0.0
-        # Closing what a step left apart is paid from the motion.
+        cost, turned = taken + closing_work(W), work_of_shift(W) if own else 0.0
+        # Closing what a step left apart keeps angular momentum, which displacements change; the motion pays for it.
+        cost += restore_momenta(W, 0.0, False) if own else 0.0
         locked = lock_energy(W, cost - turned, ledger) if own and cost > turned else 0.0
         # Rows that contradict one another are not closed, nor those whose closing the motion cannot pay, to the
         # round-off of the lock.

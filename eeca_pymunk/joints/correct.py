@@ -60,7 +60,7 @@ def project(W: Workspace, what: int) -> None:
         if what == POSES or passes == 0:
             first_iterate(W, what, 2.0)
     if what == SPEEDS:
-        restore_momenta(W, 0.0)
+        restore_momenta(W, 0.0, True)
 
 
 @nonallocating

@@ -17,12 +17,13 @@ from ..compiled import nonallocating
 from ..model.joint_steps import ELASTIC, LINEAR
 from ..model.joints import Workspace
 from ..model.parameters.joints import GAIN_KEPT, JOINT_GAIN, JOINT_TOLERANCE, LINEAR_APART, REPAID
+from .bounds import inactive, passed_side
 from .closing import farthest, fit_led
 from .correct import NOW, SAVED, kinetic_of
 from .frame import move_apart
 from .ledger import close_ledger, unexplained
 from .lock import lock_energy, restore_momenta
-from .start import load_of
+from .start import compute_rows, load_of
 from .unheld import stop_joints
 
 
@@ -41,7 +42,7 @@ def clear_errors(W: Workspace, h: float, length: float) -> None:
     cancel only up to that."""
     part, load = W.J.PART_LEDGER, load_of(W, h, length)
     least = JOINT_GAIN * (kinetic_of(W, SAVED) + kinetic_of(W, NOW) + load)
-    part.closed += restore_momenta(W, h)
+    part.closed += restore_momenta(W, h, False)
     apart = unexplained(W) - (part.supports + part.closed - part.limited)
     if not abs(apart) <= least:
         close_ledger(W)
@@ -90,6 +91,16 @@ def keeps_gain(W: Workspace, h: float, length: float, own: bool) -> bool:
 
 
 @nonallocating
+def passes_limits(W: Workspace) -> bool:
+    """Whether a joint that stands on no limit is beyond one at the present poses."""
+    compute_rows(W)
+    for k in range(W.joints):
+        if inactive(W.link, k) and passed_side(W, k, LINEAR_APART) != 0:
+            return True
+    return False
+
+
+@nonallocating
 def gain_taken(W: Workspace, h: float, length: float) -> bool:
     """Close the ledger of a step whose joints did not hold exactly, and take its gain from the motion; returns whether
     what is left of it is round-off of the kinetic energies before and after, and of the work of forces over the size
@@ -113,7 +124,8 @@ def gain_taken(W: Workspace, h: float, length: float) -> bool:
 def take_gain(W: Workspace, h: float, length: float, status: int, own: bool, before: float) -> int:
     """Take from the motion what joints have given in a step of this status, if `repaid` has not; returns the status.
 
-    If the motion cannot pay, or linear rows leave joints farther apart than `before`, all bodies move as one: LINEAR.
+    If the motion cannot pay, or linear rows leave joints farther apart than `before`, or pass a limit, all bodies move
+    as one: LINEAR.
     `own`: see `repaid`.
     """
     if fit_led(W):
@@ -121,7 +133,9 @@ def take_gain(W: Workspace, h: float, length: float, status: int, own: bool, bef
     if status < ELASTIC:
         fails = keeps_gain(W, h, length, own)
     else:
-        fails = not gain_taken(W, h, length) or (status == LINEAR and not farthest(W) <= before + LINEAR_APART)
+        fails = not gain_taken(W, h, length)
+        if status == LINEAR and not fails:
+            fails = not farthest(W) <= before + LINEAR_APART or passes_limits(W)
         fails = fails and not move_apart(W)
     if fails:
         stop_joints(W, h)

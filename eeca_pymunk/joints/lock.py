@@ -18,7 +18,7 @@ import math
 from ..compiled import nonallocating
 from ..model.joint_steps import JointLedger
 from ..model.joints import Workspace
-from ..model.parameters.joints import JOINT_GAIN, LOCK_ITERATIONS
+from ..model.parameters.joints import LOCK_ITERATIONS, MOMENTUM_LEFT
 from .frame import acted_on, centre_of, frame_of, has_ratio, is_led, relative_energy, spin_about, supports
 
 
@@ -34,11 +34,12 @@ def turns_freely(W: Workspace) -> bool:
 
 
 @nonallocating
-def restore_momenta(W: Workspace, h: float) -> float:
+def restore_momenta(W: Workspace, h: float, fitted: bool) -> float:
     """Change the velocities v0 at the end of the step h by those of a rigid body, so that the momentum of a component
-    without partners, and its angular momentum if it `turns_freely`, are those of the start and of the accelerations; if
-    h = 0, those of `v_kept` at the same poses. Returns the change of the kinetic energy. Nothing changes where momenta
-    are right to JOINT_GAIN of the sums of their magnitudes.
+    without partners, and its angular momentum if it `turns_freely`, are those of the start and of the accelerations;
+    with h = 0 those of the start, from which poses have been displaced; if velocities were `fitted`, those of `v_kept`
+    at the same poses. Returns the change of the kinetic energy. Nothing changes where momenta are right to
+    MOMENTUM_LEFT of the sums of their magnitudes.
 
     L1 = L0 + sum m x_m x a h + I alpha h with the means x_m of the places over the time h, as the arms of joints are
     those of the middle.
@@ -52,24 +53,24 @@ def restore_momenta(W: Workspace, h: float) -> float:
         body = local[i]
         m = 1.0 / body.mobility[0] if is_led(body, 0) else 0.0
         rx, ry, now = body.pose[0] - x, body.pose[1] - y, body.v0
-        if h > 0.0:
+        before, sx, sy, ax, ay, spun = body.v_kept, rx, ry, 0.0, 0.0, 0.0
+        if not fitted:
             before, sx, sy = body.saved_velocity, body.saved_pose[0] - x, body.saved_pose[1] - y
+        if h > 0.0:
             ax, ay, spun = body.acceleration[0], body.acceleration[1], h * body.acceleration[2]
             turning -= m * ((body.mean[0] - h * x) * ay - (body.mean[1] - h * y) * ax)
-        else:
-            before, sx, sy, ax, ay, spun = body.v_kept, rx, ry, 0.0, 0.0, 0.0
         mass += m
         px += m * (now[0] - before[0] - h * ax)
         py += m * (now[1] - before[1] - h * ay)
         turning += m * (rx * now[1] - ry * now[0]) - m * (sx * before[1] - sy * before[0])
-        moved = m * (abs(now[0]) + abs(now[1]) + abs(before[0]) + abs(before[1]))
+        moved = m * (abs(now[0]) + abs(now[1]) + abs(before[0]) + abs(before[1]) + h * (abs(ax) + abs(ay)))
         size, arms = size + moved, arms + moved * (abs(rx) + abs(ry))
         if is_led(body, 2):
             turning += (now[2] - before[2] - spun) / body.mobility[2]
-            arms += (abs(now[2]) + abs(before[2])) / body.mobility[2]
+            arms += (abs(now[2]) + abs(before[2]) + abs(spun)) / body.mobility[2]
     was, inertia = spin_about(W, x, y, vx, vy)
     spin = -turning / inertia if inertia > 0.0 and turns_freely(W) else 0.0
-    if not (abs(px) + abs(py) > JOINT_GAIN * size or abs(spin) * inertia > JOINT_GAIN * arms):
+    if not (abs(px) + abs(py) > MOMENTUM_LEFT * size or abs(spin) * inertia > MOMENTUM_LEFT * arms):
         return 0.0
     ux, uy = (-px / mass, -py / mass) if mass > 0.0 else (0.0, 0.0)
     for i in range(W.bodies):

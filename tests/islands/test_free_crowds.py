@@ -38,16 +38,17 @@ def momenta(bodies: list[pymunk.Body]) -> tuple[float, float, float, float]:
     return x, y, math.fsum(turning), math.fsum(map(abs, turning))
 
 
+@pytest.mark.parametrize("dt", [0.1, 10.0])
 @pytest.mark.parametrize("joined", [False, True])
 @pytest.mark.parametrize("seed", range(6))
-def test_free_crowds_keep_their_momenta(seed: int, joined: bool) -> None:
-    """To round-off in each step of .1 s, in which impacts cut intervals and overlaps are corrected."""
+def test_free_crowds_keep_their_momenta(seed: int, joined: bool, dt: float) -> None:
+    """To round-off in each step, in which impacts cut intervals and overlaps are corrected."""
     space, bodies = crowd(seed, joined)
     stepper = ep.EECA(space)
     for _ in range(15):
         before = momenta(bodies)
-        report = stepper.step(0.1)
+        stepper.step(dt)
         after = momenta(bodies)
         size = max(before[3], after[3])
         assert after[:2] == pytest.approx(before[:2], abs=1e-12 * size)
-        assert after[2] == pytest.approx(before[2], abs=1e-12 * size) or not report.converged
+        assert after[2] == pytest.approx(before[2], abs=1e-12 * size)

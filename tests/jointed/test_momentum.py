@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import itertools
 from collections.abc import Callable
+from random import Random
 from types import SimpleNamespace
 from typing import Any
 
@@ -80,6 +81,46 @@ def test_overlaps_are_lifted_about_the_centre_of_mass(join: Join, dt: float, mas
         for a, b in itertools.pairwise(chain):
             space.add(join(a, b))
     keep(space, dt, 60)
+
+
+def flight(seed: int) -> pymunk.Space:
+    """Three to five chains of two to six bodies, of masses 1 : 100, that turn and fly into each other."""
+    R, space = Random(seed), pymunk.Space()
+    chains = R.randint(3, 5)
+    for c in range(chains):
+        speed, spin, last = -3.0 * (c - chains / 2) * R.uniform(0.5, 2.0), R.uniform(-1.0, 1.0), None
+        for k in range(n := R.randint(2, 6)):
+            place = (6.0 * c + 0.8 * (k - n / 2), R.uniform(-0.3, 0.3))
+            one = body(space, place, 10.0 ** R.uniform(-1.0, 1.0), 0.0, spin)
+            one.velocity = speed, spin * 0.8 * (k - n / 2)
+            if last is not None:
+                a, b, middle = last, one, (last.position + one.position) / 2.0
+                joints = [
+                    pymunk.PivotJoint(a, b, tuple(middle)),
+                    pin(a, b),
+                    slide(a, b),
+                    pymunk.GrooveJoint(a, b, (0.0, 0.0), 1.2 * a.world_to_local(b.position), (0.0, 0.0)),
+                    pymunk.DampedSpring(a, b, (0.1, 0.0), (0.0, 0.1), 0.6, 10.0 ** R.uniform(0.0, 5.0), 1.0),
+                ]
+                space.add(R.choice(joints))
+                if R.random() < 0.3:
+                    space.add(R.choice((pymunk.RotaryLimitJoint(a, b, -0.3, 0.4), pymunk.RatchetJoint(a, b, 0.0, 0.3))))
+            last = one
+    return space
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_mechanisms_in_flight_keep_their_momenta_in_long_steps(seed: int) -> None:
+    """In each step, whether contacts and joints converge or not."""
+    space = flight(seed)
+    stepper = ep.EECA(space)
+    linear, angular, scale = moments(space)
+    for _ in range(2):
+        stepper.step(0.5)
+        before, begun, was = linear, angular, scale
+        linear, angular, scale = moments(space)
+        assert abs(linear - before).max() <= KEPT * max(scale, was)
+        assert abs(angular - begun) <= KEPT * max(scale, was)
 
 
 def test_gears_turn_bodies_alike_wherever_they_are_held() -> None:

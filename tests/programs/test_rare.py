@@ -26,3 +26,13 @@ def test_corrections_do_not_turn_what_is_flat_through_a_wall(seed: int, steps: i
 
 def test_corrections_of_what_is_joined_do_not_turn_what_is_flat_through_a_wall() -> None:
     Rare(69000257, True).play(91)
+
+
+def test_what_is_flat_does_not_rock_through_a_wall() -> None:
+    """An ellipse of 97 corners, whose rocking grew as it sank, by a tenth of the way through in each interval."""
+    Rare(68010118).play(45)
+
+
+def test_linear_rows_do_not_pass_limits_of_joints() -> None:
+    """A slide joint that had a little play was left .02 of its length beyond its limit by linear rows."""
+    Rare(69010055, True).play(120)

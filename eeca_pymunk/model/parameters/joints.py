@@ -75,7 +75,9 @@ GIVEN_INTERVAL = work(1e-6, "of the step",
 REPAID = accuracy(1e-3, "of the kinetic energy",
     "Gain of closing joints that an earlier step left apart, up to which it is locked.")
 JOINT_GAIN = round_off(1e-12, "of the kinetic energy before and after",
-    "Gain of joints that hold in a step, above which it is taken from what moves; likewise errors of momenta.")
+    "Gain of joints that hold in a step, above which it is taken from what moves.")
+MOMENTUM_LEFT = round_off(1e-14, "of the sum of the magnitudes of momenta",
+    "Error of the momenta of a component, above which they are restored at the end of each part of a step.")
 GAIN_KEPT = round_off(1e-10, "of the kinetic energy, and of the work of forces over the size",
     "Gain of joints that hold which the relative motion of bodies is too little to pay: with more they move as one.")
 STALLED = accuracy(100.0, "of all momenta, loads and forces of a component, as angular momentum",
