@@ -4,7 +4,7 @@ pymunk's solver does not compute an EECA step. Its arbiters are those of the res
 without impulses, or those of a rehearsal. Therefore `Body.each_arbiter` and `batch.get_space_arbiters` are replaced.
 While they run, the contacts of pymunk's arbiters have the impulses of the step, and pairs that touched only within the
 step have arbiters of their own; afterwards pymunk's arbiters are restored. All this is done when arbiters are read, not
-in the step.
+in the step. Pairs of sleeping bodies keep the impulses of the step in which these fell asleep, as pymunk's do.
 
 The impulse of an arbiter is the sum over the step. Its points are pymunk's, or those of the last touch. `total_ke`
 follows Chipmunk's formula for its total kinetic energy, the sum over points of (1 - e)/(1 + e) j_n^2 / m_n + j_t^2 /
@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, NamedTuple
+from weakref import WeakKeyDictionary
 
 import pymunk
 from pymunk import batch
@@ -60,6 +61,7 @@ class Touches:
 
 
 ReadTouches = Callable[[], "Touches | None"]
+_sleeping: WeakKeyDictionary[pymunk.Space, Touches] = WeakKeyDictionary()
 _native_each: Any = pymunk.Body.each_arbiter
 _native_batch: Any = batch.get_space_arbiters
 _native_draw: Any = pymunk.Space.debug_draw
@@ -96,22 +98,44 @@ def touches_of(EVENT: Rows[Impulse], shapes: Sequence[pymunk.Shape]) -> list[Tou
     return result
 
 
-def _touches_of(space: pymunk.Space | None) -> Touches | None:
-    sync = None if space is None else last_sync(space)
+def keep_sleeping(space: pymunk.Space) -> None:
+    """Keep the pairs of the last step of bodies that have fallen asleep since, until they wake."""
+    last, kept = _last(space), _sleeping.get(space)
+    found = {**({} if kept is None else kept.all), **({} if last is None else last.all)}
+    _sleeping[space] = Touches([touch for touch in found.values() if _sleeps(touch)])
+
+
+def _sleeps(touch: Touch) -> bool:
+    bodies = [shape.body for shape in (touch.a, touch.b) if shape.space is not None]
+    return len(bodies) == 2 and any(body is not None and body.is_sleeping for body in bodies)
+
+
+def _last(space: pymunk.Space) -> Touches | None:
+    sync = last_sync(space)
     read = None if sync is None else sync.touches()
     return None if read is None else read()
 
 
+def _touches_of(body: pymunk.Body, space: pymunk.Space) -> tuple[bool, dict[frozenset[int], Touch]]:
+    """Whether the last step of a space was not pymunk's own; and the pairs of a body in that step, and as it sleeps."""
+    last, kept = _last(space), _sleeping.get(space)
+    now = {} if last is None else last.of(body)
+    if kept is not None and (asleep := kept.of(body)):
+        now = {**{key: touch for key, touch in asleep.items() if _sleeps(touch)}, **now}
+    return last is not None, now
+
+
 @contextmanager
-def _with_impulses(arbiters: Sequence[Any], found: dict[frozenset[int], Touch]) -> Iterator[list[Any]]:
-    """Within this block pymunk's arbiters have the impulses of these pairs; yields arbiters for the other pairs."""
+def _with_impulses(arbiters: Sequence[Any], ours: bool, found: dict[frozenset[int], Touch]) -> Iterator[list[Any]]:
+    """Within this block pymunk's arbiters have the impulses of these pairs, and if the step is `ours` those of other
+    pairs that are awake have none; yields arbiters for pairs that pymunk has not."""
     kept, missing = [], dict(found)
     try:
         for arbiter in arbiters:
             if arbiter.count == 0:
                 continue
             touch = missing.pop(private_arbiters.arbiter_key(arbiter), None)
-            if touch is None and private_arbiters.asleep(arbiter):
+            if touch is None and (not ours or private_arbiters.asleep(arbiter)):
                 continue
             impulse = None
             if touch is not None:  # the shapes of the arbiter may be in the other order
@@ -127,13 +151,13 @@ def _with_impulses(arbiters: Sequence[Any], found: dict[frozenset[int], Touch]) 
 
 def _each_arbiter(self: pymunk.Body, func: Callable[..., None], *args: Any, **kwargs: Any) -> None:
     space = self.space
-    found = _touches_of(space)
-    if found is None or space is None:
+    ours, found = (False, {}) if space is None else _touches_of(self, space)
+    if space is None or not (ours or found):
         _native_each(self, func, *args, **kwargs)
         return
     arbiters: list[Any] = []
     _native_each(self, lambda arbiter: arbiters.append(private_arbiters.raw(arbiter)))
-    with _with_impulses(arbiters, found.of(self)) as more:
+    with _with_impulses(arbiters, ours, found) as more:
         _native_each(self, func, *args, **kwargs)
         for arbiter in more:
             private_arbiters.turn_to(arbiter, self)
@@ -141,11 +165,11 @@ def _each_arbiter(self: pymunk.Body, func: Callable[..., None], *args: Any, **kw
 
 
 def _get_space_arbiters(space: pymunk.Space, fields: batch.ArbiterFields, buffers: batch.Buffer) -> None:
-    found = _touches_of(space)
-    if found is None:
+    last = _last(space)  # pymunk's lists no pairs that sleep
+    if last is None:
         _native_batch(space, fields, buffers)
         return
-    with _with_impulses(private.raw_arbiters(space), found.all) as more:
+    with _with_impulses(private.raw_arbiters(space), True, last.all) as more:
         _native_batch(space, fields, buffers)
         private_arbiters.batch_arbiters(more, fields, buffers)
 

@@ -11,7 +11,7 @@ from eeca_pymunk.compiled.records import zeros
 from eeca_pymunk.geometry.gap import gap_at
 from eeca_pymunk.geometry.sides import note_side
 from eeca_pymunk.geometry.widths import depth_limit
-from eeca_pymunk.islands.depths import closes_too_far, deep_at_end
+from eeca_pymunk.islands.depths import closes_too_far, deep_at_end, room_of
 from eeca_pymunk.model.contacts import ROW
 from eeca_pymunk.model.islands import Island
 from eeca_pymunk.model.parameters.intervals import INTERVAL_RETRY
@@ -70,6 +70,25 @@ def test_the_next_interval_is_as_long_as_a_way_of_second_order_takes(approach: f
     far = deep_at_end(loop.scene, isle, end, rows, 1, h, 0)
     s, u = h / far, approach * 10.0 * room / h
     assert u * s + (10.0 * room - u * h) * (s / h) ** 2 == pytest.approx(room, rel=1e-9)
+
+
+@pytest.mark.parametrize("held", [False, True])
+@pytest.mark.parametrize(("depth", "part"), [(-0.1, 1.0), (0.0, 1.0), (0.4, 1.0), (0.75, 0.5), (0.9, 0.2)])
+def test_contacts_near_the_middle_of_their_shapes_may_close_less(depth: float, part: float, held: bool) -> None:
+    """In overlap by a part `depth` of the way to the middle; what a joint holds may close as far as before."""
+    space, radius = pymunk.Space(), 2.0
+    disk = pymunk.Body(1.0, 1.0)
+    disk.position = 0.0, 3.0 * radius
+    space.add(disk, pymunk.Circle(disk, radius), pymunk.Segment(space.static_body, (-9.0, 0.0), (9.0, 0.0), 0.0))
+    if held:
+        space.add(pymunk.PinJoint(space.static_body, disk))
+    stepper = ep.EECA(space)
+    stepper.step(1e-6)
+    loop = stepper.event_loop
+    assert loop is not None
+    gap = -depth * radius
+    expected = max(gap, 0.0) + (1.0 if held else part) * depth_limit(loop.scene, 0, 1)
+    assert room_of(loop.scene, 0, 1, gap) == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])

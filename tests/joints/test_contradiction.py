@@ -11,11 +11,11 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk.jointed.alone import begin_alone
-from eeca_pymunk.joints import ladder, limits
+from eeca_pymunk.joints import gains, ladder, limits
 from eeca_pymunk.joints.ladder import ELASTIC_RUNG, ORDER_4, WHOLE_STEP
 from eeca_pymunk.joints.workspace import workspace
-from eeca_pymunk.model.joint_steps import ELASTIC, HALVED
-from eeca_pymunk.model.joints import EDITED
+from eeca_pymunk.model.joint_steps import ELASTIC, HALVED, LINEAR
+from eeca_pymunk.model.joints import EDITED, ROTARY_LIMIT
 from eeca_pymunk.model.parameters.joints import BALANCED, JOINT_APART
 from eeca_pymunk.newton import solve as solve_of_newton
 
@@ -144,6 +144,25 @@ def test_errors_are_a_contradiction_if_they_are_in_balance_and_do_not_arise_from
     misfits = iter((end, (start, 0.0, 1.0)))
     monkeypatch.setattr(ladder, "misfit", lambda W, h: next(misfits))
     assert ladder.contradicts(workspace(J, 0), STEP) == found
+
+
+@pytest.mark.parametrize(
+    ("turned", "side", "moves"), [(0.05, 0, False), (0.2, 0, True), (-0.2, 0, True), (0.2, 1, False)]
+)
+def test_bodies_move_as_one_where_linear_rows_have_passed_a_limit(
+    monkeypatch: pytest.MonkeyPatch, turned: float, side: int, moves: bool
+) -> None:
+    """Unless the joint stands on that limit, and is no farther from it than before."""
+    _, J = two_bodies(lambda a, b: pymunk.RotaryLimitJoint(a, b, -0.1, 0.1))
+    W, stopped = workspace(J, 0), []
+    limit = next(k for k in range(W.joints) if W.link[k].kind == ROTARY_LIMIT)
+    W.J.LOCAL[W.link[limit].body[1]].pose[2] = W.J.LOCAL[W.link[limit].body[0]].pose[2] + turned
+    W.link[limit].side = side
+    monkeypatch.setattr(gains, "gain_taken", lambda *_: True)
+    monkeypatch.setattr(gains, "farthest", lambda *_: 0.0)
+    monkeypatch.setattr(gains, "stop_joints", lambda *_: stopped.append(True))
+    assert gains.take_gain(W, STEP, 1.0, LINEAR, False, 0.0) == LINEAR
+    assert stopped == [True] * moves
 
 
 # Masses; moments over them; joints of neighbours: ratios of gears, half-widths of limits, 0 for none.

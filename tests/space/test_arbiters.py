@@ -240,6 +240,44 @@ def test_a_pair_that_falls_asleep_has_one_arbiter(handled: bool) -> None:
     stepper = ep.EECA(space)
     while not body.is_sleeping:
         stepper.step(1 / 60)
+    assert weights(body) == pytest.approx([10.0 / 60.0])
+
+
+def weights(body: pymunk.Body) -> list[float]:
+    """The vertical impulses of the arbiters of a body."""
     impulses: list[float] = []
     body.each_arbiter(lambda arbiter: impulses.append(arbiter.total_impulse.y))
-    assert impulses == pytest.approx([10.0 / 60.0])
+    return impulses
+
+
+@pytest.mark.parametrize("others_move", [False, True])
+def test_arbiters_of_sleeping_bodies_keep_the_impulses_of_their_last_step(others_move: bool) -> None:
+    """As pymunk's do, until they wake; those of a pair that was removed are gone."""
+    space = pymunk.Space()
+    space.gravity, space.sleep_time_threshold = (0.0, -10.0), 0.1
+    floor = pymunk.Segment(space.static_body, (-5.0, 0.0), (5.0, 0.0), 0.0)
+    floor.elasticity = 1.0
+    space.add(floor)
+    pile = [pymunk.Body(1.0, 1.0) for _ in range(2)]
+    for k, body in enumerate(pile):
+        body.position = 0.0, 0.1 + 0.2 * k
+        space.add(body, pymunk.Poly.create_box(body, (0.2, 0.2)))
+    if others_move:
+        ball = pymunk.Body(1.0, 1.0)
+        ball.position = 4.0, 3.0
+        shape = pymunk.Circle(ball, 0.5)
+        shape.elasticity = 1.0
+        space.add(ball, shape)
+    stepper = ep.EECA(space)
+    while not pile[0].is_sleeping:
+        stepper.step(1 / 60)
+    for _ in range(30):
+        stepper.step(1 / 60)
+        assert sorted(weights(pile[0])) == pytest.approx([-10.0 / 60.0, 20.0 / 60.0])
+        assert weights(pile[1]) == pytest.approx([10.0 / 60.0])
+    pile[0].activate()
+    stepper.step(1 / 120)
+    assert sorted(weights(pile[0])) == pytest.approx([-10.0 / 120.0, 20.0 / 120.0])
+    space.remove(pile[1], *pile[1].shapes)
+    stepper.step(1 / 60)
+    assert weights(pile[0]) == pytest.approx([10.0 / 60.0])
