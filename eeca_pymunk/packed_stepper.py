@@ -29,7 +29,6 @@ from .model.parameters.rest import WAKE_ALL
 from .model.step import EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES
 from .reentry import BUSY, STEPPING, enter, refuse_within
 from .report import Details, StepReport
-from .space.arbiters import keep_sleeping
 from .space.sleeping import Sleep
 from .space.world import World
 from .stepper import check_dt
@@ -90,8 +89,7 @@ class PackedStepper(HookedStepper):
         report = self._step(world, dt, gathered=not (other or sleep.all_asleep))
         present = self._sleep  # another one if the world was read again
         if present is not None and present.world is self._world and present.rest(dt) and present.world.current():
-            if present.fall_asleep(report, dt):
-                keep_sleeping(self.space)
+            present.fall_asleep(report, dt)
         return report
 
     def rewound(self, world: World) -> list[AnyArray]:

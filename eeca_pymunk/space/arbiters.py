@@ -13,7 +13,7 @@ m_t with the effective masses m.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
@@ -49,6 +49,10 @@ class Touches:
     def __init__(self, found: Sequence[Touch]) -> None:
         self.all: dict[frozenset[int], Touch] = {}
         self._of: dict[pymunk.Body | None, dict[frozenset[int], Touch]] = {}
+        self.add(found)
+
+    def add(self, found: Iterable[Touch]) -> None:
+        """Add pairs, in the place of the same ones."""
         for touch in found:
             key = frozenset((private_arbiters.shape_key(touch.a), private_arbiters.shape_key(touch.b)))
             self.all[key] = touch
@@ -98,11 +102,15 @@ def touches_of(EVENT: Rows[Impulse], shapes: Sequence[pymunk.Shape]) -> list[Tou
     return result
 
 
-def keep_sleeping(space: pymunk.Space) -> None:
-    """Keep the pairs of the last step of bodies that have fallen asleep since, until they wake."""
-    last, kept = _last(space), _sleeping.get(space)
-    found = {**({} if kept is None else kept.all), **({} if last is None else last.all)}
-    _sleeping[space] = Touches([touch for touch in found.values() if _sleeps(touch)])
+def keep_sleeping(space: pymunk.Space, bodies: Iterable[pymunk.Body]) -> None:
+    """Keep the pairs of the last step of bodies that have just fallen asleep, until they wake."""
+    if (last := _last(space)) is None:
+        return
+    kept = _sleeping.setdefault(space, Touches(()))
+    if len(kept.all) > 2 * len(last.all) + 100:  # many may have woken
+        kept = _sleeping[space] = Touches([touch for touch in kept.all.values() if _sleeps(touch)])
+    for body in bodies:
+        kept.add(last.of(body).values())
 
 
 def _sleeps(touch: Touch) -> bool:

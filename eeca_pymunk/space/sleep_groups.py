@@ -17,6 +17,7 @@ import pymunk
 from ..arrays import IntArray
 from ..report import Contacts
 from ..sleepers import connect
+from .arbiters import keep_sleeping
 from .bodies import Bodies
 from .edits import SLEEP, record
 from .late_shapes import make_arbiters
@@ -95,6 +96,7 @@ def sleep_together(group: Sequence[pymunk.Body]) -> None:
         sleep(body) if body is first else join(body, first)
         _leaders[body] = lead
         record(body, SLEEP[body is not first])
+    keep_sleeping(first.space, group)
 
 
 def wake_neighbours(space: pymunk.Space) -> None:
@@ -127,6 +129,8 @@ def _sleep(native: Callable[..., None]) -> Callable[..., None]:
         native(self, *group)
         _leaders[self] = weakref.ref(lead)
         record(self, native.__name__)
+        if self.space is not None:
+            keep_sleeping(self.space, (self,))
 
     return sleep_and_record
 

@@ -228,9 +228,9 @@ class Sleep:
         self._since += 1
         return self._wait == 0 and ready == 1
 
-    def fall_asleep(self, report: StepReport, dt: float) -> bool:
+    def fall_asleep(self, report: StepReport, dt: float) -> None:
         """Put groups to sleep all of whose bodies have been at rest for long enough, unless something would wake them
-        in a step of length dt; whether there are any. `report`: of the last step."""
+        in a step of length dt. `report`: of the last step."""
         bodies, joints = self.world.bodies, self.world.joints
         self._wait = SLEEP_RETRY
         # After bodies have fallen asleep the world is read again and contact forces are lost, so small groups wait.
@@ -238,13 +238,12 @@ class Sleep:
         ready = [[bodies.items[i]] for i in self._ready.nonzero()[0].tolist()]
         # A group is left alone only if each of its bodies would be.
         if len(ready) < enough or len(self._left_alone(ready, dt)) < enough:
-            return False
+            return
         pairs = () if joints is None else joints.pairs.values()
         groups = self._left_alone(resting_groups(self.space, bodies, self._ready, report.contacts, pairs), dt)
         if sum(map(len, groups)) < enough:
-            return False
+            return
         self._since = 0
         for group in groups:
             self._rested[[bodies.row[body] for body in group]] = 0.0
             sleep_together(group)
-        return True

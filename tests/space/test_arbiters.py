@@ -278,6 +278,13 @@ def test_arbiters_of_sleeping_bodies_keep_the_impulses_of_their_last_step(others
     pile[0].activate()
     stepper.step(1 / 120)
     assert sorted(weights(pile[0])) == pytest.approx([-10.0 / 120.0, 20.0 / 120.0])
+    pile[0].sleep()  # by the program
+    pile[1].sleep_with_group(pile[0])
+    for _ in range(3):
+        assert sorted(weights(pile[0])) == pytest.approx([-10.0 / 120.0, 20.0 / 120.0])
+        stepper.step(1 / 60)
+    pile[0].activate()
+    stepper.step(1 / 60)
     space.remove(pile[1], *pile[1].shapes)
     stepper.step(1 / 60)
     assert weights(pile[0]) == pytest.approx([10.0 / 60.0])
