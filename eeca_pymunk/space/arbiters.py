@@ -25,6 +25,7 @@ from ..compiled.records import Rows
 from ..model.contacts import Impulse
 from .late_shapes import last_sync, make_arbiters, move_late
 from .private import arbiters as private_arbiters
+from .private import sleep as private_sleep
 from .private import spaces as private
 
 
@@ -49,10 +50,6 @@ class Touches:
     def __init__(self, found: Sequence[Touch]) -> None:
         self.all: dict[frozenset[int], Touch] = {}
         self._of: dict[pymunk.Body | None, dict[frozenset[int], Touch]] = {}
-        self.add(found)
-
-    def add(self, found: Iterable[Touch]) -> None:
-        """Add pairs, in the place of the same ones."""
         for touch in found:
             key = frozenset((private_arbiters.shape_key(touch.a), private_arbiters.shape_key(touch.b)))
             self.all[key] = touch
@@ -65,7 +62,7 @@ class Touches:
 
 
 ReadTouches = Callable[[], "Touches | None"]
-_sleeping: WeakKeyDictionary[pymunk.Space, Touches] = WeakKeyDictionary()
+_asleep: WeakKeyDictionary[pymunk.Body, dict[frozenset[int], Touch]] = WeakKeyDictionary()
 _native_each: Any = pymunk.Body.each_arbiter
 _native_batch: Any = batch.get_space_arbiters
 _native_draw: Any = pymunk.Space.debug_draw
@@ -103,19 +100,11 @@ def touches_of(EVENT: Rows[Impulse], shapes: Sequence[pymunk.Shape]) -> list[Tou
 
 
 def keep_sleeping(space: pymunk.Space, bodies: Iterable[pymunk.Body]) -> None:
-    """Keep the pairs of the last step of bodies that have just fallen asleep, until they wake."""
-    if (last := _last(space)) is None:
-        return
-    kept = _sleeping.setdefault(space, Touches(()))
-    if len(kept.all) > 2 * len(last.all) + 100:  # many may have woken
-        kept = _sleeping[space] = Touches([touch for touch in kept.all.values() if _sleeps(touch)])
+    """Keep the pairs of the last step of bodies that have just fallen asleep, until they wake; none if that was
+    pymunk's own."""
+    last = _last(space)
     for body in bodies:
-        kept.add(last.of(body).values())
-
-
-def _sleeps(touch: Touch) -> bool:
-    bodies = [shape.body for shape in (touch.a, touch.b) if shape.space is not None]
-    return len(bodies) == 2 and any(body is not None and body.is_sleeping for body in bodies)
+        _asleep[body] = {} if last is None else last.of(body)
 
 
 def _last(space: pymunk.Space) -> Touches | None:
@@ -124,13 +113,20 @@ def _last(space: pymunk.Space) -> Touches | None:
     return None if read is None else read()
 
 
+def _kept(body: pymunk.Body, space: pymunk.Space) -> dict[frozenset[int], Touch]:
+    """The pairs of a body that sleeps, or of one that is not dynamic with those that do."""
+    if body.is_sleeping:
+        return _asleep.get(body, {})
+    if body.body_type == pymunk.Body.DYNAMIC:
+        return {}
+    found = (pair for one in private_sleep.asleep(space) for pair in _asleep.get(one, {}).items())
+    return {key: touch for key, touch in found if body in (touch.a.body, touch.b.body)}
+
+
 def _touches_of(body: pymunk.Body, space: pymunk.Space) -> tuple[bool, dict[frozenset[int], Touch]]:
     """Whether the last step of a space was not pymunk's own; and the pairs of a body in that step, and as it sleeps."""
-    last, kept = _last(space), _sleeping.get(space)
-    now = {} if last is None else last.of(body)
-    if kept is not None and (asleep := kept.of(body)):
-        now = {**{key: touch for key, touch in asleep.items() if _sleeps(touch)}, **now}
-    return last is not None, now
+    last = _last(space)
+    return last is not None, {**_kept(body, space), **({} if last is None else last.of(body))}
 
 
 @contextmanager

@@ -283,6 +283,15 @@ def test_arbiters_of_sleeping_bodies_keep_the_impulses_of_their_last_step(others
     for _ in range(3):
         assert sorted(weights(pile[0])) == pytest.approx([-10.0 / 120.0, 20.0 / 120.0])
         stepper.step(1 / 60)
+    assert sorted(weights(space.static_body))[0] == pytest.approx(-20.0 / 120.0)
+    pile[1].activate()
+    pile[1].position = -3.0, 0.1  # as they sleep again, they do not touch
+    space.reindex_shapes_for_body(pile[1])
+    stepper.step(1 / 60)
+    while not (pile[0].is_sleeping and pile[1].is_sleeping):
+        stepper.step(1 / 60)
+    stepper.step(1 / 60)
+    assert weights(pile[0]) == weights(pile[1]) == pytest.approx([10.0 / 60.0])
     pile[0].activate()
     stepper.step(1 / 60)
     space.remove(pile[1], *pile[1].shapes)
