@@ -42,7 +42,7 @@ EDITS = {
     "islands": "islands/intervals.py",
     "impacts": "impacts/simultaneous.py",
     "joints": "newton/solve.py",
-    "jointed": "jointed/press.py",
+    "jointed": "jointed/iteration.py",
     "none (a comment)": "impacts/scene.py",
 }
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 
 from ..compiled import Table, kernel
 from ..islands.loads import renew_support
-from ..jointed.ledger import account_joints, load_welds, note_spent, start_joints
+from ..jointed.ledger import account_joints, note_spent, start_joints
+from ..jointed.welds import load_welds
 from ..joints.pinned import put_pinned
 from ..model.joints import Joints, joints_of
 from ..model.parameters.joints import MEET_INSTANT

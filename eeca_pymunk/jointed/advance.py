@@ -49,7 +49,7 @@ class Motion(NamedTuple):
 class Interval(NamedTuple):
     """An island over an interval of length h from instant t: its k bodies, of which impulses move the first n; their
     groups; m contacts ROWS with columns C; and, out, the motion of the bodies. few: whether so few contacts may act
-    (`press_laws.few_act`) that they are solved exactly."""
+    (`contact_laws.few_act`) that they are solved exactly."""
 
     isle: Island
     groups: Groups

@@ -8,15 +8,12 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import nonallocating
 from ..contacts.counts import note_unmet
 from ..joints.ledger import clear_interval
-from ..joints.pinned import mass_of
-from ..joints.welds import pass_on, pinned_row, push_weld
-from ..layout import ACCELERATION_X, ACCELERATION_Y, ANGULAR_ACCELERATION, BODY_ROW, FLAGS, READ, STEERED, WRITTEN
+from ..layout import BODY_ROW, READ, WRITTEN
 from ..model.joint_steps import ELASTIC
-from ..model.joints import EDITED, TAKEN_OVER, WELDED, Joints
+from ..model.joints import EDITED, TAKEN_OVER, Joints
 from ..model.parameters.joints import STEP_WORK, STEP_WORK_BODY
 from ..model.scene import Scene
 from ..model.step import JOINTS as UNMET_JOINTS
-from ..model.values import Reading
 from ..prediction.work import growth, most_work
 
 
@@ -141,42 +138,3 @@ def account_joints(A: Scene, J: Joints) -> None:
             longer = A.PAR.planned / joint.last_step
             joint.impulse[0], joint.impulse[1] = joint.impulse[0] * longer, joint.impulse[1] * longer
             joint.last_step = A.PAR.planned
-
-
-@nonallocating
-def load_welds(A: Scene, J: Joints, R: Reading) -> None:
-    """At the end of a step, write the impulses of welded bodies' joints, by the balance of momentum
-    (`..joints.welds`). If the step was cut short, forces are kept, as by `account_joints`."""
-    IDS, now = R.IDS, R.STATES[READ]
-    PINNED, BODY, dt, links = J.PINNED, A.BODY, A.PAR.planned, 0
-    for k in range(J.TALLY.pinned):
-        pinned = PINNED[k]
-        for c in range(2 if pinned.kind == WELDED else 0):
-            joint = J.JOINT[pinned.weld[c] // 2]
-            joint.impulse[0], joint.impulse[1], joint.last_step = 0.0, 0.0, A.PAR.planned
-        links = max(links, pinned.link)
-    for i in range(IDS.shape[1] if links > 0 else 0):
-        row = IDS[BODY_ROW, i]
-        k = pinned_row(J, row) if row >= 0 and BODY[row].inv_mass == 0.0 else -1
-        if k >= 0:
-            pinned = PINNED[k]
-            mass, moment = dt * mass_of(pinned.inv_mass), dt * mass_of(pinned.inv_inertia)
-            px, py = mass * A.PAR.gravity_x + dt * now[i, 6], mass * A.PAR.gravity_y + dt * now[i, 7]
-            twist = dt * now[i, 8]
-            if IDS[FLAGS, i] & STEERED:
-                px, py = mass * R.EXTRA[i, ACCELERATION_X], mass * R.EXTRA[i, ACCELERATION_Y]
-                twist = moment * R.EXTRA[i, ANGULAR_ACCELERATION]
-            push_weld(J, pinned, pinned.x, pinned.y, px, py, twist)
-    for e in range(A.COUNT.logged if links > 0 else 0):
-        one = A.LOG[e]
-        px, py = one.normal * one.nx - one.tangential * one.ny, one.normal * one.ny + one.tangential * one.nx
-        longer = dt / A.PAR.dt if one.duration > 0.0 else 1.0
-        for end in range(2):
-            row, side = A.LINK[int(one.first if end == 0 else one.second)].owner, (2.0 * end - 1.0) * longer
-            k = pinned_row(J, row) if BODY[row].inv_mass == 0.0 else -1
-            if k >= 0:
-                push_weld(J, PINNED[k], one.px, one.py, side * px, side * py, 0.0)
-    for link in range(links, 1, -1):
-        for k in range(J.TALLY.pinned):
-            if PINNED[k].link == link:
-                pass_on(J, PINNED[k])

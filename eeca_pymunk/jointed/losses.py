@@ -8,7 +8,7 @@ from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..model.contacts import Bounded, Row
 from ..model.joints import Joints
-from ..model.parameters.joints import BOUNDED_SWEEPS, PRESS_LOCKS
+from ..model.parameters.joints import BOUNDED_SWEEPS, LOCK_TRIES
 from ..model.scene import Scene
 from ..rows.bounded import sweep_bounded
 from ..rows.build import normal_rate, slip_rate
@@ -37,8 +37,8 @@ def lost(interval: Interval, L: FloatArray) -> float:
 
 @nonallocating
 def work_error(interval: Interval, L: FloatArray, slow: float, pull: float, known: float) -> float:
-    """Round-off of the energy that contacts lose: of the island's energy, and `known` times the sum of impulses times
-    speed. `slow`, `pull`: see `press.solve_contacts`."""
+    """Round-off of the energy that contacts lose: 1e-15, some spacings of numbers, of the island's energy, and `known`
+    times the sum of impulses times speed. `slow`, `pull`: see `iteration.solve_contacts`."""
     isle, h = interval.isle, interval.h
     energy, pressed = 0.0, 0.0
     for q in range(interval.n):
@@ -77,19 +77,21 @@ def lock_jointed(
     error: float,
 ) -> None:  # fmt: skip
     """Scale the impulses L of contacts by s until these lose at least `owed`, or if `elastic` exactly that, up to
-    `error`. s follows from the slope p - 2 q at s = 1, again for each new motion; without work it does so
-    once."""
+    `error`. s follows from the slope p - 2 q at s = 1, again for each new motion; without work it does so once.
+
+    The loss of s L is p s - q s^2, so that a step of Newton's method from s = 1 is of use near 1. Beyond 0.1 < s < 2
+    the impulses are halved, if they have to lose no more than nothing: for small s the loss has the sign of p. Else,
+    and for elastic ones beyond 0 < s < 2, they are dropped, as they are after the last attempt."""
     m = interval.m
-    for tries in range(PRESS_LOCKS + 1):
+    for tries in range(LOCK_TRIES + 1):
         loss = lost(interval, L)
         if loss >= owed - error and (not elastic or loss <= owed + error):
             break
         s, _ = scale_of_loss(interval, L, B, owed - loss)
         spent = J.PROGRESS.effort > J.PROGRESS.share
-        if tries == PRESS_LOCKS or (spent and tries > 0) or (elastic and not 0.0 < s < 2.0):
+        if tries == LOCK_TRIES or (spent and tries > 0) or (elastic and not 0.0 < s < 2.0):
             s = 0.0
         elif not 0.1 < s < 2.0:
-            # For small s the loss of s L has the sign of p: L is halved, repeatedly.
             s = 0.5 if owed <= 0.0 and not spent else 0.0
         for i in range(m):
             L[i, 0] = s * L[i, 0] if s > 0.0 else 0.0

@@ -29,16 +29,17 @@ from ..rows.laws import give_slips, take_slips
 from .advance import Interval, advance, motion_at_start
 from .alone import account_turning, begin_alone, is_component, meets_no_other, set_path
 from .columns import make_columns
+from .contact_laws import few_act
 from .fitting import project_velocities
 from .gathered import restore_joints, save_joints, takes_shorter
 from .groups import find_groups
+from .iteration import solve_contacts
 from .ledger import has_work_for, work_left
 from .lengths import excess, forced_deeper, next_length, too_deep_on_way, within_sagitta
 from .lifting import keep_angular_momentum, lift_island
 from .losses import slip_of
-from .press import GIVEN_UP, SOLVED, solve_contacts
-from .press_laws import few_act
 from .rest import rest_if_still
+from .settling import GIVEN_UP, SOLVED
 
 
 @kernel
@@ -105,8 +106,8 @@ def excess_length(
     A: Scene, J: Joints, interval: Interval, L: FloatArray, root: int, effort: float, solved: bool, last: bool
 ) -> float:
     """How many times too long the interval of an island is, whose motion under impulses L of its contacts took so much
-    effort; also sets its `strays`. `press.solve_contacts` gives a long interval up before there is a motion, for what
-    only its iterations show: components that are not stepped as a whole, or work that is spent.
+    effort; also sets its `strays`. `iteration.solve_contacts` gives a long interval up before there is a motion, for
+    what only its iterations show: components that are not stepped as a whole, or work that is spent.
 
     Args:
         solved: whether contacts are.  last: whether no other attempt follows, see `try_jointed`.

@@ -1,10 +1,7 @@
 """Welded bodies: a closed pivot and a closed gear of unlimited force hold each on static or other welded bodies.
 
-They have no joints but these, and those of bodies welded to them. As they do not move, the impulses of both joints
-follow from the balance of momentum over a step. With P the sum of all impulses on the body (gravity, forces, contacts,
-bodies welded to it) and L that of their moments about the pivot:
-
-    impulse of the pivot = -P,      impulse of the gear = -L.
+They have no joints but these, and those of bodies welded to them, so that the impulses of both joints follow from the
+balance of momentum (`..jointed.welds`).
 """
 
 from __future__ import annotations
@@ -15,9 +12,9 @@ from ..arrays import IntArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.bodies import Body
-from ..model.joints import FREE, GEAR, PIVOT, WELDED, Joint, Joints, Pinned
+from ..model.joints import FREE, GEAR, PIVOT, WELDED, Joint
 from ..model.parameters.joints import STRAIGHT_CHAIN
-from .straight import anchor, anchor_at
+from .straight import anchor
 
 
 @nonallocating
@@ -79,52 +76,3 @@ def weld(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, pinned: IntArr
             return count
         for i in range(len(bodies)):
             pinned[i] = FREE if pinned[i] == WELDED else pinned[i]
-
-
-@nonallocating
-def pinned_row(J: Joints, body: int) -> int:
-    """The row of a body in PINNED, which is sorted; -1 if it has none."""
-    PINNED, pinned = J.PINNED, J.TALLY.pinned
-    low, high = 0, pinned
-    while low < high:
-        middle = (low + high) // 2
-        if PINNED[middle].body < body:
-            low = middle + 1
-        else:
-            high = middle
-    return low if low < pinned and PINNED[low].body == body else -1
-
-
-@nonallocating
-def pivot_place(J: Joints, pinned: Pinned) -> tuple[float, float]:
-    """The place of a welded body's pivot."""
-    return anchor_at(J.JOINT[pinned.weld[0] // 2], pinned.weld[0] % 2, pinned.x, pinned.y, pinned.angle)
-
-
-@nonallocating
-def push_weld(J: Joints, pinned: Pinned, x: float, y: float, px: float, py: float, twist: float) -> None:
-    """Add the reaction to an impulse (px, py) at (x, y), and to an angular one `twist`, to the impulses of a welded
-    body's joints; nothing for other bodies."""
-    if pinned.kind != WELDED:
-        return
-    pivot, gear = J.JOINT[pinned.weld[0] // 2], J.JOINT[pinned.weld[1] // 2]
-    at_x, at_y = pivot_place(J, pinned)
-    side = 1.0 if pinned.weld[0] % 2 == 0 else -1.0  # the impulse of a joint acts on its body b
-    pivot.impulse[0], pivot.impulse[1] = pivot.impulse[0] + side * px, pivot.impulse[1] + side * py
-    turn = twist + (x - at_x) * py - (y - at_y) * px
-    gear.impulse[0] += -turn if pinned.weld[1] % 2 == 1 else turn * gear.ratio
-
-
-@nonallocating
-def pass_on(J: Joints, pinned: Pinned) -> None:
-    """Apply the impulses of a welded body's joints to the bodies that it is welded to."""
-    pivot, gear = J.JOINT[pinned.weld[0] // 2], J.JOINT[pinned.weld[1] // 2]
-    under = pinned_row(J, pivot.body[1 - pinned.weld[0] % 2])
-    beside = pinned_row(J, gear.body[1 - pinned.weld[1] % 2])
-    if under >= 0:
-        x, y = pivot_place(J, pinned)
-        side = -1.0 if pinned.weld[0] % 2 == 1 else 1.0
-        push_weld(J, J.PINNED[under], x, y, side * pivot.impulse[0], side * pivot.impulse[1], 0.0)
-    if beside >= 0:
-        turn = gear.impulse[0] * (-1.0 / gear.ratio if pinned.weld[1] % 2 == 1 else 1.0)
-        push_weld(J, J.PINNED[beside], 0.0, 0.0, 0.0, 0.0, turn)

@@ -91,7 +91,8 @@ def plan_components(table: Table, joints: Table) -> int:
     return J.TALLY.pinned
 
 
-_PLAN = "TALLY", "PROGRESS", "PARTS", "PART_LEDGER", "STIFF", "COMPONENT", "JOINED", "COUPLING", "KEPT", "STEPPED", "OF"
+_ONE = "TALLY", "PROGRESS", "PARTS", "AGREEMENT", "PART_LEDGER"
+_PLAN = *_ONE, "STIFF", "COMPONENT", "JOINED", "COUPLING", "KEPT", "STEPPED", "OF"
 _OF_ONE = "LOCAL", "HINGE", "PIVOTS", "MATRIX", "RIGHT", "MORE"  # scratch of one component, in the order of ROOM
 
 
@@ -132,8 +133,8 @@ class JointMemory:
         j, x = len(JOINT), len(PARTNER)
         while True:
             counts = {
-                "TALLY": 1, "PROGRESS": 1, "PARTS": 1, "PART_LEDGER": 1, "STIFF": 6, "OF": n, "JOINT": j, "PARTNER": x,
-                "STILL": len(STILL), "PINNED": n if len(STILL) else 0, "ROOM": len(_OF_ONE),
+                **dict.fromkeys(_ONE, 1), "STIFF": 6, "OF": n, "JOINT": j, "PARTNER": x, "STILL": len(STILL),
+                "PINNED": n if len(STILL) else 0, "ROOM": len(_OF_ONE),
                 "COMPONENT": j, "JOINED": 2 * j, "COUPLING": j, "KEPT": j, "STEPPED": j,
                 **dict(zip(_OF_ONE, self._most, strict=True)),
             }  # fmt: skip

@@ -98,6 +98,31 @@ class Progress(Record):
     length: int  # of an interval with contacts: FINAL, SHORT or LONG
 
 
+class Agreement(Record):
+    """How far the contacts and the components of an interval agree (`..jointed.iteration`). Differences, tolerances
+    and residuals are velocities."""
+
+    slow: float  # root mean square of the speeds of the island's bodies, and the largest
+    fast: float
+    pull: float  # the largest acceleration of a point, |a|
+    owed: float  # energy >= 0 that the contacts have to lose at least
+    top_speed: float  # the largest speed that impulses may explain
+    scale: float  # the unit of errors, and three tolerances (`..jointed.contact_laws.aims`)
+    agree: float
+    enough: float
+    fine: float
+    residual: float  # by which the last solution of the contacts' laws breaks them
+    least: float  # smallest difference between contacts and components since contacts last gained energy
+    reached: float  # smallest of all
+    of_least: int  # the iteration of `least`
+    rough: int  # 1 if the laws' solution is rough (`..jointed.contact_laws.solve_laws`)
+    limited: int  # 1 if friction is limited by energy
+    filled: int  # 1 if the columns are those of the motion with which iterations ended
+    agreed: int  # 1 if iterations ended as contacts and components agree
+    converged: int  # 1 if contacts are solved
+    bent: float  # error of the arms of contacts (`..jointed.advance.align`)
+
+
 class Parts(Record):
     """A step taken in parts between instants at which limits are met: what is left of it, the solve of the present
     part, and the search for the instant at which a limit is met."""

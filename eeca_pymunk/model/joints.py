@@ -12,7 +12,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import Opener
 from ..compiled.records import Record, Rows
 from .bodies import Body
-from .joint_steps import BodyStep, JointLedger, JointStep, Parts, Progress
+from .joint_steps import Agreement, BodyStep, JointLedger, JointStep, Parts, Progress
 
 
 class Joint(Record):
@@ -173,14 +173,14 @@ class Tally(Record):
 class Joints(NamedTuple):
     """The arrays of the joints of a scene.
 
-    JOINT (j,): bodies are rows of BODY (n rows) or n + row of PARTNER (x,), which joints cannot move; STILL (n + x,):
-    1 for static partners, and for kinematic bodies of BODY at rest, (0,) if there can be none. PINNED: bodies that
-    joints hold where they are, sorted. The plan: COMPONENT (components,), with the bodies of each in JOINED and its
-    joints in COUPLING; ROOM (6,): see `measure_plan`. Scratch for the largest component: HINGE, LOCAL, of its joints
-    and bodies; MATRIX, banded; RIGHT, right sides; PIVOTS; MORE, of linear systems and bounded rows; STIFF (6, 6),
-    derivative of a joint's impulse by the ways of its bodies; PROGRESS; PARTS; PART_LEDGER, of a part of the step. OF
-    (n,): the component of a body, -1 for none. KEPT (j,): the joints at the start of an interval. STEPPED
-    (components,): their ledgers in their intervals.
+    JOINT (j,): bodies are rows of BODY (n rows) or n + row of PARTNER (x,), which joints cannot move; STILL (n + x,): 1
+    for static partners, and for kinematic bodies of BODY at rest, (0,) if there can be none. PINNED: bodies that joints
+    hold where they are, sorted. The plan: COMPONENT (components,), with the bodies of each in JOINED and its joints in
+    COUPLING; ROOM (6,): see `measure_plan`. Scratch for the largest component: HINGE, LOCAL, of its joints and bodies;
+    MATRIX, banded; RIGHT, right sides; PIVOTS; MORE, of linear systems and bounded rows; STIFF (6, 6), derivative of a
+    joint's impulse by the ways of its bodies; PROGRESS; PARTS; AGREEMENT; PART_LEDGER, of a part of the step. OF (n,):
+    the component of a body, -1 for none. KEPT (j,): the joints at the start of an interval. STEPPED (components,):
+    their ledgers in their intervals.
     """
 
     JOINT: Rows[Joint]
@@ -199,6 +199,7 @@ class Joints(NamedTuple):
     STIFF: FloatArray
     PROGRESS: Progress
     PARTS: Parts
+    AGREEMENT: Agreement
     PART_LEDGER: JointLedger
     PIVOTS: IntArray
     OF: IntArray

@@ -13,10 +13,10 @@ import eeca_pymunk as ep
 from comparisons import program_joints
 from eeca_pymunk.compiled.records import zeros
 from eeca_pymunk.contacts.interval import make_contacts
-from eeca_pymunk.jointed import press, press_laws
+from eeca_pymunk.jointed import contact_laws, iterates
 from eeca_pymunk.jointed.advance import Interval, Motion
+from eeca_pymunk.jointed.broyden import fit_columns
 from eeca_pymunk.jointed.groups import Groups
-from eeca_pymunk.jointed.secant import fit_columns
 from eeca_pymunk.model.contacts import ROW, Columns
 from eeca_pymunk.model.islands import Island
 from eeca_pymunk.model.parameters.joints import CHORD, COLUMN_CONTACTS
@@ -49,16 +49,16 @@ def test_contacts_count_that_may_act(h: float) -> None:
     """Of two disks that stand apart by g, and approach by u: those that meet within h are counted, others not."""
     rows, still, pull = zeros(200, ROW), np.zeros((2, 3)), 10.0
     rows["b"], rows["nx"], rows["gap"] = 1, 1.0, 1.01 * pull * h * h
-    assert press_laws.few_act(rows, still, 200, h, pull)
+    assert contact_laws.few_act(rows, still, 200, h, pull)
     rows["gap"][:COLUMN_CONTACTS] = 0.99 * pull * h * h
-    assert press_laws.few_act(rows, still, 200, h, pull)
+    assert contact_laws.few_act(rows, still, 200, h, pull)
     rows["gap"][COLUMN_CONTACTS] = 0.0
-    assert not press_laws.few_act(rows, still, 200, h, pull)
-    assert press_laws.few_act(rows, still, COLUMN_CONTACTS, h, pull)
+    assert not contact_laws.few_act(rows, still, 200, h, pull)
+    assert contact_laws.few_act(rows, still, COLUMN_CONTACTS, h, pull)
     closing = np.array([[1.02 * pull * h, 0.0, 0.0], [0.0, 0.0, 0.0]])
     rows["gap"] = 2.01 * pull * h * h
-    assert press_laws.few_act(rows, still, 200, h, pull)
-    assert not press_laws.few_act(rows, closing, 200, h, pull)
+    assert contact_laws.few_act(rows, still, 200, h, pull)
+    assert not contact_laws.few_act(rows, closing, 200, h, pull)
 
 
 def test_contacts_that_a_long_interval_leaves_are_solved_in_shorter_ones() -> None:
@@ -168,8 +168,8 @@ def test_iterations_that_do_not_come_to_agree_end(monkeypatch: pytest.MonkeyPatc
         solved.append(1)
         return solve(*arguments)
 
-    solve = press_laws.solve_columns
-    monkeypatch.setattr(press_laws, "solve_columns", laws)
-    monkeypatch.setattr(press, "farthest_apart", lambda *_: off)
+    solve = contact_laws.solve_columns
+    monkeypatch.setattr(contact_laws, "solve_columns", laws)
+    monkeypatch.setattr(iterates, "farthest_apart", lambda *_: off)
     interval(*box_with(with_weight, True))
     assert len(solved) == most

@@ -14,7 +14,7 @@ import eeca_pymunk as ep
 from eeca_pymunk.impacts import joint_impact
 from eeca_pymunk.islands.candidates import pairs_within
 from eeca_pymunk.islands.local import number_bodies
-from eeca_pymunk.jointed import meet, press, solve
+from eeca_pymunk.jointed import iteration, meet, solve
 from eeca_pymunk.model.parameters import joints as parameters
 from eeca_pymunk.model.parameters.events import PAIR_LOOKS
 from eeca_pymunk.newton import effort, response, systems
@@ -121,7 +121,7 @@ CHANGES: list[Part] = [
     (module, name, lambda tableau, *_: tableau.T.shape[1])
     for module, name in ((homotopy_start, "slip"), (homotopy, "change"))
 ]
-ITERATIONS: list[Part] = [(press, "advance", lambda A, J, interval, *_: interval.m + 2)]
+ITERATIONS: list[Part] = [(iteration, "advance", lambda A, J, interval, *_: interval.m + 2)]
 INTERVALS: list[Part] = [(solve, "pairs_within", lambda *_: 3)]  # one pair, and two more
 
 

@@ -150,18 +150,18 @@ LOCK_SHIFT = accuracy(1e-05, "of |a| h and the speed",
     "Change of velocities by which the energy lock may break the laws of contacts.")
 AGREE_REST = accuracy(1e-11, "of |a| h and the speed", "This difference near rest.")
 AGREE_ELASTIC = accuracy(1e-13, "of |a| h and the speed", "This difference in elastic islands.")
-PRESS_SWEEPS_FEW = work(30, "sweeps", "Sweeps over few contacts of components.")
-PRESS_SWEEPS_ELASTIC = work(400, "sweeps", "Sweeps over elastic contacts of components.")
-PRESS_RESIDUAL = accuracy(1e-09, "of |a| h and the speed", "Residual of sweeps over contacts of components.")
-PRESS_RESIDUAL_REST = accuracy(1e-12, "of |a| h and the speed", "Residual of these sweeps near rest.")
-PRESS_LOCKS = work(10, "number", "Attempts of the energy lock of components, at most.")
+LAWS_SWEEPS_FEW = work(30, "sweeps", "Sweeps over few contacts of components.")
+LAWS_SWEEPS_ELASTIC = work(400, "sweeps", "Sweeps over elastic contacts of components.")
+LAWS_RESIDUAL = accuracy(1e-09, "of |a| h and the speed", "Residual of sweeps over contacts of components.")
+LAWS_RESIDUAL_REST = accuracy(1e-12, "of |a| h and the speed", "Residual of these sweeps near rest.")
+LOCK_TRIES = work(10, "number", "Attempts of the energy lock of components, at most.")
 JOINTS_NEAR = accuracy(1e-09, "of the component", "Error of joints while many contacts have not converged.")
 FIT_ROUND_OFF = round_off(1e-12, "of the size of a body",
     "Way in an interval up to which columns are not made to fit what they missed.")
 OUTER_FLOOR = round_off(1e-08, "of the speed",
     "Difference of the velocities at which elastic contacts count as solved if it does not fall: round-off of stiff "
     "components.")
-PRESS_WORK_ROUND_OFF = round_off(4e-14, "of impulses times speed", "Round-off of the work of contacts of components.")
+LOSS_ROUND_OFF = round_off(4e-14, "of impulses times speed", "Round-off of the work of contacts of components.")
 SWEEP_WORK = work(38.0, "operations", "Work of a sweep for each contact and bounded row.")
 SWEEP_ENTRY_WORK = work(15.0, "operations", "Work of a sweep for each entry of their columns.")
 SLIP_WORK = work(125.0, "operations", "Work of a contact in a sweep beside that if it does not stick.")
@@ -174,7 +174,7 @@ CHANGE_ENTRY_WORK = work(0.6, "operations", "Work of a change of state for each 
 CONTACT_WORK = work(1300.0, "operations",
     "Work of a contact in an iteration between contacts and components, besides sweeps and homotopies.")
 INTERVAL_WORK = work(6600.0, "operations", "Work of an interval of an island with joints for each pair of shapes.")
-PRESS_WORK_TAUT = round_off(1e-09, "of impulses times speed",
+LOSS_ROUND_OFF_TAUT = round_off(1e-09, "of impulses times speed",
     "Round-off of the work of contacts on taut joints, at most.")
 CHORD = work(5, "steps of the components", "Iterations after which the response is computed anew.")
 CLOSES = round_off(1e-12, "of the fastest contact",
@@ -191,5 +191,9 @@ LAWS_ROUGH = work(1e-3, "of the change of velocities in a sweep",
 GUESS_SPEED = round_off(1e2, "of the island's speed and |a| h",
     "Velocity without impulses, by the answers to a guess, from which on the guess is none.")
 GENTLE_SWEEPS = work(20, "sweeps", "Sweeps that replace an excessive solution.")
+LAWS_SOLVED = accuracy(10.0, "of AGREE",
+    "Residual of the contacts' laws, solved with columns, up to which contacts count as solved.")
+OUTER_STANDS = accuracy(0.001, "of AGREE, or AGREE_REST",
+    "Change of velocities by a solution of the contacts' laws up to which the motion before it is their solution.")
 OUTER_PROGRESS = work(0.3, "ratio of differences",
     "Progress of the iterations between contacts and components below which they are given up; they end at AGREE.")

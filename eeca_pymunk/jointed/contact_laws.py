@@ -1,5 +1,5 @@
 """How the contacts of an island with joints are solved, and one solution of their laws, with the columns of components
-(`press` alternates between these and steps of the components)."""
+(`iteration` alternates between these and steps of the components)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..contacts.correction import stop_at_walls
 from ..islands.candidates import before_end, sweeps_of
-from ..model.contacts import JointedProblem, Row
+from ..model.contacts import Bounded, JointedProblem, Row
+from ..model.joint_steps import Agreement
 from ..model.joints import Joints
 from ..model.parameters import joints
 from ..model.parameters.impulses import WEDGED
@@ -54,28 +55,29 @@ def manner_of(A: Scene, interval: Interval) -> Manner:
     """How the contacts of an interval are solved."""
     elastic = conserves(interval.ROWS, interval.m)
     if elastic:
-        return Manner(True, True, joints.OUTER, joints.PRESS_SWEEPS_ELASTIC)
+        return Manner(True, True, joints.OUTER, joints.LAWS_SWEEPS_ELASTIC)
     if interval.few:
-        return Manner(False, True, joints.OUTER, joints.PRESS_SWEEPS_FEW)
+        return Manner(False, True, joints.OUTER, joints.LAWS_SWEEPS_FEW)
     rounds = joints.OUTER_PART if before_end(A, interval.t + interval.h) else joints.OUTER_MANY
     return Manner(False, False, rounds, sweeps_of(interval.n, interval.t))
 
 
 @nonallocating
-def aims(change: float, slow: float, fast: float, elastic: bool) -> tuple[float, float, float, float]:
-    """Four tolerances of the iterations, each a velocity: the unit of errors; the difference between the velocities of
-    contacts and components at which iterations end; that at which contacts count as solved where iterations come no
-    nearer; the residual of the contacts' laws. change: |a| h.  slow, fast: speeds of the island."""
+def set_aims(S: Agreement, h: float, elastic: bool) -> None:
+    """Set `scale` |a| h + speed, and the tolerances in it: `agree`, the difference between the velocities of contacts
+    and components at which iterations end; `enough`, that at which contacts count as solved where iterations come no
+    nearer; `fine`, the residual of the contacts' laws.
+
+    Contacts that lose energy are measured by the mean speed, elastic ones, whose energy is exact, by the largest. The
+    island is near rest where |a| h is more than its mean speed."""
+    change = S.pull * h
     if elastic:
-        scale = change + fast
-        return scale, joints.AGREE_ELASTIC * scale, joints.OUTER_FLOOR * scale, 1e-15 * scale
-    scale, rests = change + slow, slow < change
-    return (
-        scale,
-        (joints.AGREE_REST if rests else joints.AGREE) * scale,
-        joints.AGREE * scale,
-        (joints.PRESS_RESIDUAL_REST if rests else joints.PRESS_RESIDUAL) * scale,
-    )
+        S.scale, agree, enough, fine = change + S.fast, joints.AGREE_ELASTIC, joints.OUTER_FLOOR, 1e-15
+    elif S.slow < change:
+        S.scale, agree, enough, fine = change + S.slow, joints.AGREE_REST, joints.AGREE, joints.LAWS_RESIDUAL_REST
+    else:
+        S.scale, agree, enough, fine = change + S.slow, joints.AGREE, joints.AGREE, joints.LAWS_RESIDUAL
+    S.agree, S.enough, S.fine = agree * S.scale, enough * S.scale, fine * S.scale
 
 
 @kernel
@@ -92,39 +94,36 @@ def begin_laws(interval: Interval, problem: JointedProblem, L: FloatArray, FORES
 
 @kernel
 def solve_laws(
-    A: Scene, J: Joints, interval: Interval, problem: JointedProblem, manner: Manner, L: FloatArray,
-    FORESEEN: FloatArray, scale: float, fine: float, top_speed: float, sweeps: int, first: bool,
-) -> tuple[float, bool]:  # fmt: skip
+    A: Scene, J: Joints, interval: Interval, D: Bounded, manner: Manner, L: FloatArray, FORESEEN: FloatArray,
+    S: Agreement, sweeps: int, first: bool,
+) -> None:  # fmt: skip
     """Solve the laws of the contacts with the columns, from impulses L, which are replaced. FORESEEN: out, the
-    velocities by the columns.
+    velocities by the columns. Of S are set `residual`, that of the laws or the change of velocities in the last sweep;
+    `converged`; and `rough`: whether the solution is by sweeps, as the exact one of the `first` motion has excessive
+    impulses.
 
     Args:
-        scale, fine: see `aims`.  top_speed: the largest that contacts may explain.  sweeps: before the first homotopy.
-        first: whether this is the first solution of the interval.
-
-    Returns:
-        the velocity by which laws are broken, or of a change in the last sweep; and whether the solution is rough, by
-        sweeps, as the exact one of the `first` has excessive impulses.
+        D: bounded rows.  sweeps: before the first homotopy.  first: whether this is the first solution of the interval.
     """
-    m, C, USED = interval.m, interval.C, L.copy()
+    m, C, USED, problem = interval.m, interval.C, L.copy(), JointedProblem(interval.ROWS, interval.C, D, interval.m)
     BOTH = begin_laws(interval, problem, L, FORESEEN)
     work = J.PROGRESS.share - J.PROGRESS.effort
     if interval.few:
-        worst = solve_columns(problem, BOTH, FORESEEN, fine, sweeps, manner.sweeps, work)
-        if worst > WEDGED * scale and rubs(interval.ROWS, m):
-            worst = solve_wedged(problem, BOTH, FORESEEN, fine, manner.sweeps, work)
+        residual = solve_columns(problem, BOTH, FORESEEN, S.fine, sweeps, manner.sweeps, work)
+        if residual > WEDGED * S.scale and rubs(interval.ROWS, m):
+            residual = solve_wedged(problem, BOTH, FORESEEN, S.fine, manner.sweeps, work)
     else:
-        worst = sweep_conjugate(problem, BOTH, FORESEEN, fine, manner.sweeps)[1]
-    rough = first and manner.exactly and excessive(BOTH, m, interval.isle.IM, interval.n, top_speed)
+        residual = sweep_conjugate(problem, BOTH, FORESEEN, S.fine, manner.sweeps)[1]
+    rough = first and manner.exactly and excessive(BOTH, m, interval.isle.IM, interval.n, S.top_speed)
     if rough:
         # Far from the solution laws may contradict one another, by as much as the columns are wrong.
         copy(L, USED)
         BOTH = begin_laws(interval, problem, L, FORESEEN)
-        worst = sweep(problem, BOTH, FORESEEN)
-        worst = sweep_conjugate(problem, BOTH, FORESEEN, joints.LAWS_ROUGH * worst, manner.sweeps)[1]
+        residual = sweep(problem, BOTH, FORESEEN)
+        residual = sweep_conjugate(problem, BOTH, FORESEEN, joints.LAWS_ROUGH * residual, manner.sweeps)[1]
     if not manner.exactly:
         stop_at_walls(A, problem, interval.n, C.LEFT_OUT, BOTH, FORESEEN)
     count_operations(J, C)
     for i in range(m):
         L[i, 0], L[i, 1] = BOTH[i, 0], BOTH[i, 1]
-    return worst, rough
+    S.residual, S.rough, S.converged = residual, int(rough), int(residual <= joints.LAWS_SOLVED * S.enough)

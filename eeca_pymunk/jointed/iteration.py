@@ -1,0 +1,178 @@
+"""Contacts of an island with joints in one bounded solve; joints are exact.
+
+    M (v+ - v) = h M a + F_s + J^T Lam + G^T lam + T^T beta,    J, F_s the discrete rows of the joints,
+
+contact rows at the predicted middle, as in `..contacts.geometry`. The impulses of contacts act on components as
+constant forces over the interval. So joints, springs, limits and motors satisfy `..joints` to round-off even if the
+contacts' solve is truncated, and a contact loses exactly -lam . (way of its row)/h. Impulses follow from Newton's
+method in the space of contacts: components are stepped under the present impulses, their columns linearise them, and
+the contacts' laws are solved with the columns, until the velocities of both agree.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..compiled import kernel
+from ..contacts.targets import target
+from ..model.contacts import Bounded
+from ..model.joint_steps import LONG, Agreement
+from ..model.joints import Joints
+from ..model.parameters import joints
+from ..model.parameters.events import RESOLUTION
+from ..model.scene import Scene
+from ..rows.build import rates
+from ..rows.inplace import copy
+from ..rows.laws import give_slips
+from .advance import Interval, advance, align, farthest_apart
+from .broyden import fit_columns
+from .columns import fill_free, set_effective_masses
+from .contact_laws import set_aims, solve_laws
+from .gathered import some_refused
+from .iterates import Iterates, begin_agreement, begin_iterates, difference, gives_up
+from .losses import lost, scale_of_loss, without_contacts, work_error
+from .settling import GIVEN_UP, settle
+
+
+@kernel
+def accelerations(interval: Interval, L: FloatArray, B: Bounded) -> tuple[FloatArray, float]:
+    """Accelerations (k, 3) of the bodies without contacts: those of the motion, less the effect of its impulses L by
+    the columns; and the largest of any point."""
+    EFFECT = (without_contacts(interval, L, B) - interval.isle.V) / interval.h
+    return EFFECT, farthest_apart(EFFECT, np.zeros_like(EFFECT), interval.isle.EXTENT, interval.n)
+
+
+@kernel
+def accelerations_of_joints(A: Scene, J: Joints, interval: Interval, X: Iterates, S: Agreement) -> FloatArray:
+    """`accelerations` after the first motion: springs and motors accelerate bodies, too. A guess is dropped if bodies
+    do not move as the columns say."""
+    EFFECT, most = accelerations(interval, X.L, X.B)
+    if most * interval.h > joints.GUESS_SPEED * S.top_speed and X.L.any():
+        X.L[:] = 0.0
+        advance(A, J, interval, X.L, X.B, True, X.UNKNOWN)
+        EFFECT, most = accelerations(interval, X.L, X.B)
+    S.pull = max(S.pull, most)
+    return EFFECT
+
+
+@kernel
+def end_iterations(interval: Interval, X: Iterates, S: Agreement, outer: int) -> bool:
+    """Whether iterations end at motion number `outer` > 0, by the difference from FORESEEN; see `solve_contacts`."""
+    exactly, enough, off = X.manner.exactly, S.enough, difference(interval, X.FORESEEN)
+    S.reached = min(S.reached, off)
+    stalls = off > joints.OUTER_PROGRESS * S.least
+    if (off <= S.agree and not (S.rough > 0 and S.residual > S.fine)) or (off <= enough and stalls):
+        # Velocities agree, but contacts may gain energy by them: no more than the lock may take at the end.
+        error = work_error(interval, X.L, S.slow, S.pull, joints.LOSS_ROUND_OFF)
+        more = S.owed - lost(interval, X.L)
+        pays = X.manner.elastic or more <= error
+        if exactly and not pays:
+            pays = scale_of_loss(interval, X.L, X.B, more)[1] <= joints.LOCK_SHIFT * S.scale
+        if pays or (stalls and S.limited > 0):
+            S.converged = S.agreed = 1
+            return True
+        give_slips(interval.ROWS, interval.m, X.SLIP)
+        S.limited, S.least = 1, np.inf
+    if not exactly and off <= S.residual:
+        S.agreed = 1  # further iterations would agree less
+        return True
+    if off < S.least:
+        S.least, S.of_least = off, outer
+        copy(X.BEST, X.L)
+    # New columns have not helped either.
+    return exactly and outer >= joints.CHORD and (off > S.scale or outer - S.of_least > joints.CHORD)
+
+
+@kernel
+def iterate(A: Scene, J: Joints, interval: Interval, X: Iterates, S: Agreement, EXPECTED: FloatArray) -> bool:
+    """Iterate until contacts and components agree, or as `solve_contacts` says; False if the interval is given up."""
+    isle, groups, ROWS, motion, C, m, _, _, h, few = interval
+    begun = before = J.PROGRESS.effort
+    for outer in range(X.manner.rounds):
+        # Few contacts are solved gently without work, many at least once, but in long intervals.
+        taken, before = J.PROGRESS.effort - before, J.PROGRESS.effort
+        if before + taken >= J.PROGRESS.share and (few or outer > 0 or J.PROGRESS.length == LONG):
+            return S.converged > 0 or not gives_up(J, taken)
+        J.PROGRESS.effort += joints.CONTACT_WORK * (m + 2)
+        build = outer % joints.CHORD == 0
+        advance(A, J, interval, X.L, X.B, build, X.FORESEEN if outer > 0 else X.UNKNOWN)
+        payable = RESOLUTION * (J.PROGRESS.effort - begun) <= J.PROGRESS.budget  # many shorter intervals
+        if J.PROGRESS.length == LONG and (X.manner.exactly or payable) and some_refused(J, groups):
+            return False
+        S.bent = align(interval) if X.free else 0.0
+        if outer > 0 and end_iterations(interval, X, S, outer):
+            return True
+        if not build and not fit_columns(interval, X.B, X.L, X.USED, X.NOW, X.BEFORE):
+            advance(A, J, interval, X.L, X.B, True, X.FORESEEN)
+            build = True
+        if build and X.free:
+            fill_free(groups, C, ROWS, isle.IM, isle.II, m)
+        if outer == 0:
+            EFFECT = accelerations_of_joints(A, J, interval, X, S)
+        if few and J.PROGRESS.effort > J.PROGRESS.share:
+            S.converged, S.filled = 0, int(outer == 0)
+            return True
+        set_effective_masses(groups, C, ROWS, m)
+        if outer == 0:
+            set_aims(S, h, X.manner.elastic)
+            target(ROWS, m, EFFECT, EXPECTED, S.pull, h)
+        copy(X.BEFORE, motion.MEAN)
+        copy(X.USED, X.L)
+        for i in range(X.B.USED[0]):
+            X.NOW[i] = X.B.ROWS[i].now
+        sweeps = joints.COLUMN_SWEEPS if build else 0
+        solve_laws(A, J, interval, X.B, X.manner, X.L, X.FORESEEN, S, sweeps, outer == 0)
+        if difference(interval, X.FORESEEN) <= joints.OUTER_STANDS * S.agree:
+            # The motion is that of USED: others have the same effect by the columns, but perhaps not in a step.
+            copy(X.L, X.USED)
+            S.agreed = 1
+            return True
+    return True
+
+
+@kernel
+def solve_contacts(
+    A: Scene, J: Joints, interval: Interval, L: FloatArray, EXPECTED: FloatArray, slow: float, fast: float, pull: float,
+    owed: float,
+) -> int:  # fmt: skip
+    """Impulses L (in: guesses) of the m contacts of an island, and the motion under them. Returns SOLVED if they have
+    converged, else UNSOLVED, or GIVEN_UP without a result.
+
+    Each iteration steps the components under L, and ends if their velocities agree with FORESEEN, those that the
+    contacts' laws gave before; else it solves these laws with the columns, for L and FORESEEN. Columns are computed
+    again in every CHORD-th iteration, else updated (`broyden`). A long interval (PROGRESS.length) is given up where a
+    component gives way or is not stepped as a whole; of many contacts only if the step has work for many shorter
+    intervals; and where contacts have not converged when its work is spent, or is for what replaces their impulses.
+    Iterations end in five ways:
+
+    | because | `agreed` | `converged` | impulses |
+    |---|---|---|---|
+    | contacts and components agree, and contacts gain no energy | yes | yes | L |
+    | of many contacts, the laws' residual is larger than their difference | yes | as the laws' last solution | L |
+    | the laws' last solution gives the present motion | yes | as that solution | USED, those of this motion |
+    | iterations or work are used up | no | as that solution, if it agrees | L, or BEST if these agreed better |
+    | of few contacts, work is used up by the step of the components | no | no | as below |
+    | of few contacts, CHORD iterations have come no nearer, or nowhere near | no | likewise | likewise |
+
+    What comes no nearer agrees at `enough`: near rest velocities have to agree better, but less is a solution, too.
+    Where the exact solution of the first iteration is excessive, sweeps take its place (`rough`), and iterations go on.
+    Impulses that are excessive in the end, or not converged, are replaced (`solve_gently`). The lock is last.
+
+    Args:
+        slow, fast, pull: see `..contacts.interval.speeds`.  owed: energy >= 0 that the island has to lose at least.
+        interval: out, the columns of the contacts in their last solution.
+    """
+    isle, S = interval.isle, J.AGREEMENT
+    fill_free(interval.groups, interval.C, interval.ROWS, isle.IM, isle.II, interval.m)
+    rates(interval.ROWS, isle.V, interval.m)
+    X = begin_iterates(A, J, interval, L)
+    begin_agreement(S, slow, fast, pull, owed, interval.h)
+    set_aims(S, interval.h, X.manner.elastic)
+    # While many contacts have not converged, joints need not be exact before the last step of the components.
+    J.PROGRESS.near = 0.0 if X.manner.exactly or slow < pull * interval.h else joints.JOINTS_NEAR
+    if iterate(A, J, interval, X, S, EXPECTED):
+        give_slips(interval.ROWS, interval.m, X.SLIP)
+        return settle(A, J, interval, X, S)
+    J.PROGRESS.near = 0.0
+    return GIVEN_UP
