@@ -43,7 +43,7 @@ def gave_way(J: Joints, s: int) -> bool:
     if B.status < ELASTIC:
         return False
     first = J.COUPLING[J.COMPONENT[s].first_joint].joint  # has the compliance of all
-    worse = J.JOINT[first].compliance > J.KEPT[first].compliance and B.gave > max(B.apart, NEARLY_HELD)
+    worse = J.JOINT[first].compliance > J.KEPT[first].compliance and B.gave > max(B.misfit, NEARLY_HELD)
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         touched = J.KEPT[J.COUPLING[k].joint].touched
         if touched == LEFT_APART or (touched == GIVES_WAY and B.status == ELASTIC and not worse):

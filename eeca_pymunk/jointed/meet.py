@@ -99,7 +99,11 @@ def too_late(A: Scene, J: Joints, S: Meeting) -> float:
 def find_contact(A: Scene, J: Joints, S: Meeting) -> None:
     """Search the instant at which the gap is S.level by secants on the gap at the end of shortened intervals. It is no
     continuous function of their length: stiff springs swing more than once in a coarse interval. If shapes are on the
-    far side of each other, or their paths cross before the end, the instant is halved towards S.apart."""
+    far side of each other, or their paths cross before the end, the instant is halved towards S.apart.
+
+    It ends where shapes touch; once the work of the step is spent; after MEET_SECANTS instants, of which fewer are
+    tried where contacts push and the shapes are not deep in each other; where the gap does not close; and where no
+    other instant is left."""
     most, before, gap_before = 1 if in_large_island(A, S.a, S.b) else MEET_SECANTS_LOADED, -1.0, 0.0
     crosses = False
     for tries in range(MEET_SECANTS):

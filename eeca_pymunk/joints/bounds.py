@@ -206,7 +206,7 @@ def least_gap(W: Workspace, k: int, side: int, h: float) -> tuple[float, float]:
     if not end < math.inf:
         return end, 1.0
     if W.link[k].kind == SLIDE:
-        x, y = hinge.apart[0], hinge.apart[1]
+        x, y = hinge.span[0], hinge.span[1]
         way_x, way_y = 2.0 * (hinge.measure * hinge.rows[0, 3] - x), 2.0 * (hinge.measure * hinge.rows[0, 4] - y)
         along_way, squared = -(x * way_x + y * way_y), way_x * way_x + way_y * way_y
         if side > 0 or not 0.0 < along_way < squared:

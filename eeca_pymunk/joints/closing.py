@@ -29,9 +29,9 @@ def error_of(W: Workspace, k: int) -> float:
 
 
 @nonallocating
-def find_apart(W: Workspace, h: float) -> tuple[bool, bool, bool, bool]:
-    """Set the targets of joints that are apart to the part of their error that remains after this step, and set or
-    release limits that are passed or left.
+def set_targets(W: Workspace, h: float) -> tuple[bool, bool, bool, bool]:
+    """Before joints are closed: set the targets of those that are apart to the part of their error that remains after
+    this step, and set or release limits that are passed or left.
 
     Rows must be those of the present poses. Joints that will still be apart are marked APART, or LEFT_APART if a step
     has left them so; they keep the rest of their error over the step, so that it does no work. Elastic joints
@@ -124,9 +124,9 @@ def close_joints(W: Workspace, h: float, ledger: JointLedger) -> bool:
     """Close joints that are apart by the share of one step, and make velocities fit them after an edit. The costs enter
     the ledger of the step. Returns whether no edit has left joints apart."""
     stored = springs_of(W)
-    edited, unknown, apart, own = find_apart(W, h)
+    edited, unknown, apart, own = set_targets(W, h)
     if apart:
-        before, supports, carried = farthest(W), ledger.supports, ledger.carried
+        before, supports, carried = farthest(W), ledger.supports, ledger.frame_work
         project(W, POSES)
         taken = springs_of(W) - stored
         cost, turned = taken + closing_work(W), work_of_shift(W) if own else 0.0
@@ -139,10 +139,10 @@ def close_joints(W: Workspace, h: float, ledger: JointLedger) -> bool:
             go_back(W)
             compute_rows(W)
             taken = cost = turned = locked = 0.0
-            ledger.supports, ledger.carried = supports, carried
+            ledger.supports, ledger.frame_work = supports, carried
         keep_closed(W)
         ledger.closed += cost - turned - locked
-        ledger.supports, ledger.carried = ledger.supports + turned, ledger.carried + turned
+        ledger.supports, ledger.frame_work = ledger.supports + turned, ledger.frame_work + turned
         ledger.stored += taken
         save(W)
     if (edited or unknown) and fit_speeds(W, 0.0 if edited else TAKEN_OVER_LEFT):

@@ -89,7 +89,7 @@ def fitting_loss(W: Workspace, ledger: JointLedger) -> float:
         return -gained
     lost = kinetic_of(W, CHANGE)
     ledger.supports += gained + lost
-    ledger.carried += work_of_change(W)
+    ledger.frame_work += work_of_change(W)
     return lost
 
 

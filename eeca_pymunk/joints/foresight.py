@@ -13,9 +13,9 @@ to the sixth last (`tests/joints/test_foresight.py`); likewise impulses over the
 then begins with errors smaller by (h rate)^2 than with the last accelerations. Its result does not depend on where it
 begins.
 
-Before each part `ladder.take_parts` tests whether six parts in steps of this length are stored (`recalls`), begins with
-the extrapolated values if so (`predict_part`), and stores each part that was solved (`remember_part`). An edit, a
-limit, or whatever else ends the sequence calls `forget_parts`.
+Before each part `ladder.take_parts` tests whether six parts are stored (`recalls`), begins with the extrapolated values
+if so (`predict_part`), and stores each part that was solved (`remember_part`). A step of another length
+(`begin_steps`), an edit, a limit, or whatever else ends the sequence calls `forget_parts`.
 """
 
 from __future__ import annotations
@@ -44,18 +44,24 @@ def forget_parts(W: Workspace) -> None:
 
 
 @nonallocating
-def recalls(W: Workspace, h: float) -> bool:
-    """Whether the parts of a step h can be predicted. If the joints have stored different numbers of parts, or parts of
-    steps of another length, they forget them."""
+def begin_steps(W: Workspace, h: float) -> None:
+    """Before a step h: forget all parts if the joints have stored different numbers of them, or parts of steps of
+    another length."""
     joint, link = W.J.JOINT, W.link
     count, same = joint[link[0].joint].known_parts, True
     for k in range(W.joints):
         j = link[k].joint
         same = same and joint[j].known_parts == count and joint[j].known_step == h
     if not same:
+        forget_parts(W)
         for k in range(W.joints):
-            joint[link[k].joint].known_parts, joint[link[k].joint].known_step = 0, h
-    return bool(same and count >= DEPTH)
+            joint[link[k].joint].known_step = h
+
+
+@nonallocating
+def recalls(W: Workspace) -> bool:
+    """Whether the next part can be predicted."""
+    return bool(W.J.JOINT[W.link[0].joint].known_parts >= DEPTH)
 
 
 @inlined
@@ -100,9 +106,10 @@ def store(W: Workspace, at: int, piece: float) -> None:
 
 @nonallocating
 def remember_part(W: Workspace, piece: float) -> None:
-    """`store` the part of length `piece` that was taken after the known ones."""
+    """`store` the part of length `piece` that was taken after the known ones. Their number counts up to 2 DEPTH, then
+    again from DEPTH on: all are known, and its remainder by DEPTH is the place of the next."""
     joint, link = W.J.JOINT, W.link
     count = joint[link[0].joint].known_parts
     store(W, count % DEPTH, piece)
     for k in range(W.joints):
-        joint[link[k].joint].known_parts = count + 1 if count + 1 < 2 * PARTS * DEPTH else PARTS * DEPTH
+        joint[link[k].joint].known_parts = count + 1 if count + 1 < 2 * DEPTH else DEPTH

@@ -161,7 +161,7 @@ def account_frame(W: Workspace, h: float) -> None:
                 elif c == 1:
                     speed = F.vy + wide * (body.pose[0] + 0.5 * body.way[0] - x)
                 impulse = (body.v1[c] - body.v0[c] - h * body.acceleration[c]) / body.mobility[c]
-                W.J.PART_LEDGER.carried += impulse * speed
+                W.J.PART_LEDGER.frame_work += impulse * speed
 
 
 @nonallocating

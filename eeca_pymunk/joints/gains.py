@@ -80,7 +80,7 @@ def keeps_gain(W: Workspace, h: float, length: float, own: bool) -> bool:
     Not where joints need not be exact yet."""
     if W.J.PROGRESS.near > 0.0:
         return False
-    gain, mass = min(gain_of_rows(W, own), unexplained(W) - W.J.PART_LEDGER.carried), 0.0
+    gain, mass = min(gain_of_rows(W, own), unexplained(W) - W.J.PART_LEDGER.frame_work), 0.0
     if not gain > 0.0 or move_apart(W):
         return False
     for i in range(W.bodies):

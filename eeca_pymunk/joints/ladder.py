@@ -1,9 +1,11 @@
 """The ladder of a step: where Newton's method does not converge, the step is divided, then joints become elastic.
 
 Order 2 (midpoint with discrete gradients), or 4 by Suzuki's composition (s, s, 1 - 4s, s, s) h, s = 1/(4 - 4^(1/3)), if
-nothing in the component dissipates, drives or meets a limit. The rungs are tried in turn: ORDER_4, WHOLE_STEP, three
-of more parts, then those of elastic joints, from ELASTIC_RUNG on. PARTS_ON has their numbers of parts, COMPLIANCE_ON
-the compliances of joints over (h / ELASTIC_PARTS)^2: beside the bodies, joints are as soft in a part for any h.
+nothing in the component dissipates, drives or meets a limit. The rungs are tried in turn: ORDER_4, WHOLE_STEP, three of
+more parts, then those of elastic joints, from ELASTIC_RUNG on. PARTS_ON has their numbers of parts, COMPLIANCE_ON the
+compliances of joints over (h / ELASTIC_PARTS)^2: beside the bodies, joints are as soft in a part for any h. They begin
+at a billionth of what the bodies themselves give, and become ten times softer from rung to rung, the last time a
+hundred times.
 
 Joints that contradict one another (`contradicts`) become elastic at once: all rungs before would fail alike. Where a
 shorter interval is tried instead, exact joints take the step as a whole or not at all if the interval is long
@@ -30,7 +32,7 @@ from ..newton.entries import acting_rows
 from ..newton.motion import move
 from ..newton.rows import joint_rows
 from .bounds import standing
-from .foresight import PARTS, forget_parts, predict_part, recalls, remember_part
+from .foresight import PARTS, begin_steps, forget_parts, predict_part, recalls, remember_part
 from .gains import repaid
 from .ledger import clear_ledger
 from .limits import step_with_limits
@@ -152,6 +154,8 @@ def take_parts(W: Workspace, h: float, length: float, rung: int, compliance: flo
     """
     parts, before = int(PARTS_ON[rung]), h
     give = compliance / (h / parts) ** 2
+    if rung == ORDER_4:
+        begin_steps(W, h)
     for p in range(parts):
         if parts > 1:
             W.J.COMPONENT[W.s].parts = 0
@@ -161,7 +165,7 @@ def take_parts(W: Workspace, h: float, length: float, rung: int, compliance: flo
             W.J.HINGE[k].lam[0] *= warm
             W.J.HINGE[k].lam[1] *= warm
         before = piece
-        if rung == ORDER_4 and recalls(W, h):
+        if rung == ORDER_4 and recalls(W):
             predict_part(W, p, piece, cold)
         if not step_with_limits(W, False, piece, length, cold, give, rung == ORDER_4):
             redundant = standing(W) or W.J.COMPONENT[W.s].dependence == DEPENDENT
@@ -207,7 +211,7 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
             first.compliance = compliance
             return EXACT if rung <= WHOLE_STEP else HALVED if rung < ELASTIC_RUNG else ELASTIC
         sure = component.dependence == INDEPENDENT
-        again = (cold != loops and not (sure and rung == ORDER_4)) or (rung == ORDER_4 and recalls(W, h))
+        again = (cold != loops and not (sure and rung == ORDER_4)) or (rung == ORDER_4 and recalls(W))
         if sure:  # rows may become dependent within the step, as where it passes a dead centre
             component.dependence = DEPENDENT
         restore_start(W)

@@ -16,14 +16,14 @@ from .frame import account_frame, move_apart
 def clear_ledger(ledger: JointLedger) -> None:
     """Set the energies of a step to 0."""
     ledger.stored = ledger.damped = ledger.limited = ledger.clamped = ledger.projected = 0.0
-    ledger.motors = ledger.supports = ledger.carried = ledger.closed = 0.0
+    ledger.motors = ledger.supports = ledger.frame_work = ledger.closed = 0.0
 
 
 @inlined
 def clear_interval(ledger: JointLedger) -> None:
     """Set all energies of an interval, and its status, to 0."""
     clear_ledger(ledger)
-    ledger.turned_work = ledger.lifted = ledger.apart = ledger.gave = 0.0
+    ledger.turned_work = ledger.lifted = ledger.misfit = ledger.gave = 0.0
     ledger.status = 0
 
 
@@ -37,7 +37,7 @@ def add_part(ledger: JointLedger, part: JointLedger) -> None:
     ledger.projected += part.projected
     ledger.motors += part.motors
     ledger.supports += part.supports
-    ledger.carried += part.carried
+    ledger.frame_work += part.frame_work
     ledger.closed += part.closed
 
 
@@ -109,5 +109,5 @@ def close_ledger(W: Workspace) -> None:
     to round-off, so that only the sum is known.
     """
     part, change = W.J.PART_LEDGER, unexplained(W)
-    part.supports = change if move_apart(W) else part.carried
+    part.supports = change if move_apart(W) else part.frame_work
     part.closed, part.limited = max(change - part.supports, 0.0), max(part.supports - change, 0.0)

@@ -105,7 +105,8 @@ def end_part(W: Workspace, S: Parts, linear: bool, h: float, whole: bool) -> int
 @nonallocating
 def at_end(W: Workspace, S: Parts, linear: bool, h: float, whole: bool) -> int:
     """Decide what follows a solve to the end of the step. Arguments as of `step_with_limits`."""
-    most = joints.LIMIT_SOLVES if linear else 2 * W.joints + 100  # after these, none is released or searched
+    # After these none is released or searched: each joint may be met and released once, the others are for searches.
+    most = joints.LIMIT_SOLVES if linear else 2 * W.joints + joints.LIMIT_SEARCHES
     if S.solves < most and release(W, STEP):
         return GOES_ON
     k, side, instant = bounds.first_bound(W, S.when)
@@ -202,14 +203,12 @@ def is_solved(S: Parts, h: float) -> bool:
 
 
 @nonallocating
-def step_with_limits(
-    W: Workspace, linear: bool, h: float, length: float, loops: bool, give: float, whole: bool
-) -> bool:
+def step_with_limits(W: Workspace, linear: bool, h: float, length: float, cold: bool, give: float, whole: bool) -> bool:
     """Take the step h in parts between instants at which limits are met; False if a solve fails.
 
     Args:
         linear: whether by linear systems, which pass limits.  length: size of the component.
-        loops: whether rows are redundant and begin without impulses.  give: compliance over h², see `..newton.systems`.
+        cold: whether rows are redundant and begin without impulses.  give: compliance over h², see `..newton.systems`.
         whole: whether the step must not meet any limit: False if it would.
     """
     S, component = W.J.PARTS, W.J.COMPONENT[W.s]
@@ -219,10 +218,10 @@ def step_with_limits(
     if component.parts_within != h or linear or whole:
         component.parts, component.parts_within = 0, 0.0 if linear or whole else h
     component.parts = component.parts if meets_limit(component) else 0
-    begin_next(W, S, loops)
+    begin_next(W, S, cold)
     while True:
         if is_solved(S, h):
-            redundant = loops or bounds.standing(W)
+            redundant = cold or bounds.standing(W)
             if S.solved != 0.0 and not linear:
                 begin_as_before(W, S.solved, S.when)
             if not (solve_linearly(W, S.when, length) if linear else solve(W, S.when, length, redundant, give)):
@@ -236,4 +235,4 @@ def step_with_limits(
         meet_limit(W, S, h)
         if S.left <= joints.PART_ROUND_OFF * h:
             return True
-        begin_next(W, S, loops)
+        begin_next(W, S, cold)

@@ -91,7 +91,7 @@ def lock_energy(W: Workspace, gain: float, ledger: JointLedger) -> float:
     apart, work = relative_energy(W, F, -1.0)
     s = math.sqrt(max(0.0, 1.0 - gain / apart)) if apart > 0.0 else 0.0
     relative_energy(W, F, s)
-    ledger.supports, ledger.carried = ledger.supports + (1.0 - s) * work, ledger.carried + (1.0 - s) * work
+    ledger.supports, ledger.frame_work = ledger.supports + (1.0 - s) * work, ledger.frame_work + (1.0 - s) * work
     return (1.0 - s * s) * apart
 
 

@@ -182,7 +182,7 @@ def bounded_targets(W: Workspace, h: float) -> None:
         if kind == GROOVE:
             rows = 1
         elif kind == PIN:
-            hinge[k].value[0] = np.sqrt(hinge[k].apart[0] ** 2 + hinge[k].apart[1] ** 2) - joint[j].length
+            hinge[k].value[0] = np.sqrt(hinge[k].span[0] ** 2 + hinge[k].span[1] ** 2) - joint[j].length
         error = abs(hinge[k].value[0])
         if rows == 2:
             error = np.sqrt(error * error + hinge[k].value[1] ** 2)

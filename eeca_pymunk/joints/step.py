@@ -61,7 +61,7 @@ def is_taut(W: Workspace, h: float) -> bool:
         rax, ray, rbx, rby = hinge[k].arm_a[0], hinge[k].arm_a[1], hinge[k].arm_b[0], hinge[k].arm_b[1]
         fx, fy, per = hinge[k].lam[0], hinge[k].lam[1], 0.0
         if kind != PIVOT:
-            dx, dy = hinge[k].apart[0], hinge[k].apart[1]
+            dx, dy = hinge[k].span[0], hinge[k].span[1]
             length = math.sqrt(dx * dx + dy * dy)
             if length > 0.0:
                 per = hinge[k].lam[0] / length
@@ -153,13 +153,13 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
     for k in range(W.joints):
         W.J.JOINT[W.link[k].joint].side = W.link[k].side  # to which the ladder returns
     order = order if enough else 2
-    ledger.apart = farthest(W)
+    ledger.misfit = farthest(W)
     status = climb(W, h, order, length, touched, own)
     before = step_linearly(W, h, length) if status == LINEAR else 0.0
     status = take_gain(W, h, length, status, own, before)
     if status >= ELASTIC:
         compute_rows(W)  # they were those before the last correction
-    ledger.gave = max(farthest(W) - ledger.apart, 0.0) if status >= ELASTIC else 0.0
+    ledger.gave = max(farthest(W) - ledger.misfit, 0.0) if status >= ELASTIC else 0.0
     add_part(ledger, W.J.PART_LEDGER)
     write_joints(W, h, GIVES_WAY if status == ELASTIC else LEFT_APART if status == LINEAR else 0)
     return HALVED if status == ELASTIC and farthest(W) <= NEARLY_HELD else status

@@ -43,7 +43,7 @@ def step_linearly(W: Workspace, h: float, length: float) -> float:
     stored, apart, carried = springs_of(W), farthest(W), 0.0
     drop_impulses(W)
     if step_with_limits(W, True, h, length, True, 0.0, False):
-        W.J.JOINT[W.link[0].joint].compliance, carried = 0.0, part.carried
+        W.J.JOINT[W.link[0].joint].compliance, carried = 0.0, part.frame_work
     else:
         restore_start(W)
         forget_parts(W)
@@ -53,7 +53,7 @@ def step_linearly(W: Workspace, h: float, length: float) -> float:
         move(local, W.bodies, h)
         accept_part(W, h)
     clear_ledger(part)
-    part.stored, part.carried = springs_of(W) - stored, carried
+    part.stored, part.frame_work = springs_of(W) - stored, carried
     return apart
 
 
@@ -69,6 +69,6 @@ def stop_joints(W: Workspace, h: float) -> None:
     clear_ledger(part)
     part.stored = springs_of(W) - stored
     if has_prescribed_motion(W):
-        part.carried = unexplained(W) + lost
+        part.frame_work = unexplained(W) + lost
     close_ledger(W)
     undo_impulses(W)

@@ -56,7 +56,7 @@ class JointStep(Record):
 
     arm_a: Annotated[FloatArray, 2]  # arms at the start; of joints of angles the angle at the start, and nothing
     arm_b: Annotated[FloatArray, 2]
-    apart: Annotated[FloatArray, 2]  # d = anchor b - anchor a at the start; of a groove: anchor b - centre a
+    span: Annotated[FloatArray, 2]  # d = anchor b - anchor a at the start; of a groove: anchor b - centre a
     normal: Annotated[FloatArray, 2]  # of a groove, at the start
     drag: float  # damping that makes the midpoint rule as exact as exp(-c K h)
     began: float  # of springs: length, or angle_a - angle_b, at the start
@@ -157,11 +157,11 @@ class JointLedger(Record):
     projected: float  # loss >= 0 of velocities that violated joints, or of bodies that were made to move as one
     motors: float  # work of motors, and of joints with a finite max_force where it is positive
     supports: float  # work of bodies that move without being moved
-    carried: float  # the same by the balance of momentum (`..joints.frame`)
+    frame_work: float  # the same by the balance of momentum, of supports that move as one (`..joints.frame`)
     closed: float  # work of closing joints that were apart at the start, of elastic joints, of linear steps
     turned_work: float  # with contacts: work of torques beyond that along the angle
     lifted: float  # energy that separating overlapping bodies costs, paid from the losses of contacts
-    apart: float  # how far joints are apart at the start, over their units, and how much farther at the end
+    misfit: float  # largest error of a joint at the start, over its unit, and how much more of it at the end
     gave: float
     status: int  # of the step
 

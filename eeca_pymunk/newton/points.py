@@ -24,7 +24,7 @@ def point_rows(
     rax1, ray1 = ca * rax0 - sa * ray0, sa * rax0 + ca * ray0
     rbx1, rby1 = cb * rbx0 - sb * rby0, sb * rbx0 + cb * rby0
     rax, ray, rbx, rby = 0.5 * (rax0 + rax1), 0.5 * (ray0 + ray1), 0.5 * (rbx0 + rbx1), 0.5 * (rby0 + rby1)
-    dx0, dy0 = hinge.apart[0], hinge.apart[1]
+    dx0, dy0 = hinge.span[0], hinge.span[1]
     dx1 = dx0 + b.way[0] - a.way[0] + (rbx1 - rbx0) - (rax1 - rax0)
     dy1 = dy0 + b.way[1] - a.way[1] + (rby1 - rby0) - (ray1 - ray0)
     dx, dy = 0.5 * (dx0 + dx1), 0.5 * (dy0 + dy1)
@@ -112,7 +112,7 @@ def groove_rows(side: int, joint: Joint, hinge: JointStep, a: BodyStep, b: BodyS
     rbx0, rby0 = hinge.arm_b[0], hinge.arm_b[1]
     rbx1, rby1 = cb * rbx0 - sb * rby0, sb * rbx0 + cb * rby0
     rbx, rby = 0.5 * (rbx0 + rbx1), 0.5 * (rby0 + rby1)
-    yx0, yy0 = hinge.apart[0], hinge.apart[1]
+    yx0, yy0 = hinge.span[0], hinge.span[1]
     yx1 = yx0 + b.way[0] - a.way[0] + (rbx1 - rbx0)
     yy1 = yy0 + b.way[1] - a.way[1] + (rby1 - rby0)
     yx, yy = 0.5 * (yx0 + yx1), 0.5 * (yy0 + yy1)

@@ -105,7 +105,7 @@ def start_joint(W: Workspace, k: int, what: int, h: float) -> None:
         rax, ray, rbx, rby = rax + part * dx, ray + part * dy, rbx - (1.0 - part) * dx, rby - (1.0 - part) * dy
         dx = dy = 0.0
     hinge[k].arm_a[0], hinge[k].arm_a[1], hinge[k].arm_b[0], hinge[k].arm_b[1] = rax, ray, rbx, rby
-    hinge[k].apart[0], hinge[k].apart[1] = dx, dy
+    hinge[k].span[0], hinge[k].span[1] = dx, dy
     if kind == SPRING:
         length = np.sqrt(dx * dx + dy * dy)
         hinge[k].began = hinge[k].ended = length

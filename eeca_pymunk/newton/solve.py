@@ -68,7 +68,7 @@ def round_off_of_impulses(W: Workspace, h: float, length: float) -> float:
 
 
 @nonallocating
-def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bool:
+def solve(W: Workspace, h: float, length: float, redundant: bool, give: float) -> bool:
     """Solve the implicit step h of a component of size `length` from the present `lam` and `lead`, for v1 and `lam`.
 
     At convergence g is within JOINT_TOLERANCE of that size (or at round-off) of its targets, or within PROGRESS.near if
@@ -91,7 +91,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
     at this error the solve ends, and it fails if that is more than ELASTIC_ROUND_OFF, as joints have to be softer.
 
     Args:
-        loops: whether rows may be redundant, and begin without impulses.  give: compliance over h², see `systems`.
+        redundant: whether rows may be, and begin without impulses.  give: compliance over h², see `systems`.
     """
     component, progress = W.J.COMPONENT[W.s], W.J.PROGRESS
     first_iterate(W, STEP, h)
@@ -132,7 +132,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
             factors = FULL if renewed and fit else NEW
             if factors == FULL:  # only nearly singular or long steps come here
                 system, since, stalls, best, pace = component.system, iteration, 0, worst, 1.0
-                if loops:
+                if redundant:
                     drop_impulses(W)
                     first_iterate(W, STEP, h)
                     best = inf
@@ -141,7 +141,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
             if not built:
                 linearise(W, STEP, h, length, give, False, system, True)
             # Compliance makes rows independent; a term beside it would divide errors only by 1 + give/epsilon.
-            added = loops and not give > 0.0
+            added = redundant and not give > 0.0
             epsilon = max(REDUNDANT_EPSILON, min(progress.most_epsilon, worst)) if added else 0.0
             system = factorise(W, STEP, h, length, give, system, epsilon)
             if system < 0:

@@ -204,7 +204,7 @@ def test_elastic_joints_hold_worse_if_they_are_softer_and_more_than_twice_as_far
     )  # fmt: skip
     J.COMPONENT[0].end_joint = 1
     J.KEPT[0].touched, J.KEPT[0].compliance, J.JOINT[0].compliance = GIVES_WAY, 1e-9, compliance
-    J.STEPPED[0].status, J.STEPPED[0].apart, J.STEPPED[0].gave = status, 1e-5, gave
+    J.STEPPED[0].status, J.STEPPED[0].misfit, J.STEPPED[0].gave = status, 1e-5, gave
     assert gave_way(J, 0) == worse
 
 

@@ -32,6 +32,8 @@ LIMIT_HOP = heuristic(1e-6, "of the component",
 LIMIT_SECANTS = work(30, "iterations", "Secant steps to the instant at which a limit is reached, at most.")
 LIMIT_SECANTS_HASTE = work(2, "iterations", "Secant steps to that instant after the work HASTE.")
 LIMIT_SOLVES = work(8, "number", "Linear solves that release limits which pull, at most.")
+LIMIT_SEARCHES = work(100, "number",
+    "Solves of a part between limits, beside two for each joint, after which limits are no longer searched but land.")
 LOCK_ITERATIONS = work(8, "iterations", "Fixed-point iterations of the mean arms in the energy lock.")
 CONDENSE_BAND = work(14, "half-width of the band",
     "Half-width above which the system of a component is condensed to its bodies.")
