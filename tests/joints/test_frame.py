@@ -111,7 +111,7 @@ def test_the_work_of_a_support_is_the_same_by_impulses_and_by_the_balance_of_mom
         assert stepper.event_loop is not None
         part = stepper.event_loop.joints.PART_LEDGER
         assert abs(part.supports) > 1e-3
-        assert part.carried == pytest.approx(part.supports, rel=1e-11)
+        assert part.frame_work == pytest.approx(part.supports, rel=1e-11)
 
 
 @pytest.mark.parametrize("kind", ["spring", "motor", "friction"])
