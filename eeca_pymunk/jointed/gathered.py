@@ -19,7 +19,7 @@ from .ledger import has_work_for, work_left
 @nonallocating
 def save_joints(J: Joints, s: int) -> None:
     """Save the joints of component s, at the start of an interval, and forget what is known of its rows and parts."""
-    J.COMPONENT[s].parts, J.COMPONENT[s].dependence = 0, UNTESTED
+    J.COMPONENT[s].parts, J.COMPONENT[s].dependence, J.PROGRESS.kept = 0, UNTESTED, 0
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         j = J.COUPLING[k].joint
         J.KEPT[j] = J.JOINT[j]

@@ -126,13 +126,13 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
     """
     local, component = W.J.LOCAL, W.J.COMPONENT[W.s]
     clear_ledger(ledger)
-    component.factored = 0
     touched, bounded = read_joints(W, h, length)
     enough = limit_work(W)
     # Redundant rows begin without impulses, unless their pull holds bodies; others, too, if there is no work to try.
     component.taut = 1 if component.loops > 0 and is_taut(W, h) else 0
     if component.loops > 0 and component.dependence == UNTESTED:
         component.dependence = INDEPENDENT if enough and not rows_depend(W) else DEPENDENT
+    component.factored = 1 if W.J.PROGRESS.kept == W.s + 1 and component.dependence != DEPENDENT else 0
     if component.dependence == DEPENDENT and component.taut == 0:
         drop_impulses(W)
     for i in range(W.bodies):

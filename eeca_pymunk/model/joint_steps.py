@@ -96,6 +96,7 @@ class Progress(Record):
     limit: float  # of `effort`, at which the step of a component gives up what its ladder has before linear rows
     most_epsilon: float  # largest term on the diagonal of redundant rows (`..newton.solve`)
     length: int  # of an interval with contacts: FINAL, SHORT or LONG
+    kept: int  # 1 + number of the component of whose last motion in this interval the scratch has factors; or 0
 
 
 class Agreement(Record):

@@ -95,7 +95,7 @@ class Component(Record):
     bounded: int  # most rows of bounded impulses that may act, if few enough to be solved with contacts; else 0
     bounded_joints: int  # its motors, and joints with a finite max_force
     driven: int  # 1 if it has a motor of unlimited force
-    factored: int  # 1 if the matrix holds factors of an earlier part of the present step; or OTHERWISE
+    factored: int  # 1 if the present step can begin with the factors in the scratch; or OTHERWISE
     parts: int  # parts of the last solution from the present start that are known (`..joints.parts`)
     parts_within: float  # length of its step
     part_limit: Annotated[IntArray, 6]  # joint (`Coupling`) whose limit each part met, -1 for the last; its side
@@ -138,7 +138,7 @@ class Coupling(Record):
 
 # Impulses within bounds; these given, for an answer to other impulses.
 BOUNDED, PRESCRIBED = 1, 2
-OTHERWISE = -1  # of `factored`: bounded rows have come to their bounds since, or left them
+OTHERWISE = -1  # of `factored`: other rows act since, or have come to their bounds or left them
 
 
 FREE, WHOLLY, CENTRE, WELDED = 0, 1, 2, 3  # what of a body joints hold where it is

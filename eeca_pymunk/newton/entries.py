@@ -13,7 +13,7 @@ from ..arrays import FloatArray
 from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.joint_steps import STIFF_ALL, JointStep
-from ..model.joints import DUAL, GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, WHOLE, Coupling, Workspace
+from ..model.joints import DUAL, GROOVE, OTHERWISE, RATCHET, ROTARY_LIMIT, SLIDE, WHOLE, Coupling, Workspace
 
 
 @inlined
@@ -132,10 +132,18 @@ def put_stiffness(W: Workspace, k: int, filled: int, h: float, system: int) -> N
 
 
 @inlined
+def weigh(W: Workspace, k: int, r: int, weight: float, build: bool) -> None:
+    """Set the `weight` of row r of joint k. If the matrix is kept, `factored` says whether it has to be another one."""
+    if not build and W.J.HINGE[k].weight[r] != weight:
+        W.J.COMPONENT[W.s].factored = OTHERWISE
+    W.J.HINGE[k].weight[r] = weight
+
+
+@inlined
 def put_free(W: Workspace, k: int, r: int, system: int, build: bool) -> None:
     """Write the equation of row r of joint k, which does not act: its impulse becomes 0."""
     hinge, row, band = W.J.HINGE, W.link[k].first_row + r, W.J.COMPONENT[W.s].band
-    hinge[k].weight[r] = 0.0
+    weigh(W, k, r, 0.0, build)
     W.J.RIGHT[row] = -hinge[k].lam[r] / hinge[k].scale[r]
     if build and system == WHOLE:
         W.J.MATRIX[row * (3 * band + 1) + band] = 1.0
@@ -145,7 +153,8 @@ def put_free(W: Workspace, k: int, r: int, system: int, build: bool) -> None:
 def put_idle(W: Workspace, k: int, system: int, build: bool) -> None:
     """Write the equation of the row of joint k, which is `idle`: its impulse is 0 and stays 0."""
     hinge, band = W.J.HINGE, W.J.COMPONENT[W.s].band
-    hinge[k].weight[0] = hinge[k].lam[0] = 0.0
+    weigh(W, k, 0, 0.0, build)
+    hinge[k].lam[0] = 0.0
     if build and system == WHOLE:
         W.J.MATRIX[W.link[k].first_row * (3 * band + 1) + band] = 1.0
 

@@ -114,6 +114,8 @@ def prepare_response(W: Workspace, what: int, h: float) -> bool:
             # Poses at an instant are others than those at which rows were found to be independent.
             if what == STEP or not loops or epsilon > 0.0 or are_independent(W):
                 tally.answers = system
+                # Newton's matrix, but for bounded rows that are given, and joints that press hard.
+                W.J.PROGRESS.kept = W.s + 1 if what == STEP and component.bounded == 0 else 0
                 tally.refined = RESPONSE_PASSES if loops and epsilon > 0.0 and system != CONDENSED else 0
                 return True
         if epsilon == 0.0:

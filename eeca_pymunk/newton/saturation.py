@@ -14,7 +14,7 @@ from ..model.joints import BOUNDED, CONDENSED, OTHERWISE, WHOLE, Workspace
 from ..model.parameters.joints import REDUNDANT_EPSILON, STIFFEST
 from ..rows.bounded import pulls
 from .condensed import freeze_row, put_row
-from .entries import acting_rows, interval_of, put_free, put_rows
+from .entries import acting_rows, interval_of, put_free, put_rows, weigh
 
 INSIDE = 1.0 - 1e-12  # part of its bound from which on an impulse counts as at it
 
@@ -24,11 +24,10 @@ def put_bounded(W: Workspace, k: int, slopes: bool, h: float, system: int, build
     """Write the equations of the rows of joint k, whose impulses are bounded; their residual, as `value`: length or
     angle.
 
-    With p = lam - rho u, u = 2 value/h, rho = scale^2 (the smaller one of two): u = 0 if p is within the bounds, else
-    lam is the nearest impulse within them. `turn` is the derivative of that of a disc, bound p/|p|, by p. At the end of
-    a groove these are half of a disc: the nearest impulse to one that pulls has no part along the groove. If the matrix
-    is kept, `factored` says whether it has to be another one. In a LINEAR_STEP (without `slopes`) p is lam: rows hold
-    until they have come to their bounds.
+    With p = lam - rho u, u = 2 value/h, rho = scale^2 (the smaller one of two): u = 0 if p is within the bounds,
+    else lam is the nearest impulse within them. `turn` is the derivative of that of a disc, bound p/|p|, by p. At
+    the end of a groove these are half of a disc: the nearest impulse to one that pulls has no part along the
+    groove. In a LINEAR_STEP (without `slopes`) p is lam: rows hold until they have come to their bounds.
     """
     hinge, link, local, matrix, right, band = (
         W.J.HINGE, W.link, W.J.LOCAL, W.J.MATRIX, W.J.RIGHT, W.J.COMPONENT[W.s].band
@@ -36,7 +35,7 @@ def put_bounded(W: Workspace, k: int, slopes: bool, h: float, system: int, build
     row, rows, bound = link[k].first_row, acting_rows(link, k), hinge[k].bound * abs(h)
     width, worst = 3 * band + 1, 0.0
     low, high = interval_of(link, k, 0, bound)
-    rho, before_0, before_1 = hinge[k].scale[0] ** 2, hinge[k].weight[0], hinge[k].weight[1]
+    rho = hinge[k].scale[0] ** 2
     if rows == 2:
         rho = min(rho, hinge[k].scale[1] ** 2)
     per = 2.0 * rho / h if slopes else 0.0
@@ -56,7 +55,7 @@ def put_bounded(W: Workspace, k: int, slopes: bool, h: float, system: int, build
             off = hinge[k].value[r]
             worst = max(worst, abs(off))
             right[row + r] = -off * scale * 2.0 / h
-            hinge[k].weight[r] = STIFFEST
+            weigh(W, k, r, STIFFEST, build)
             if build:
                 put_row(W, k, r, slopes, system)
                 if system == WHOLE and W.J.COMPONENT[W.s].knots > 0:
@@ -67,7 +66,7 @@ def put_bounded(W: Workspace, k: int, slopes: bool, h: float, system: int, build
         off = hinge[k].lam[r] - goal
         worst = max(worst, abs(off * h) / scale**2)
         right[row + r] = -off / scale
-        hinge[k].weight[r] = -1.0
+        weigh(W, k, r, -1.0, build)
         if build and system == CONDENSED:
             freeze_row(W, k, r, slopes)
         if not build or system == CONDENSED:
@@ -85,8 +84,7 @@ def put_bounded(W: Workspace, k: int, slopes: bool, h: float, system: int, build
                 for c in range(local[i].freedoms):
                     slope = hinge[k].slopes[q, 3 * end + c] * local[i].root[c]
                     matrix[(row + r) * width + local[i].column + c - row - r + band] += turn * rho / scale * slope
-    slides = rows == 2 and not sticks
-    if not build and (slides or hinge[k].weight[0] != before_0 or hinge[k].weight[1] != before_1):
+    if not build and rows == 2 and not sticks:  # it slides: another matrix
         W.J.COMPONENT[W.s].factored = OTHERWISE
     return worst
 

@@ -95,9 +95,9 @@ def solve(W: Workspace, h: float, length: float, redundant: bool, give: float) -
     """
     component, progress = W.J.COMPONENT[W.s], W.J.PROGRESS
     first_iterate(W, STEP, h)
-    system = first_system(component, STEP)
     factors = KEPT if component.factored > 0 else NEW
-    component.factored = 0
+    system = W.J.TALLY.answers if factors == KEPT else first_system(component, STEP)
+    component.factored = progress.kept = 0
     # since: iteration in which the solve has begun again, with FULL.  renewed: whether the last iteration was NEW.
     # pace: by which factor the last iteration has made the error smaller.
     best, last, pace, stalls, since, renewed = inf, inf, 1.0, 0, 0, False
@@ -119,6 +119,7 @@ def solve(W: Workspace, h: float, length: float, redundant: bool, give: float) -
         if iteration > 0 and (worst <= max(JOINT_TOLERANCE, progress.near) or at_floor):
             # A wide matrix is expensive to factor: the parts of a step share one while errors fall with it.
             component.factored = 1 if fit and system == CONDENSED else 0
+            progress.kept, W.J.TALLY.answers = W.s + 1 if fit else 0, system
             clamp(W, h)
             balance_velocities(W, h)
             return True

@@ -32,7 +32,7 @@ from .banded import back_banded, factor_banded
 from .condensed import back_condensed, factor, put_row
 from .dual import back_dual, factor_dual
 from .effort import work_of_factors, work_of_rows, work_of_solution
-from .entries import acts, along, idle, put_free, put_idle, put_stiffness, scale_rows
+from .entries import acts, along, idle, put_free, put_idle, put_stiffness, scale_rows, weigh
 from .motion import move
 from .rows import joint_rows, start_joint
 from .saturation import put_bounded
@@ -83,7 +83,7 @@ def put_exact(W: Workspace, what: int, k: int, h: float, give: float, system: in
         row = link[k].first_row + r
         W.J.RIGHT[row] = -error * scale * per
         farthest = max(farthest, abs(error))
-        hinge[k].weight[r] = 1.0 / give if give > 0.0 else STIFFEST
+        weigh(W, k, r, 1.0 / give if give > 0.0 else STIFFEST, build)
         if build:
             put_row(W, k, r, slopes, system)
             if system == WHOLE:
@@ -106,6 +106,7 @@ def assemble(W: Workspace, what: int, h: float, give: float, first: bool, system
     slopes = what == STEP
     band = W.J.COMPONENT[W.s].band
     width = 3 * band + 1 if system == WHOLE else 2 * band + 1
+    W.J.PROGRESS.kept = 0 if build else W.J.PROGRESS.kept
     if build and system != DUAL:
         for i in range(W.J.COMPONENT[W.s].unknowns * width):
             matrix[i] = 0.0
