@@ -68,12 +68,13 @@ def set_aims(S: Agreement, h: float, elastic: bool) -> None:
     and components at which iterations end; `enough`, that at which contacts count as solved where iterations come no
     nearer; `fine`, the residual of the contacts' laws.
 
-    Contacts that lose energy are measured by the mean speed, elastic ones, whose energy is exact, by the largest. The
-    island is near rest where |a| h is more than its mean speed."""
+    Contacts that lose energy are measured by the mean speed, elastic ones, whose energy is exact, by the largest. Near
+    rest, where the mean speed is a small part of what motors and springs alone would make of it, they are finer: what
+    is left of velocities there is no motion."""
     change = S.pull * h
     if elastic:
         S.scale, agree, enough, fine = change + S.fast, joints.AGREE_ELASTIC, joints.OUTER_FLOOR, 1e-15
-    elif S.slow < change:
+    elif S.slow < joints.NEAR_REST * change:
         S.scale, agree, enough, fine = change + S.slow, joints.AGREE_REST, joints.AGREE, joints.LAWS_RESIDUAL_REST
     else:
         S.scale, agree, enough, fine = change + S.slow, joints.AGREE, joints.AGREE, joints.LAWS_RESIDUAL

@@ -151,6 +151,7 @@ AGREE = accuracy(1e-06, "of |a| h and the speed",
 LOCK_SHIFT = accuracy(1e-05, "of |a| h and the speed",
     "Change of velocities by which the energy lock may break the laws of contacts.")
 AGREE_REST = accuracy(1e-11, "of |a| h and the speed", "This difference near rest.")
+NEAR_REST = accuracy(0.1, "of |a| h, with springs and motors", "Mean speed of an island below which it is near rest.")
 AGREE_ELASTIC = accuracy(1e-13, "of |a| h and the speed", "This difference in elastic islands.")
 LAWS_SWEEPS_FEW = work(30, "sweeps", "Sweeps over few contacts of components.")
 LAWS_SWEEPS_ELASTIC = work(400, "sweeps", "Sweeps over elastic contacts of components.")
