@@ -82,7 +82,7 @@ MUTATIONS = (
     Mutation("limits: targets of free ones", "joints/closing.py", "if acts(link, k, r) else 0.0", "if True else 0.0",
              "joints/test_limits.py", "closing"),
     Mutation("islands: contacts that have ended are kept", "impacts/loop.py",
-             "if few < 0 or COUNT.pushes > 2 * few + _ROOM:", "if False:",
+             "if few < 0 or COUNT.pushes > 2 * few + _MORE_CONTACTS:", "if False:",
              "islands/test_large_steps.py", "many_intervals"),
     Mutation("limits: what is apart has passed its bound", "joints/bounds.py", "if side * left > 0.0:", "if False:",
              "joints/test_limits.py", "left_apart"),

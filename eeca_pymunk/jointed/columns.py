@@ -21,6 +21,8 @@ from ..rows.build import invert
 from ..rows.columns import put_free_body
 from .groups import Groups, least_mobility
 
+NORMALS, BOTH = 1, 2  # columns that `fill_group` computes: how many for each contact
+
 
 @kernel
 def make_columns(groups: Groups, ROWS: Rows[Row], m: int) -> Columns:
@@ -100,7 +102,7 @@ def fill_group(
 
     Args:
         INDEX: (k,) places of bodies in the scratch of their component.  PUSH: (bodies of the component, 3) scratch.
-        ways: 2, or 1 for the columns of normal impulses alone.
+        ways: NORMALS, or BOTH, those of tangential impulses too.
     """
     s = groups.COMPONENT[g]
     for i in range(m):

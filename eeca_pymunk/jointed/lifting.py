@@ -27,7 +27,7 @@ from ..rows.build import normal_rate
 from ..rows.inplace import copy
 from ..rows.lifting import lift_above_walls
 from .advance import Interval, separation
-from .columns import fill_group, set_effective_masses
+from .columns import NORMALS, fill_group, set_effective_masses
 from .component import close_at_poses, passes_limit
 from .gathered import find_places, gather_component
 from .groups import is_free
@@ -54,7 +54,7 @@ def fill_at_end(A: Scene, J: Joints, interval: Interval, C: Columns, g: int, ROW
     size = find_places(A, J, s, INDEX)
     if not prepare_response(workspace(J, s), SPEEDS, 2.0):
         return False
-    fill_group(J, groups, C, g, INDEX, ROWS, m, np.empty((size, 3)), 1)
+    fill_group(J, groups, C, g, INDEX, ROWS, m, np.empty((size, 3)), NORMALS)
     return True
 
 

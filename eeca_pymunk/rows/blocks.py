@@ -147,7 +147,7 @@ def close_block(
 
 
 @kernel
-def solve_block(problem: AnyProblem, L: FloatArray, V: FloatArray, owed: float, hasty: bool, OUT: Rows[Solved]) -> int:
+def solve_block(problem: AnyProblem, L: FloatArray, V: FloatArray, owed: float, coarse: bool, OUT: Rows[Solved]) -> int:
     """Impulses of m contacts at one instant; V (k, 3) becomes the velocities after the impact.
 
     Args:
@@ -155,8 +155,8 @@ def solve_block(problem: AnyProblem, L: FloatArray, V: FloatArray, owed: float, 
             order of elimination only.
         L: (m, 2) in: initial impulses (0 for none); out: the impulses.
         owed: energy >= 0 that the block has to lose at least.
-        hasty: whether a large lossy island may be solved to a coarse tolerance: a hit on a pile, or on many contacts of
-            components, whose rows have an entry for each body.
+        coarse: whether a large lossy block may be solved as coarsely as the intervals before and after it: a hit on a
+            pile, or on many contacts of components, whose rows have an entry for each body.
         OUT: (1,) the report, out.
 
     Returns:
@@ -180,8 +180,7 @@ def solve_block(problem: AnyProblem, L: FloatArray, V: FloatArray, owed: float, 
     # Direct solves help where contacts stick; where many slip only sweeps converge, so there are more of them.
     first, rounds = impulses.BLOCK_SWEEPS_FRICTION, impulses.BLOCK_DIRECT_FRICTION
     last, drifts = impulses.BLOCK_LAST_SWEEPS_FRICTION, impulses.DRIFTS
-    if hasty and m > impulses.DENSE_CONTACTS and not exact:
-        # A hit on a lossy pile is solved as accurately as the intervals before and after it.
+    if coarse and m > impulses.DENSE_CONTACTS and not exact:
         tolerance = max(INTERVAL_RESIDUAL_SPEED * speed, floor)
         first, rounds, last, drifts = SMALL_SWEEPS, DIRECT_MOVING, 0, 0
     elif not rough:
@@ -196,13 +195,13 @@ def solve_block(problem: AnyProblem, L: FloatArray, V: FloatArray, owed: float, 
 
 @kernel
 def solve_freely(
-    problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, owed: float, status: int, hasty: bool,
+    problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, owed: float, status: int, coarse: bool,
     OUT: Rows[Solved],
 ) -> int:  # fmt: skip
     """`solve_block` again, without friction, where `solve_block` has left contacts with friction wedged (WEDGED):
     sweeps may end between two states without impulses, or the energy lock may leave none, so that what approaches would
     meet again at the same instant, without end. FREE (k, 3): velocities without impulses. Returns the status; L, V and
-    OUT are those of the solution, OUT with the sweeps and direct solves of both. hasty: as of `solve_block`.
+    OUT are those of the solution, OUT with the sweeps and direct solves of both. coarse: as of `solve_block`.
     """
     ROWS, m = problem.ROWS, problem.m
     if status == CONVERGED or not rubs(ROWS, m):
@@ -216,7 +215,7 @@ def solve_freely(
     L[:] = 0.0
     velocities(problem, L, FREE, V)
     sweeps, direct = OUT[0].sweeps, OUT[0].direct
-    status = solve_block(problem, L, V, owed, hasty, OUT)
+    status = solve_block(problem, L, V, owed, coarse, OUT)
     OUT[0].sweeps += sweeps
     OUT[0].direct += direct
     return status
