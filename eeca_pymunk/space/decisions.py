@@ -18,6 +18,7 @@ import pymunk
 from ..arrays import FloatArray
 from ..compiled.records import Rows
 from ..model.shapes import Shape
+from ..pairs.rules import law_of_shapes
 from .private import arbiters as private_arbiters
 from .private import spaces as private
 from .private.shapes import overlap
@@ -57,7 +58,7 @@ class Rules:
             if not processed(arbiter):
                 ignored.add(pair)
                 continue
-            own = _law(world.SHAPE, *pair)
+            own = _own_law(world.SHAPE, *pair)
             mu = 0.0 if world.frictionless else arbiter.friction
             law = (arbiter.restitution, mu, *_surface(arbiter, own[2:], a < b))
             if law != own:
@@ -68,7 +69,7 @@ class Rules:
         """The laws of all these pairs, sorted. `parted` pairs do not collide, whatever handlers decide."""
         never = self.ignored.union(parted)
         return {
-            pair: (-1.0, 0.0, *_law(SHAPE, *pair)[2:]) if pair in never else self.changed[pair]
+            pair: (-1.0, 0.0, *_own_law(SHAPE, *pair)[2:]) if pair in never else self.changed[pair]
             for pair in sorted(never.union(self.changed))
         }
 
@@ -76,10 +77,8 @@ class Rules:
 NO_RULES = Rules()  # those of all steps in which no decision applies
 
 
-def _law(SHAPE: Rows[Shape], a: int, b: int) -> Law:
-    """The law of two shapes: pymunk's products, and b's surface velocity relative to a's."""
-    e, mu = (float(SHAPE[k][a] * SHAPE[k][b]) for k in ("elasticity", "friction"))
-    x, y = (float(SHAPE[k][b] - SHAPE[k][a]) for k in ("surface_x", "surface_y"))
+def _own_law(SHAPE: Rows[Shape], a: int, b: int) -> Law:
+    e, mu, x, y = map(float, law_of_shapes(SHAPE[a], SHAPE[b]))
     return e, mu, x, y
 
 
