@@ -14,7 +14,7 @@ from ..contacts.works import external_work, gained_energy, kinetic_energy
 from ..geometry.sides import pair_of
 from ..islands.local import clear_places
 from ..islands.membership import jointed, members, persists_from
-from ..jointed.columns import count_operations, fill_free, make_columns, set_effective_masses
+from ..jointed.columns import count_operations, fill_unjointed, make_columns, set_effective_masses
 from ..jointed.ends import under_way
 from ..jointed.groups import Groups, find_groups
 from ..jointed.ledger import work_left
@@ -26,7 +26,7 @@ from ..model.joints import Joints
 from ..model.parameters.events import EVENT_LOOKS
 from ..model.parameters.joints import CLOSES, COLUMN_CONTACTS, IMPACT_ENERGY, IMPACT_LIMITS
 from ..model.scene import Scene
-from ..rows.blocks import TRUNCATED, close_block, solve_block, solve_freely
+from ..rows.blocks import TRUNCATED, close_block, solve_block, solve_frictionless
 from ..rows.bounded import room_for_rows
 from ..rows.build import aim, conserves, normal_rate
 from ..rows.energy import offset_gain, scale_to_lose
@@ -140,7 +140,7 @@ def solve_with_limits(
             break
         copy(V, BEFORE)
         L[:] = 0.0
-    status = solve_freely(problem, L, V, FITTED, owed, status, many, OUT)
+    status = solve_frictionless(problem, L, V, FITTED, owed, status, many, OUT)
     fastest = aim(ROWS, rows)
     for q in range(n):
         fastest = max(fastest, math.hypot(FITTED[q, 0], FITTED[q, 1]))
@@ -165,7 +165,7 @@ def act_through_joints(
         WHO[q] = A.BLOCK[q]
     groups = find_groups(WHO, block.IM, J, True)
     C = make_columns(groups, ROWS, rows)
-    fill_free(groups, C, ROWS, block.IM, block.II, rows)
+    fill_unjointed(groups, C, ROWS, block.IM, block.II, rows)
     BEFORE = V.copy()
     problem = JointedProblem(ROWS, C, room_for_rows(0, 0), rows)
     status, driven, FITTED = solve_with_limits(A, J, problem, block, groups, n, t, owed, L, OUT)

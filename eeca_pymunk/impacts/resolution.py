@@ -26,7 +26,7 @@ from ..model.scene import Scene
 from ..model.step import IMPACT
 from ..pairs.rules import law
 from ..prediction.work import most_work
-from ..rows.blocks import CONVERGED, solve_block, solve_freely
+from ..rows.blocks import CONVERGED, solve_block, solve_frictionless
 from ..rows.laws import solved_exactly
 from .simultaneous import Block, gather_block, make_block, take_owed_energy
 
@@ -116,7 +116,7 @@ def strike(A: Scene, a: int, b: int, t: float, lasts: bool) -> int:
     FREE = block.V.copy()
     status = solve_block(problem, L, block.V, owed, in_islands, OUT)
     if solved_exactly(n, rows):
-        status = solve_freely(problem, L, block.V, FREE, owed, status, False, OUT)
+        status = solve_frictionless(problem, L, block.V, FREE, owed, status, False, OUT)
     lost = OUT[0].restitution + OUT[0].friction - owed
     finish_block(A, block, n, m, L, OUT, status, t)
     spend(A, n, m, looks_of(rows, OUT))

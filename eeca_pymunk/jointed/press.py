@@ -29,7 +29,7 @@ from ..rows.inplace import copy
 from ..rows.laws import give_slips, take_slips
 from .advance import Interval, advance, advance_aligned, align, farthest_apart
 from .bounded_rows import make_bounded, with_bounded
-from .columns import count_operations, fill_free, set_effective_masses, work_of_columns
+from .columns import count_operations, fill_unjointed, set_effective_masses, work_of_columns
 from .gathered import some_give, some_refused, some_taut
 from .groups import is_free
 from .losses import lock_jointed, lost, scale_of_loss, without_contacts, work_error
@@ -52,7 +52,7 @@ def solve_gently(
         advance(A, J, interval, L, B, True, np.empty((0, 3)))
         if free:
             align(interval)
-    fill_free(groups, C, ROWS, isle.IM, isle.II, m)
+    fill_unjointed(groups, C, ROWS, isle.IM, isle.II, m)
     set_effective_masses(groups, C, ROWS, m)
     V = interval.motion.MEAN.copy()
     push_columns(C, L, m, -1.0, V)
@@ -116,7 +116,7 @@ def solve_contacts(
         interval: out, the columns of the contacts in their last solution.
     """
     isle, groups, ROWS, motion, C, m, n, _, h, few = interval
-    fill_free(groups, C, ROWS, isle.IM, isle.II, m)
+    fill_unjointed(groups, C, ROWS, isle.IM, isle.II, m)
     rates(ROWS, isle.V, m)
     SLIP, limited, top_speed, manner = take_slips(ROWS, m), False, fast + pull * h, manner_of(A, interval)
     elastic, exactly = manner.elastic, manner.exactly
@@ -179,7 +179,7 @@ def solve_contacts(
             advance(A, J, interval, L, B, True, FORESEEN)
             build = True
         if build and free:
-            fill_free(groups, C, ROWS, isle.IM, isle.II, m)
+            fill_unjointed(groups, C, ROWS, isle.IM, isle.II, m)
         if outer == 0:
             EFFECT, most_pull = accelerations(interval, L, B)
             if most_pull * h > joints.GUESS_SPEED * top_speed and L.any():

@@ -22,7 +22,7 @@ from ..model.parameters.impulses import DRIFT_SLIPS, DRIFT_STEADY
 from ..model.parameters.intervals import DIRECT_MOVING, INTERVAL_RESIDUAL_SPEED, SMALL_SWEEPS
 from .build import aim, conserves, largest_terms, normal_rate, rates, rubs
 from .conjugate import sweep_conjugate
-from .coulomb import slip_freely
+from .coulomb import drop_friction
 from .direct import refine, refine_and_sweep
 from .energy import lock, works
 from .sweeps import push, restore_impulses, sweep, velocities
@@ -106,7 +106,7 @@ def resolve(
             worst = skip_drift(problem, L, V, FREE, worst)
             OUT[0].sweeps += 1
         log_R, worst, taken = refine_and_sweep(
-            problem, L, V, FREE, log_R, impulses.POLISHES, tolerance, worst, impulses.BLOCK_SWEEPS_AFTER
+            problem, L, V, FREE, log_R, impulses.REFINEMENTS_SPARSE, tolerance, worst, impulses.BLOCK_SWEEPS_AFTER
         )
         OUT[0].sweeps += taken
         OUT[0].direct += 1
@@ -127,7 +127,14 @@ def resolve(
             break
         worst = skip_drift(problem, L, V, FREE, worst)
         log_R, worst = refine(
-            problem, L, V, FREE, impulses.AUGMENTATION, impulses.POLISHES, impulses.DIRECT_RESIDUAL * tolerance, worst
+            problem,
+            L,
+            V,
+            FREE,
+            impulses.AUGMENTATION,
+            impulses.REFINEMENTS_SPARSE,
+            impulses.DIRECT_RESIDUAL * tolerance,
+            worst,
         )
         taken, worst = sweep_conjugate(problem, L, V, tolerance, last)
         OUT[0].sweeps += taken + 1
@@ -194,7 +201,7 @@ def solve_block(problem: AnyProblem, L: FloatArray, V: FloatArray, owed: float, 
 
 
 @kernel
-def solve_freely(
+def solve_frictionless(
     problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, owed: float, status: int, coarse: bool,
     OUT: Rows[Solved],
 ) -> int:  # fmt: skip
@@ -211,7 +218,7 @@ def solve_freely(
         worst = max(worst, ROWS[i].target - normal_rate(ROWS[i], V))
     if not worst > impulses.WEDGED * aim(ROWS, m):
         return status
-    slip_freely(ROWS, m)
+    drop_friction(ROWS, m)
     L[:] = 0.0
     velocities(problem, L, FREE, V)
     sweeps, direct = OUT[0].sweeps, OUT[0].direct

@@ -13,13 +13,20 @@ from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import JointedProblem, Problem, Row, Solved
 from ..model.parameters.intervals import LARGE_ISLAND
-from ..model.parameters.joints import COLUMN_CONTACTS, COLUMN_HOMOTOPIES, COLUMN_SWEEPS, COLUMN_SWEEPS_AFTER
+from ..model.parameters.joints import (
+    COLUMN_CONTACTS,
+    COLUMN_DIVERGES,
+    COLUMN_HOMOTOPIES,
+    COLUMN_REPEATED,
+    COLUMN_SWEEPS,
+    COLUMN_SWEEPS_AFTER,
+)
+from .active_set import divide_friction
 from .bounded import inside_discs
 from .columns import as_columns, breach
 from .conjugate import sweep_conjugate
-from .coulomb import slip_freely
+from .coulomb import drop_friction
 from .homotopy import follow_homotopy
-from .polish import divide_friction
 from .sweeps import push, restore_impulses, sweep, velocities
 
 
@@ -73,14 +80,14 @@ def solve_columns(
             best = worst
             restore_impulses(L0, V0, L, V)
         # Where laws have no solution, homotopies end in the same state again, or alternate between two.
-        if min(abs(worst - before), abs(worst - earlier)) <= 0.1 * worst:
+        if min(abs(worst - before), abs(worst - earlier)) <= COLUMN_REPEATED * worst:
             break
         before, earlier = worst, before
     if worst > tolerance:
         restore_impulses(L, V, L0, V0)
         before = breach(problem, L, V)
         _, worst = sweep_conjugate(problem, L, V, tolerance, most)
-        if not breach(problem, L, V) <= 2.0 * before:
+        if not breach(problem, L, V) <= COLUMN_DIVERGES * before:
             # Sweeps diverge where friction could open contacts.
             restore_impulses(L, V, L0, V0)
             worst = before
@@ -92,7 +99,7 @@ def solve_wedged(
     problem: JointedProblem, L: FloatArray, V: FloatArray, tolerance: float, most: int, work: float
 ) -> float:
     """`solve_columns` without friction, from no impulses of contacts."""
-    slip_freely(problem.ROWS, problem.m)
+    drop_friction(problem.ROWS, problem.m)
     push(problem, L, -1.0, V)
     L[: problem.m] = 0.0
     push(problem, L, 1.0, V)
@@ -119,8 +126,8 @@ def give_slips(ROWS: Rows[Row], m: int, SLIP: FloatArray) -> None:
 
 @kernel
 def solve_few(problem: Problem, L: FloatArray, V: FloatArray, tolerance: float, out: Solved) -> float:
-    """`solve_columns` of contacts of free bodies, whose sweeps and direct solutions have not converged, with Coulomb's
-    law alone; the energy lock removes the energy that this may give."""
+    """`solve_columns` of contacts of bodies without joints, whose sweeps and direct solutions have not converged, with
+    Coulomb's law alone; the energy lock removes the energy that this may give."""
     SLIP, columns = take_slips(problem.ROWS, problem.m), as_columns(problem)
     worst = solve_columns(columns, L, V, tolerance, 0, COLUMN_SWEEPS_AFTER, np.inf)
     out.operations += columns.C.WORK[0]

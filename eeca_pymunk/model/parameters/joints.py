@@ -137,6 +137,10 @@ COLUMN_CONTACTS = work(40, "contacts",
 COLUMN_SWEEPS = work(3, "sweeps", "Sweeps over components before the first homotopy.")
 COLUMN_SWEEPS_AFTER = work(4, "sweeps", "Sweeps over components after each homotopy, at most.")
 COLUMN_HOMOTOPIES = work(8, "homotopies", "Homotopies to the solution, at most.")
+COLUMN_REPEATED = work(0.1, "of the residual",
+    "Difference of the residuals of two homotopies up to which they end in the same state: there are no more.")
+COLUMN_DIVERGES = work(2.0, "ratio of residuals",
+    "Growth of the residual by the last sweeps from which on what was before them is kept.")
 COLUMN_PROXIMAL = round_off(10000000000.0, "over the effective mass",
     "Stiffness of the proximal term of redundant contacts of components.")
 OUTER = work(20, "steps of the components", "Iterations between contacts and components, at most.")
