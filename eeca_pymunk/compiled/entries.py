@@ -45,7 +45,7 @@ TABLES = {
         KEPT:Joint[1] STEPPED:JointLedger[1] TALLY:Tally
     """,
     "Island": """
-        WHO:i8[1] POSE:f8[2] V:f8[2] ACC:f8[2] IM:f8[1] II:f8[1] EXTENT:f8[1] FELT:f8[1] PAIRS:i8[2]
+        WHO:i8[1] POSE:f8[2] V:f8[2] ACC:f8[2] IM:f8[1] II:f8[1] EXTENT:f8[1] LEVER:f8[1] PAIRS:i8[2]
     """,
     "IslandContacts": """
         ROWS:Row[1] L:f8[2] VN:f8[2] JUMP:f8[2] OUT:Solved[1]

@@ -18,8 +18,8 @@ from ..rows.build import normal_rate
 from .advance import Interval, find_hit, join_points, separation
 from .columns import fill_unjointed, make_columns, set_effective_masses
 from .component import project_speeds
+from .correction import fill_at_end, raise_gaps
 from .gathered import gather_component, number_of
-from .lifting import fill_at_end, raise_gaps
 
 
 @kernel

@@ -24,7 +24,7 @@ from .build import aim, conserves, largest_terms, normal_rate, rates, rubs
 from .conjugate import sweep_conjugate
 from .coulomb import drop_friction
 from .direct import refine, refine_and_sweep
-from .energy import lock, works
+from .energy import lock, losses
 from .sweeps import push, restore_impulses, sweep, velocities
 
 CONVERGED, TRUNCATED = 0, 1  # statuses
@@ -150,7 +150,7 @@ def close_block(
     of many sweeps."""
     velocities(problem, L, FREE, V)
     OUT[0].lock = lock(problem, L, V, FREE, owed, exact)
-    OUT[0].restitution, OUT[0].friction = works(problem, L, V)
+    OUT[0].restitution, OUT[0].friction = losses(problem, L, V)
 
 
 @kernel

@@ -1,4 +1,8 @@
-"""Penetration correction along normals: displacements D = W G^T mu with 0 <= mu _|_ g + G D >= 0."""
+"""Displacements along normals that lift bodies out of each other: D = W G^T mu with 0 <= mu _|_ g + G D >= 0.
+
+What they cost, and which part of them a budget pays, is that of the correction (`..contacts.correction`,
+`..jointed.correction`).
+"""
 
 from __future__ import annotations
 

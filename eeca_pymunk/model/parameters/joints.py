@@ -110,6 +110,8 @@ FIT_RESIDUAL = accuracy(1e-06, "of the fastest closing contact",
 FIT_ENERGY = round_off(1e-12, "of the energy", "Change of energy by this projection that is round-off.")
 JOINTED_CORRECTION_SWEEPS = work(40, "sweeps", "Sweeps of the penetration correction of jointed bodies.")
 JOINTED_LIFT_ERROR = accuracy(0.001, "of the deepest overlap", "Error of this correction, also of limits in its way.")
+JOINTED_CORRECTION_TRIES = work(4, "number", "How often it is tried within its budget, at most.")
+JOINTED_CORRECTION_LESS = work(0.25, "of the displacements", "Part of the last try that the next one takes.")
 STEP_WORK = work(32000000.0, "operations",
     "Work of a step with joints besides STEP_WORK_BODY; 2.5e9 operations take about a second.")
 INTERVAL_SHARE = work(0.25, "of what is left of the budget",

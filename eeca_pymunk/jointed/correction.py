@@ -19,7 +19,14 @@ from ..model.contacts import Columns, JointedProblem, Row
 from ..model.joint_steps import SPEEDS
 from ..model.joints import Joints
 from ..model.parameters.intervals import CORRECTION_ROUND_OFF
-from ..model.parameters.joints import IMPACT_LIMITS, JOINTED_CORRECTION_SWEEPS, JOINTED_LIFT_ERROR, MOMENTUM_LEFT
+from ..model.parameters.joints import (
+    IMPACT_LIMITS,
+    JOINTED_CORRECTION_LESS,
+    JOINTED_CORRECTION_SWEEPS,
+    JOINTED_CORRECTION_TRIES,
+    JOINTED_LIFT_ERROR,
+    MOMENTUM_LEFT,
+)
 from ..model.scene import Scene
 from ..newton.response import prepare_response
 from ..rows.bounded import room_for_rows
@@ -167,14 +174,15 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, L: FloatArray, bud
             if mark_group(GROUP, g, ONE):
                 keep_centre(D, isle.IM, ONE)
     cost, part = -work_of_forces(isle.ACC, isle.IM, isle.II, n, D), admissible(D, isle.EXTENT, n, size)
-    # Contacts that contradict one another give displacements without bound, of which only a part is taken.
+    # Contacts that contradict one another give displacements without bound, of which only a part is taken. What closing
+    # joints costs is known only once it is done, so that there is no `part_for`: it has the other half of the budget.
     round_off = CORRECTION_ROUND_OFF * work_of_forces(np.abs(isle.ACC), isle.IM, isle.II, n, np.abs(D))
-    if cost * part > max(0.5 * budget, round_off * part):  # the other half is for what closing joints costs
+    if cost * part > max(0.5 * budget, round_off * part):
         part = 0.5 * budget / cost
     if lifts_through(A, isle, END, part * D, n, t + h):
         return 0.0
     STORED = np.zeros(len(groups.COMPONENT))
-    for _ in range(4):
+    for _ in range(JOINTED_CORRECTION_TRIES):
         spent = 0.0
         NEW = END + part * D
         for g in range(len(groups.COMPONENT)):
@@ -197,5 +205,5 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, L: FloatArray, bud
                     J.STEPPED[s].stored += STORED[g]
             copy(END, NEW)
             return spent
-        part *= 0.25
+        part *= JOINTED_CORRECTION_LESS
     return 0.0
