@@ -61,7 +61,7 @@ ENTRIES = {
     "geometry.gap:gaps": "{Scene} i8[2] f8[2] f8[2] f8[2]",
     "pairs.grid:build": "{Scene} f8",
     "pairs.margins:begin_lists": "{Scene}",
-    "pairs.margins:fill_lists": "{Scene} f8[1] f8",
+    "pairs.margins:fill_lists": "{Scene} f8[1]",
     "pairs.candidates:candidates": "{Scene} f8[1] i8[2] f8[2]",
     "transfer:read_states": "f8[3] i8[2] f8[2] Body[1] f8 f8 f8",
     "transfer:write_states": "f8[3] i8[2] f8[2] Body[1] f8[1] f8 i8",

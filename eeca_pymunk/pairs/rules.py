@@ -130,7 +130,7 @@ def append(A: Scene, a: int, b: int) -> bool:
     POOL, FLAG, own = A.POOL, A.FLAG, A.LIST[a]
     start, n = own.start, own.number
     if n == own.capacity:
-        end, capacity = A.GRID.pool_end, 2 * n + 8
+        end, capacity = A.GRID.pool_end, 2 * n + 8  # doubled, so that a list of n moves some log2 n times
         if end + capacity > POOL.shape[0]:
             return False
         for q in range(n):
