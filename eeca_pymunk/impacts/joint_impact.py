@@ -201,8 +201,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     block = make_block(A, n, m, PAIRS, pair_of(A, a, b), lasts, t)
     L, OUT = np.zeros((len(block.ROWS), 2)), zeros(1, SOLVED)
     status = act_through_joints(A, J, block, n, t, owed, L, OUT)
-    lost = OUT[0].restitution + OUT[0].friction - owed
-    finish_block(A, block, n, m, L, OUT, status, t)
+    lost = finish_block(A, block, n, m, L, OUT, status, t) - owed
     spend(A, n, m, 0.0)  # besides the operations of its solutions
     n = unite_block(A, a, b, t, n, lasts, lost, 1.0 - work_left(A, J) / J.PROGRESS.budget)
     return list_ended(A, n)

@@ -18,15 +18,8 @@ from ..joints.workspace import workspace
 from ..model.contacts import Columns, JointedProblem, Row
 from ..model.joint_steps import SPEEDS
 from ..model.joints import Joints
+from ..model.parameters import joints
 from ..model.parameters.intervals import CORRECTION_ROUND_OFF
-from ..model.parameters.joints import (
-    IMPACT_LIMITS,
-    JOINTED_CORRECTION_LESS,
-    JOINTED_CORRECTION_SWEEPS,
-    JOINTED_CORRECTION_TRIES,
-    JOINTED_LIFT_ERROR,
-    MOMENTUM_LEFT,
-)
 from ..model.scene import Scene
 from ..newton.response import prepare_response
 from ..rows.bounded import room_for_rows
@@ -48,7 +41,7 @@ def raise_gaps(problem: JointedProblem, n: int, GAPS: FloatArray, D: FloatArray,
     for i in range(problem.m):
         if problem.C.LEFT_OUT[i] != 0:
             GAPS[i] = np.inf
-    return lift_above_walls(problem, n, GAPS, D, tolerance, JOINTED_CORRECTION_SWEEPS)
+    return lift_above_walls(problem, n, GAPS, D, tolerance, joints.JOINTED_CORRECTION_SWEEPS)
 
 
 @kernel
@@ -121,7 +114,7 @@ def keep_angular_momentum(J: Joints, interval: Interval, L: FloatArray) -> None:
         size += (abs(v[0]) + abs(v[1])) * (abs(x) + abs(y)) / isle.IM[q]
         size += abs(v[2]) / isle.II[q] if isle.II[q] > 0.0 else 0.0
         most = max(most, abs(EXCESS[q]))
-    if not most > MOMENTUM_LEFT * size:
+    if not most > joints.MOMENTUM_LEFT * size:
         return
     gained, square = unturn_groups(motion.END, np.zeros((n, 2)), motion.V, isle.IM, isle.II, GROUP, ONE, EXCESS, TURN)
     turn_groups(motion.END, GROUP, ONE, TURN, motion.V, 0)
@@ -153,15 +146,15 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, L: FloatArray, bud
         # prescribe speeds at its end.
         if s >= 0 and J.COMPONENT[s].bounded_joints > 0:
             fill_at_end(A, J, interval, C, g, ROWS, m)
-    D, MU = np.zeros_like(V), np.zeros(m)
-    for _ in range(IMPACT_LIMITS):
+    D, MU, error = np.zeros_like(V), np.zeros(m), joints.JOINTED_LIFT_ERROR * -deepest
+    for _ in range(joints.IMPACT_LIMITS):
         KEEP, D[:] = ROWS[:m].copy(), 0.0
         set_effective_masses(groups, C, KEEP, m)
-        MU = raise_gaps(JointedProblem(KEEP, C, room_for_rows(0, 0), m), n, GAPS, D, JOINTED_LIFT_ERROR * -deepest)
+        MU = raise_gaps(JointedProblem(KEEP, C, room_for_rows(0, 0), m), n, GAPS, D, error)
         again = False
         for g in range(len(groups.COMPONENT)):
             s = groups.COMPONENT[g]
-            if s >= 0 and passes_limit(A, J, s, END, D, isle.IM, isle.II, t + h, h, JOINTED_LIFT_ERROR * -deepest):
+            if s >= 0 and passes_limit(A, J, s, END, D, isle.IM, isle.II, t + h, h, error):
                 again = fill_at_end(A, J, interval, C, g, ROWS, m) or again
         if not again:
             break
@@ -182,7 +175,7 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, L: FloatArray, bud
     if lifts_through(A, isle, END, part * D, n, t + h):
         return 0.0
     STORED = np.zeros(len(groups.COMPONENT))
-    for _ in range(JOINTED_CORRECTION_TRIES):
+    for _ in range(joints.JOINTED_CORRECTION_TRIES):
         spent = 0.0
         NEW = END + part * D
         for g in range(len(groups.COMPONENT)):
@@ -205,5 +198,5 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, L: FloatArray, bud
                     J.STEPPED[s].stored += STORED[g]
             copy(END, NEW)
             return spent
-        part *= JOINTED_CORRECTION_LESS
+        part *= joints.JOINTED_CORRECTION_LESS
     return 0.0

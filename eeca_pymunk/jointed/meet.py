@@ -201,12 +201,9 @@ def end_meeting(A: Scene, J: Joints, SEARCH: Rows[Meeting], fits: bool) -> tuple
         root = S.roots[side]
         if not under_way(A, root):
             continue
-        spent = work_left(A, J) < 0.0
+        spent = work_left(A, J) < 0.0  # then the step ends where the island does
         end = S.t if fits else fitting_end(A, J, root, S.t)
-        if spent:
-            end_here(A, J, root, end)  # the step ends there
-        else:
-            wait_until(A, J, root, end, S.t)
+        wait_until(A, J, root, end, end if spent else S.t)
         if end < S.t:
             g, crossed = math.inf if work_left(A, J) < 0.0 else gap(A, S.a, S.b, S.t)[0] - S.level, True
     return S.t, crossed and g > max(S.touch, -S.rate * A.PAR.instant)
