@@ -5,8 +5,8 @@ be the distance of the centres of two margin circles, R the radii of the boundin
 margins. If d > R_a + m_a + R_b + m_b, the bounding circles are apart as long as their centres are inside the margin
 circles, and the pair is in no list. A pair of moving shapes is in both lists, a static shape in that of the other one.
 
-Elasticity, friction and surface velocity are those of both shapes (`law_of_shapes`), or the values that collision
-handlers or joints have set for this step in RULE (see `..model.scene`), whose rows are sorted by pair.
+Elasticity, friction and surface velocity are pymunk's products, or the values that collision handlers or joints have
+set for this step in RULE (see `..model.scene`), whose rows are sorted by pair.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from ..geometry.gap import gap_round_off
 from ..geometry.widths import smaller
 from ..model.parameters.impulses import FACE_ROUND_OFF, ROCKING
 from ..model.scene import Scene
-from ..model.shapes import Link, Shape
+from ..model.shapes import Link
 
 
 @nonallocating
@@ -50,21 +50,14 @@ def barred(A: Scene, a: int, b: int) -> bool:
 
 
 @nonallocating
-def law_of_shapes(one: Shape, two: Shape) -> tuple[float, float, float, float]:
-    """The law of two shapes, as pymunk has it: products of elasticities and of frictions, and the surface velocity
-    (x, y) of `two` relative to `one`."""
-    surface_x, surface_y = two.surface_x - one.surface_x, two.surface_y - one.surface_y
-    return one.elasticity * two.elasticity, one.friction * two.friction, surface_x, surface_y
-
-
-@nonallocating
 def law(A: Scene, a: int, b: int) -> tuple[float, float, float, float]:
     """Elasticity, friction, and surface velocity (x, y) of b relative to a, in this step."""
-    RULE, r = A.RULE, row_of(A.RULE, a, b)
-    if r < 0:
-        return law_of_shapes(A.SHAPE[a], A.SHAPE[b])
-    sign = 1.0 if a < b else -1.0
-    return RULE[r, 2], RULE[r, 3], sign * RULE[r, 4], sign * RULE[r, 5]
+    RULE, one, two, r = A.RULE, A.SHAPE[a], A.SHAPE[b], row_of(A.RULE, a, b)
+    if r >= 0:
+        sign = 1.0 if a < b else -1.0
+        return RULE[r, 2], RULE[r, 3], sign * RULE[r, 4], sign * RULE[r, 5]
+    surface_x, surface_y = two.surface_x - one.surface_x, two.surface_y - one.surface_y
+    return one.elasticity * two.elasticity, one.friction * two.friction, surface_x, surface_y
 
 
 @nonallocating

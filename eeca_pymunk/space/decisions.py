@@ -18,7 +18,6 @@ import pymunk
 from ..arrays import FloatArray
 from ..compiled.records import Rows
 from ..model.shapes import Shape
-from ..pairs.rules import law_of_shapes
 from .private import arbiters as private_arbiters
 from .private import spaces as private
 from .private.shapes import overlap
@@ -78,7 +77,9 @@ NO_RULES = Rules()  # those of all steps in which no decision applies
 
 
 def _own_law(SHAPE: Rows[Shape], a: int, b: int) -> Law:
-    e, mu, x, y = map(float, law_of_shapes(SHAPE[a], SHAPE[b]))
+    """What `..pairs.rules.law` computes for two shapes without rules, which Python cannot call: it is no entry."""
+    e, mu = (float(SHAPE[k][a] * SHAPE[k][b]) for k in ("elasticity", "friction"))
+    x, y = (float(SHAPE[k][b] - SHAPE[k][a]) for k in ("surface_x", "surface_y"))
     return e, mu, x, y
 
 
