@@ -143,7 +143,7 @@ class PackedStepper(HookedStepper):
 
     def _calls(self, world: World) -> bool:
         """Whether a step of a world calls functions of the program."""
-        return world.hooked or (world.joints is not None and world.joints.calls_back())
+        return world.hooked_steps or (world.joints is not None and world.joints.calls_back())
 
     def _silent_step(self, world: World, dt: float, half_damping: float) -> StepReport:
         """A step that calls none of the functions of a space (`Rehearsal.is_silent_again`)."""

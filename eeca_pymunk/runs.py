@@ -91,7 +91,7 @@ class RunningStepper(PackedStepper):
         """Whether functions have to be called within the next step."""
         world = self._present()
         functions = world.joints is not None and world.joints.calls_any()
-        return world.hooked or functions or (self.sync and self._sync.waits())
+        return world.hooked_steps or functions or (self.sync and self._sync.waits())
 
     def get_state(self) -> IntArray:
         """Everything that determines the further path of the space, as a 1-D array of integers: poses, velocities and

@@ -45,7 +45,7 @@ TABLES = {
         OF:i8[1] KEPT:Joint[1] STEPPED:JointLedger[1] TALLY:Tally
     """,
     "Island": """
-        WHO:i8[1] POSE:f8[2] V:f8[2] ACC:f8[2] IM:f8[1] II:f8[1] EXTENT:f8[1] FELT:f8[1] PAIRS:i8[2]
+        WHO:i8[1] POSE:f8[2] V:f8[2] ACC:f8[2] IM:f8[1] II:f8[1] EXTENT:f8[1] LEVER:f8[1] PAIRS:i8[2]
     """,
     "IslandContacts": """
         ROWS:Row[1] L:f8[2] VN:f8[2] JUMP:f8[2] OUT:Solved[1]
@@ -61,7 +61,7 @@ ENTRIES = {
     "geometry.gap:gaps": "{Scene} i8[2] f8[2] f8[2] f8[2]",
     "pairs.grid:build": "{Scene} f8",
     "pairs.margins:begin_lists": "{Scene}",
-    "pairs.margins:fill_lists": "{Scene} f8[1] f8",
+    "pairs.margins:fill_lists": "{Scene} f8[1]",
     "pairs.candidates:candidates": "{Scene} f8[1] i8[2] f8[2]",
     "transfer:read_states": "f8[3] i8[2] f8[2] Body[1] f8 f8 f8",
     "transfer:write_states": "f8[3] i8[2] f8[2] Body[1] f8[1] f8 i8",

@@ -20,7 +20,7 @@ from math import inf
 import numpy as np
 
 from ..arrays import FlagArray, FloatArray, IntArray
-from ..compiled import kernel, nonallocating
+from ..compiled import inlined, kernel, nonallocating
 from ..geometry.widths import depth_limit
 from ..model.contacts import AnyProblem, Problem
 from ..model.parameters.intervals import (
@@ -41,7 +41,7 @@ from .works import work_of_forces
 
 
 @kernel
-def lifting(
+def correct_penetration(
     problem: Problem, L: FloatArray, POSE: FloatArray, VN: FloatArray, ACC: FloatArray, h: float, EXTENT: FloatArray,
     budget: float, left: float, JUMP: FloatArray,
 ) -> None:  # fmt: skip
@@ -84,15 +84,29 @@ def lifting(
             work += spun
         if not work + square > budget + CORRECTION_ROUND_OFF * work_of_forces(np.abs(ACC), IM, II, n, np.abs(D)):
             break
-        # p D cost p linear - p^2 square = most, as the part p of D changes `spin`, which is that after D; the moment
-        # of inertia is taken as constant.
-        linear, most = work + 2.0 * square, CORRECTION_SHARE * budget
-        part = 2.0 * most / (linear + math.sqrt(max(linear * linear - 4.0 * square * most, 0.0)))
+        part = part_for(CORRECTION_SHARE * budget, work, square)
         D = (part if tries + 2 < CORRECTION_TRIES else 0.0) * D
     for i in range(n):
         for c in range(3):
             JUMP[i, c] = D[i, c]
     turn_groups(NEW, GROUP, ONE, TURN, JUMP, 3)
+
+
+@inlined
+def part_for(budget: float, first: float, square: float) -> float:
+    """The part p of displacements D that costs just `budget`, if D costs `first` + `square`: the work w of forces, and
+    `unturn_groups`.
+
+    A group of inertia I has the angular momentum s + p g, of which p D have given p g. Its turn -p g / I changes the
+    energy by -p g (s + p g) / I + (p g)^2 / (2 I). For p = 1 the second term is `square`, the first w - g s / I -
+    2 square. So p D cost
+
+        p w - p g s / I - p^2 g^2 / (2 I) = p (first + 2 square) - p^2 square,
+
+    and p is the smaller root. I is taken as constant, so that the cost of the part has to be computed again.
+    """
+    linear = first + 2.0 * square
+    return 2.0 * budget / (linear + math.sqrt(max(linear * linear - 4.0 * square * budget, 0.0)))
 
 
 @kernel

@@ -28,7 +28,7 @@ from ..model.parameters.intervals import (
 from ..model.scene import Scene, scene_of
 from ..rows.blocks import clear_report
 from ..rows.build import conserves, rates
-from ..rows.energy import lock, works
+from ..rows.energy import lock, losses
 from ..rows.gentle import excessive, unwedge
 from ..rows.inplace import copy
 from ..rows.laws import solved_exactly
@@ -114,13 +114,13 @@ class Begun(NamedTuple):
 
 
 @kernel
-def begin_contacts(A: Scene, isle: Island, contacts: IslandContacts, n: int, h: float, least: float) -> Begun:
-    """Find the contacts of an island over an interval h, with their initial impulses."""
+def begin_contacts(A: Scene, isle: Island, contacts: IslandContacts, n: int, h: float, least_reach: float) -> Begun:
+    """Find the contacts of an island over an interval h, with initial impulses. least_reach: see `step_island`."""
     k = len(isle.IM)
     clear_report(contacts.OUT[0])
     REACH = np.empty(k)
     slow, fast, pull = speeds(isle, n, h, REACH)
-    REACH = np.maximum(REACH, least)
+    REACH = np.maximum(REACH, least_reach)
     m = gather_contacts(A, isle, contacts, REACH, h, k == n)
     if not table_has_room(A, m):
         return Begun(-1, np.empty(0), slow, fast, pull)
@@ -142,7 +142,7 @@ def find_rest(
     rates(contacts.ROWS, V, m)
     target(contacts.ROWS, m, isle.ACC, begun.EXPECTED, begun.pull, h)
     found, OUT[0].direct = find_static_forces(
-        problem, contacts.L[:m], V, V + h * isle.ACC, isle.FELT, contacts.VN, begun.pull * h, rest_speed, hold
+        problem, contacts.L[:m], V, V + h * isle.ACC, isle.LEVER, contacts.VN, begun.pull * h, rest_speed, hold
     )
     if found:
         OUT[0].at_rest = 1
@@ -153,7 +153,7 @@ def find_rest(
 
 @kernel
 def step_island(
-    SCENE: Table, ISLE: Table, CONTACTS: Table, n: int, h: float, most: int, least: float, owed: float,
+    SCENE: Table, ISLE: Table, CONTACTS: Table, n: int, h: float, most: int, least_reach: float, owed: float,
     rest_speed: float,
 ) -> int:  # fmt: skip
     """Solve an island over an interval of length h.
@@ -163,7 +163,7 @@ def step_island(
         CONTACTS: out, its rows, impulses, velocities, report.
         n: number of bodies that impulses move; the others keep their velocities.
         most: largest number of sweeps of a large moving island, or while direct solves are suspended.
-        least: length that each body's points may move at least; 0 to use their velocities alone.
+        least_reach: way that points of bodies may move in h at least; 0: as their velocities let expect.
         owed: energy >= 0 that the island has to lose at least.
         rest_speed: speed relative to |a| h below which the island is tested for static forces (`find_rest`); 0 for no
             test.
@@ -173,7 +173,7 @@ def step_island(
     """
     A, isle, contacts = scene_of(SCENE), island_of(ISLE), contacts_of(CONTACTS)
     ROWS, VN, OUT = contacts.ROWS, contacts.VN, contacts.OUT
-    begun = begin_contacts(A, isle, contacts, n, h, least)
+    begun = begin_contacts(A, isle, contacts, n, h, least_reach)
     m, slow, fast, pull = begun.m, begun.slow, begun.fast, begun.pull
     if m > 0:
         if rest_speed > 0.0 and find_rest(A, isle, contacts, n, h, begun, rest_speed, True):
@@ -202,6 +202,6 @@ def step_island(
             worst = unwedge(problem, L, VN, FREE, INTERVAL_RESIDUAL * scale, top_speed, OUT[0])
             OUT[0].lock = lock(problem, L, VN, FREE, owed, elastic)
         OUT[0].residual, OUT[0].tolerance = worst, INTERVAL_UNMET * scale if exactly else np.inf
-        OUT[0].restitution, OUT[0].friction = works(problem, L, VN)
+        OUT[0].restitution, OUT[0].friction = losses(problem, L, VN)
         remember_loads(A, ROWS, L, m, h)
     return m

@@ -17,7 +17,7 @@ from ..compiled import kernel
 from ..model.bodies import Rest
 from ..model.contacts import Problem, Solved
 from ..model.parameters import intervals
-from ..model.parameters.impulses import POLISH_AUGMENTATION, POLISHES_INTERVAL
+from ..model.parameters.impulses import REFINED_AUGMENTATION, REFINEMENTS_INTERVAL
 from ..rows.conjugate import sweep_conjugate
 from ..rows.direct import refine_and_sweep
 from ..rows.laws import solve_few, solved_exactly
@@ -57,7 +57,7 @@ def relax(
         return worst
     fails, done, last, few = 0, 0, worst, solved_exactly(problem.n, problem.m)
     while done < rounds:
-        passes = POLISHES_INTERVAL if STATE.augmentation > POLISH_AUGMENTATION else 1
+        passes = REFINEMENTS_INTERVAL if STATE.augmentation > REFINED_AUGMENTATION else 1
         STATE.augmentation, worst, taken = refine_and_sweep(
             problem, L, V, FREE, STATE.augmentation, passes, fine, worst, intervals.SWEEPS_AFTER
         )  # fmt: skip

@@ -28,28 +28,30 @@ def touches(A: Scene, a: int, b: int, t: float) -> bool:
 
 
 @inlined
-def alone(A: Scene, i: int, other: int, t: float) -> bool:
-    """Whether no shape but `other` touches the shapes of body i at instant t."""
-    BODY, POOL = A.BODY, A.POOL
-    x, y, _ = pose(BODY, i, t)
-    even, ax, ay = A.COUNT.even > 0, BODY[i].ax, BODY[i].ay
-    for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
-        start = A.LIST[s].start
-        for q in range(start, start + A.LIST[s].number):
-            o = int(POOL[q])
-            if o == other:
+def only_pair(A: Scene, i: int, o: int, t: float) -> bool:
+    """Whether the impact of the single disk i with shape o, another single disk or a static shape, at instant t is
+    theirs alone: no third shape touches either disk. A static shape passes no impulse on."""
+    BODY, POOL, disks, even = A.BODY, A.POOL, A.COUNT.disks, A.COUNT.even > 0
+    for s, partner in ((i, o), (o, i)):
+        if s >= disks:
+            continue
+        x, y, _ = pose(BODY, s, t)
+        ax, ay = BODY[s].ax, BODY[s].ay
+        for q in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
+            k = int(POOL[q])
+            if k == partner:
                 continue
-            if o < A.COUNT.disks:
+            if k < disks:
                 # Bounding circles suffice for most, wider by more than the round-off of `touches`.
-                h = t - BODY[o].since
+                h = t - BODY[k].since
                 if not even:
-                    ax, ay = BODY[o].ax, BODY[o].ay
-                dx = BODY[o].x + (BODY[o].vx + 0.5 * ax * h) * h - x
-                dy = BODY[o].y + (BODY[o].vy + 0.5 * ay * h) * h - y
-                far = 1.001 * (BODY[i].extent + BODY[o].extent) + 1e-9 * (abs(x) + abs(y))
+                    ax, ay = BODY[k].ax, BODY[k].ay
+                dx = BODY[k].x + (BODY[k].vx + 0.5 * ax * h) * h - x
+                dy = BODY[k].y + (BODY[k].vy + 0.5 * ay * h) * h - y
+                far = 1.001 * (BODY[s].extent + BODY[k].extent) + 1e-9 * (abs(x) + abs(y))
                 if dx * dx + dy * dy > far * far:
                     continue
-            if touches(A, s, o, t) and not barred(A, s, o):
+            if touches(A, s, k, t) and not barred(A, s, k):
                 return False
     return True
 

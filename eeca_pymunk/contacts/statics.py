@@ -53,7 +53,7 @@ def set_motionless(problem: Problem, V: FloatArray, close: float) -> bool:
 
 @kernel
 def find_static_forces(
-    problem: Problem, L: FloatArray, V: FloatArray, FREE: FloatArray, FELT: FloatArray, VN: FloatArray, change: float,
+    problem: Problem, L: FloatArray, V: FloatArray, FREE: FloatArray, LEVER: FloatArray, VN: FloatArray, change: float,
     rest_speed: float, hold: bool,
 ) -> tuple[bool, int]:  # fmt: skip
     """Search static forces that end the motion V (k, 3) of the n bodies of a problem, and, if `hold`, hold them then.
@@ -63,7 +63,7 @@ def find_static_forces(
             become 0, and L the impulses over h that hold the bodies from then on, without those that stop them; without
             `hold` both.
         V: becomes 0, except for free spins, if forces are found.  FREE: (k, 3) velocities at the end without impulses.
-        FELT: (k,) the lengths by which spins count, see `..model.islands`.
+        LEVER: (k,) the lengths by which spins count in speeds, see `..model.islands`.
         VN: (k, 3) out, velocities at the end; if nothing is found, a motion against which no contact acts, of any size.
         change: |a| h, to which speeds are relative.
         rest_speed: largest speed relative to it, up to REST_CANDIDATE_LARGE also that at which gaps of loaded contacts
@@ -78,13 +78,13 @@ def find_static_forces(
         return False, 0
     PULL, START = FREE - V, FREE - V
     for i in range(n):
-        speed = point_speed(V[i, 0], V[i, 1], V[i, 2], FELT[i])
+        speed = point_speed(V[i, 0], V[i, 1], V[i, 2], LEVER[i])
         steps = min(STOPPING_STEPS, rest_speed * change / speed) if speed > 0.0 else 1.0
-        for c in range(3 if FELT[i] > 0.0 else 2):
+        for c in range(3 if LEVER[i] > 0.0 else 2):
             START[i, c] += V[i, c] / max(steps, 1.0)
     factors, accuracy = 0, REST_SPEED * change
     for LEFT, most in ((START, STATICS_FACTORS), (PULL, STATICS_FACTORS_NEAREST)):
-        found, more = equilibrium(problem, L, LEFT, FELT, accuracy, most)
+        found, more = equilibrium(problem, L, LEFT, LEVER, accuracy, most)
         factors += more
         if not found:
             copy(VN, LEFT)
@@ -92,7 +92,7 @@ def find_static_forces(
         if not hold:
             break
     for i in range(n):
-        for c in range(3 if FELT[i] > 0.0 else 2):
+        for c in range(3 if LEVER[i] > 0.0 else 2):
             V[i, c] = 0.0
             VN[i, c] = 0.0
     return True, factors

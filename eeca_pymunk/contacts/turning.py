@@ -17,9 +17,9 @@ from __future__ import annotations
 
 import math
 
-from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..compiled.records import Rows
+from ..geometry.flight import opening_rate_at
 from ..model.contacts import ContactPoint, Row
 from ..model.islands import Island
 from ..rows.build import normal_rate
@@ -38,14 +38,6 @@ def way_about(isle: Island, a: int, b: int, w: float) -> float:
     x = V[b, 0] - V[a, 0] + w * (POSE[b, 1] - POSE[a, 1])
     y = V[b, 1] - V[a, 1] - w * (POSE[b, 0] - POSE[a, 0])
     return math.sqrt(x * x + y * y) + abs(V[a, 2] - w) * EXTENT[a] + abs(V[b, 2] - w) * EXTENT[b]
-
-
-@nonallocating
-def gap_rate(POSE: FloatArray, V: FloatArray, a: int, b: int, nx: float, ny: float, px: float, py: float) -> float:
-    """Velocity of local body b's point (px, py) relative to body a's along the normal n. POSE, V: (k, 3)."""
-    x = V[b, 0] - V[b, 2] * (py - POSE[b, 1]) - V[a, 0] + V[a, 2] * (py - POSE[a, 1])
-    y = V[b, 1] + V[b, 2] * (px - POSE[b, 0]) - V[a, 1] - V[a, 2] * (px - POSE[a, 0])
-    return nx * x + ny * y
 
 
 @nonallocating
@@ -87,7 +79,7 @@ def follow_rotation(
         swing, counted, unsure = carried_along(isle, ROWS[first], w, h)
     for z in range(count):
         row = ROWS[first + z]
-        u = gap_rate(POSE, V, a, b, NOW[z].nx, NOW[z].ny, NOW[z].px, NOW[z].py)
+        u = opening_rate_at(POSE, V, a, b, NOW[z].nx, NOW[z].ny, NOW[z].px, NOW[z].py)
         row.turned = max(u - normal_rate(row, V), 0.0)
         row.surface -= counted
         row.swung, row.unsure = 0.5 * swing, unsure

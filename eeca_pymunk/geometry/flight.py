@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from ..arrays import FloatArray
 from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.bodies import Body
@@ -72,3 +73,14 @@ def opening_rate(
     """Velocity along n with which a point of body b leaves one of body a: n.(v_b - v_a) + arm_b w_b - arm_a w_a, by
     their velocities and spins, with arm = r x n, r from the centre of the body to the point."""
     return nx * (b[0] - a[0]) + ny * (b[1] - a[1]) + (arm_b * b[2] - arm_a * a[2])
+
+
+@nonallocating
+def opening_rate_at(
+    POSE: FloatArray, V: FloatArray, a: int, b: int, nx: float, ny: float, px: float, py: float
+) -> float:
+    """`opening_rate` of bodies a and b, with poses POSE and velocities V (k, 3), at the point (px, py) of both, without
+    their arms: the same but for round-off."""
+    x = V[b, 0] - V[b, 2] * (py - POSE[b, 1]) - V[a, 0] + V[a, 2] * (py - POSE[a, 1])
+    y = V[b, 1] + V[b, 2] * (px - POSE[b, 0]) - V[a, 1] - V[a, 2] * (px - POSE[a, 0])
+    return nx * x + ny * y

@@ -3,14 +3,13 @@ the islands at rest that they concern are solved again."""
 
 from __future__ import annotations
 
-import zlib
 from collections.abc import Mapping
 from itertools import chain
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import AnyArray, FloatArray, IntArray
 from ..compiled import Table, kernel, nonallocating
 from ..compiled.kernels import Kernel
 from ..compiled.records import columns
@@ -205,10 +204,9 @@ def values_of(scene: Scene) -> tuple[FloatArray, FloatArray]:
     return columns(scene.SHAPE, *SURFACE_FIELDS), columns(scene.BODY, *MOBILITY)
 
 
-def lists_key(scene: Scene) -> IntArray:
-    """(1,) a number that changes with filters, radii and places of static shapes, on which near lists depend."""
-    parts = columns(scene.LINK, "group", "categories", "mask"), scene.SHAPE["rounding"], scene.BOX
-    return np.array([zlib.crc32(b"".join([part.tobytes() for part in parts]))], np.int64)
+def listed_by(scene: Scene) -> tuple[AnyArray, ...]:
+    """What near lists depend on besides places of bodies: filters, radii, and places of static shapes."""
+    return columns(scene.LINK, "group", "categories", "mask"), scene.SHAPE["rounding"], scene.BOX
 
 
 def edits_since(scene: Scene, *then: FloatArray) -> Edits:

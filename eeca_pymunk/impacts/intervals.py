@@ -9,9 +9,9 @@ from ..islands.accounting import close_interval
 from ..islands.building import begin_islands, build_islands
 from ..islands.intervals import begin_interval
 from ..islands.local import contact_range
-from ..jointed.ends import carry, shorten, under_way
+from ..jointed.ends import carry, under_way
 from ..jointed.ledger import most_looks
-from ..jointed.meet import end_before
+from ..jointed.meet import end_by
 from ..jointed.rest import wake_disturbed
 from ..jointed.solve import begin_jointed
 from ..model.bodies import AT_REST
@@ -117,6 +117,5 @@ def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
             rest.lift_x = rest.lift_y = rest.lift_angle = rest.lift_vx = rest.lift_vy = rest.lift_spin = 0.0
     for k in range(A.BODY.shape[0] - 1):
         if A.STATE[k].island == k and A.MEMBER[k].rest != AT_REST and A.MEMBER[k].jointed > 0 and under_way(A, k):
-            shorten(A, J, k, t)
-            end_before(A, J, k, t, False, False)
+            end_by(A, J, k, t)
     return DONE

@@ -9,7 +9,7 @@ from __future__ import annotations
 from ..compiled import inlined, kernel, nonallocating
 from ..contacts.counts import note_unmet
 from ..contacts.memory import table_has_room
-from ..contacts.single import alone, strike_disk
+from ..contacts.single import only_pair, strike_disk
 from ..geometry.sides import remembers
 from ..islands.accounting import end_interval, lift_within_step
 from ..islands.hits import hits_of, most_hits, passed_over
@@ -34,7 +34,11 @@ from .joint_impact import collide
 from .resolution import strike
 from .simultaneous import bring_to
 
-_ROOM = 64  # contacts that an impact on joints may add, at least
+# Rows of LOG that an event may need for each body: shapes of like size touch six others, three pairs for each body, and
+# a wall, at two points each. An impact that needs more (`resolution.lacks_room`) is repeated.
+_ROWS_OF_A_BODY = 8
+# Contacts that an impact on joints may add, besides as many as there are; so many are also removed together.
+_MORE_CONTACTS = 64
 
 
 @inlined
@@ -102,15 +106,10 @@ def run_events(A: Scene, may_persist: bool, most: float) -> int:
             mark_pair(A, s, o, 1)
             one = i
             continue
-        single = STATE[i].island < 0 and STATE[j].island < 0 and i < disks and (o < disks or o >= moving)
-        if single and may_persist:
-            single = not persists_from(A, s, o, t)
-        body, other = i, o
-        for _ in range(2):
-            if single and body >= 0:
-                single = alone(A, body, other, t)
-            body, other = (j, i) if o < disks else (-1, -1)
-        if not single:
+        closed_form = STATE[i].island < 0 and STATE[j].island < 0 and i < disks and (o < disks or o >= moving)
+        if closed_form and may_persist:
+            closed_form = not persists_from(A, s, o, t)
+        if not (closed_form and only_pair(A, i, o, t)):
             A.PAR.now, COUNT.event_body = t, i
             return BLOCK_DUE
         # The result is the same to the bit, whichever of the two predicted the impact.
@@ -156,7 +155,7 @@ def process_events(A: Scene, J: Joints, may_persist: bool) -> int:
     COUNT, STATE = A.COUNT, A.STATE
     few = -1
     while True:
-        if few < 0 or COUNT.pushes > 2 * few + _ROOM:
+        if few < 0 or COUNT.pushes > 2 * few + _MORE_CONTACTS:
             drop_ended(A)
             few = COUNT.pushes
         status = start_waiting(A, J) if COUNT.waiting > 0 else DONE
@@ -169,7 +168,8 @@ def process_events(A: Scene, J: Joints, may_persist: bool) -> int:
         j = i if o < 0 else A.LINK[o].owner
         if COUNT.work + work_of_event(A, i, j) > most_looks(A, J):
             return cut_short(A, J, i, t)
-        if COUNT.logged + COUNT.pushes + max(8 * STATE.shape[0], COUNT.room) > A.LOG.shape[0]:
+        # Each contact of an interval will have a row of LOG, too.
+        if COUNT.logged + COUNT.pushes + max(_ROWS_OF_A_BODY * STATE.shape[0], COUNT.room) > A.LOG.shape[0]:
             COUNT.heap = push_event(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
             return LOG_FULL
         met = o != RENEW
@@ -192,7 +192,7 @@ def process_events(A: Scene, J: Joints, may_persist: bool) -> int:
             joints = waiting < 0  # others of the block are jointed: nothing was done
         if joints and work_left(A, J) < 0.0:
             return cut_short(A, J, i, t)
-        more = 2 * COUNT.pushes + _ROOM
+        more = 2 * COUNT.pushes + _MORE_CONTACTS
         if joints and (more > A.PUSHED.shape[0] or not table_has_room(A, more)):
             COUNT.heap = push_event(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
             return PUSHES_FULL

@@ -18,7 +18,7 @@ from ..model.scene import Scene, scene_of
 from ..model.step import Count, Step
 from ..pairs.setup import refilled
 from ..report import Outcome
-from .edits import edits_since, lists_key, values_of, write_edits
+from .edits import edits_since, listed_by, values_of, write_edits
 from .memory import GROWN_ARRAYS, OF_SCENE, gathered, recalled, remembered
 from .scene_memory import SceneMemory
 
@@ -151,7 +151,7 @@ class Remembering:
 
     def remembered(self) -> list[AnyArray]:
         """All arrays that determine the next step, apart from the states exchanged with pymunk."""
-        return [*remembered(self.scene), *values_of(self.scene), lists_key(self.scene)]
+        return [*remembered(self.scene), *values_of(self.scene), *listed_by(self.scene)]
 
     def recall(self, take: Callable[[Any, tuple[int, ...]], AnyArray]) -> bool:
         """Set the arrays of `remembered`; `take` returns the next one, for a dtype and a shape. Values of shapes and
@@ -163,5 +163,5 @@ class Remembering:
         then = [take(now.dtype, now.shape) for now in values_of(self.scene)]
         write_edits(self.table, edits_since(self.scene, *then))
         self.fresh = self.fresh[:0]
-        now = lists_key(self.scene)
-        return bool((now == take(now.dtype, now.shape)).all())
+        same = [bool((now == take(now.dtype, now.shape)).all()) for now in listed_by(self.scene)]
+        return all(same)

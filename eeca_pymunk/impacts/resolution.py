@@ -26,7 +26,7 @@ from ..model.scene import Scene
 from ..model.step import IMPACT
 from ..pairs.rules import law
 from ..prediction.work import most_work
-from ..rows.blocks import CONVERGED, solve_block, solve_freely
+from ..rows.blocks import CONVERGED, solve_block, solve_frictionless
 from ..rows.laws import solved_exactly
 from .simultaneous import Block, gather_block, make_block, take_owed_energy
 
@@ -34,9 +34,10 @@ from .simultaneous import Block, gather_block, make_block, take_owed_energy
 @nonallocating
 def finish_block(
     A: Scene, block: Block, n: int, m: int, L: FloatArray, OUT: Rows[Solved], status: int, t: float
-) -> None:
+) -> float:
     """Write the velocities of a block of n bodies and m pairs after the impulses L (c, 2) of its c contacts to BODY,
-    and enter losses and impulses in ledger and log. status, OUT: result and report of `..rows.blocks.solve_block`."""
+    and enter losses and impulses in ledger and log. status, OUT: result and report of `..rows.blocks.solve_block`.
+    Returns the energy lost."""
     BODY, COUNT = A.BODY, A.COUNT
     V, ROWS = block.V, block.ROWS
     if status != CONVERGED:
@@ -61,6 +62,7 @@ def finish_block(
             )  # fmt: skip
             COUNT.logged += 1
     COUNT.blocks += 1 if m > 1 else 0
+    return float(OUT[0].restitution + OUT[0].friction)
 
 
 @nonallocating
@@ -116,9 +118,8 @@ def strike(A: Scene, a: int, b: int, t: float, lasts: bool) -> int:
     FREE = block.V.copy()
     status = solve_block(problem, L, block.V, owed, in_islands, OUT)
     if solved_exactly(n, rows):
-        status = solve_freely(problem, L, block.V, FREE, owed, status, False, OUT)
-    lost = OUT[0].restitution + OUT[0].friction - owed
-    finish_block(A, block, n, m, L, OUT, status, t)
+        status = solve_frictionless(problem, L, block.V, FREE, owed, status, False, OUT)
+    lost = finish_block(A, block, n, m, L, OUT, status, t) - owed
     spend(A, n, m, looks_of(rows, OUT))
     return unite_block(A, a, b, t, n, lasts, lost, A.COUNT.work / most_work(A))
 

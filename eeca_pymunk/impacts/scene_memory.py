@@ -29,8 +29,14 @@ from .memory import OF_SCENE
 
 RULE_COLUMNS = 6
 _MISSED = 32  # rows of MISSED: those reported of a step
-_CONTACTS = 256  # rows of PUSHED at first, a power of 2
-_OF_A_BODY, _MANY = 32, 1 << 16  # rows for each body where contacts may persist, and all rows at most at first
+# Rows of PUSHED at first, a power of 2, as KEYS is a hash table: _CONTACTS; or, where contacts may persist, so many for
+# each body, and _MOST_AT_FIRST at most. `islands.building.begin_islands` wants up to 4 rows for each entry of a near
+# list, and lists have NEIGHBOURS = 8 entries.
+_CONTACTS, _CONTACTS_OF_A_BODY, _MOST_AT_FIRST = 256, 32, 1 << 16
+_FORCES_OF_A_CONTACT = 4  # rows of KEYS: half are free, half of the others have the forces of the last step
+_EVENTS_OF_A_BODY = 8  # rows of the heap: one of them is valid, and all others are removed at once when it is full
+_IMPULSES_OF_A_BODY = 4  # rows of LOG at first: few bodies have more impulses in a step
+_FEW = 64  # rows that the heap and LOG have besides, for scenes of few bodies
 _NO_RULE: FloatArray = np.zeros((0, RULE_COLUMNS))
 _ZEROS = (*OF_SCENE, "PULL", "BEGAN", "HEAP_TIME", "HEAP_BODY", "BLOCK", "BOX", "CORNER", "MISSED")
 _FILLED = "LOG", "KEYS", "FORCES", "PUSHED_BY", "PUSHED"  # before they are read
@@ -134,17 +140,18 @@ class SceneMemory:
         BODY, SHAPE, LINK, VERTEX, disks, (moving, vertices, self.thin, lossy) = laid
         n, k = len(BODY), len(LINK)
         room = _CONTACTS
-        while room < max(min(_OF_A_BODY * n, _MANY) if lossy else 0, self.contacts):
+        while room < max(min(_CONTACTS_OF_A_BODY * n, _MOST_AT_FIRST) if lossy else 0, self.contacts):
             room *= 2
         pool, heads = pool_sizes(moving)
+        events, forces = _EVENTS_OF_A_BODY * n + _FEW, _FORCES_OF_A_CONTACT * room
         counts = {
             "PAR": 1, "COUNT": 1, "GRID": 1,
             "BODY": n, "STATE": n, "MEMBER": n, "RESTING": n, "PLACE": n, "PULL": n, "BEGAN": n, "BLOCK": n,
-            "HEAP_TIME": 8 * n + 64, "HEAP_BODY": 8 * n + 64, "LOG": max(4 * n + 64, self.log),
+            "HEAP_TIME": events, "HEAP_BODY": events, "LOG": max(_IMPULSES_OF_A_BODY * n + _FEW, self.log),
             "SHAPE": k, "LINK": k, "MARK": moving, "CELL": moving, "LIST": moving, "BOX": k - moving,
             "POOL": pool, "FLAG": pool, "HEAD": heads, "VERTEX": len(VERTEX), "CORE": vertices,
             "SIDE": corners.side_rows(self.thin, k), "CORNER": 4 * k if self.thin else 0,
-            "KEYS": 4 * room, "FORCES": 4 * room, "PUSHED_BY": room, "PUSHED": room, "MISSED": _MISSED,
+            "KEYS": forces, "FORCES": forces, "PUSHED_BY": room, "PUSHED": room, "MISSED": _MISSED,
         }  # fmt: skip
         table = self._layout.lay(counts, BODY, SHAPE, LINK, VERTEX)
         (begin,) = self._layout.bound(begin_scene)

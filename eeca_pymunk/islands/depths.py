@@ -10,8 +10,7 @@ from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..contacts.memory import shapes_of
-from ..contacts.turning import gap_rate
-from ..geometry.flight import norm, pose
+from ..geometry.flight import norm, opening_rate_at, pose
 from ..geometry.gap import gap_along, gap_at
 from ..geometry.sides import held_side, remembers
 from ..geometry.widths import depth_limit, half_width, smaller
@@ -176,7 +175,7 @@ def deep_at_end(A: Scene, isle: Island, END: FloatArray, ROWS: Rows[Row], m: int
         return 0.0
     S, V, room = isle.POSE, isle.V, room_of(A, a, b, gap)
     _, nx, ny, x, y = gap_at(A, a, S[p, 0], S[p, 1], S[p, 2], b, S[q, 0], S[q, 1], S[q, 2])
-    way = max(-h * gap_rate(S, V, p, q, nx, ny, x, y), 0.0)
+    way = max(-h * opening_rate_at(S, V, p, q, nx, ny, x, y), 0.0)
     root = math.sqrt(max(way * way + 4.0 * (closing - way) * room, 0.0))
     return max((way + root) / (2.0 * room), 1.01 * intervals.INTERVAL_RETRY)
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arrays import FlagArray, FloatArray, IntArray
 from ..compiled import kernel, nonallocating
-from ..contacts.correction import lifting, without_turning
+from ..contacts.correction import correct_penetration, without_turning
 from ..contacts.counts import count_solve, note_lock, note_unmet
 from ..contacts.interval import make_contacts, step_island
 from ..model.contacts import Problem
@@ -107,10 +107,10 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
     k, V, contacts = len(isle.WHO), isle.V, make_contacts(p, len(isle.WHO))
     ROWS, L = contacts.ROWS, contacts.L
     VN, JUMP, OUT = contacts.VN, contacts.JUMP, contacts.OUT
-    least = 0.0
+    least_reach = 0.0
     if COUNT.together > 0:
         for q in range(k):
-            least = max(least, candidates.travel_bound(A, isle.WHO[q], h))
+            least_reach = max(least_reach, candidates.travel_bound(A, isle.WHO[q], h))
     sweeps = candidates.sweeps_of(n, t)
     m = 0
     with_supports = bodies_with_supports(A, isle, n)
@@ -120,7 +120,7 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
     owed = max(-A.RESTING[root].lost, 0.0)
     shortest = A.PAR.dt / RESOLUTION
     if p > 0 and h > 0.0:
-        m = step_island(A, isle, contacts, n, h, sweeps, least, owed, rest_speed)
+        m = step_island(A, isle, contacts, n, h, sweeps, least_reach, owed, rest_speed)
         # With losses nothing bounces for long: there only a single contact ends one interval of a step so.
         turns = COUNT.together == 0 and (not may_lose or (m == 1 and t == 0.0))
         sticks, stuck = not candidates.to_end_of_step(A), h
@@ -130,7 +130,7 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
             # The interval ends where slip ends, as the law of friction changes there.
             h = min(max(stuck, shortest), h)
             count_solve(A, n, p, m, OUT)
-            m = step_island(A, isle, contacts, n, h, sweeps, least, owed, 0.0)
+            m = step_island(A, isle, contacts, n, h, sweeps, least_reach, owed, 0.0)
         far = 0.0
         if not last and OUT[0].at_rest == 0:
             far = times_too_long(A, isle, contacts, m, h)
@@ -142,10 +142,12 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
             budget, payable = payment(A, isle, ROWS, L, VN, n, m, lost, before, placed, False)
             problem, middle = Problem(ROWS, isle.IM, isle.II, isle.POSE, n, m), isle.POSE + 0.5 * h * V
             left, last_pose = left_to_lift(A, t + h), middle + 0.5 * h * VN
-            lifting(problem, L, middle, VN, isle.ACC, h, isle.EXTENT, budget, left, JUMP)
+            correct_penetration(problem, L, middle, VN, isle.ACC, h, isle.EXTENT, budget, left, JUMP)
             through = lifts_through(A, isle, last_pose, JUMP, n, t + h)
             if through and k > n:
-                lifting(without_turning(problem), L, middle, VN, isle.ACC, h, isle.EXTENT, budget, left, JUMP)
+                correct_penetration(
+                    without_turning(problem), L, middle, VN, isle.ACC, h, isle.EXTENT, budget, left, JUMP
+                )
                 through = lifts_through(A, isle, last_pose, JUMP, n, t + h)
             if through:
                 JUMP[:] = 0.0

@@ -69,12 +69,12 @@ def unsupported(A: Scene, root: int, t: float, factors: int) -> float:
     MINE, GATHERED = members_of(A, root), take_places(A)
     n = len(MINE)
     # One local body, the last, stands for all fixed ones that support the island.
-    POSE, IMS, IIS, FELT = np.zeros((n + 1, 3)), np.zeros(n + 1), np.zeros(n + 1), np.zeros(n + 1)
+    POSE, IMS, IIS, LEVER = np.zeros((n + 1, 3)), np.zeros(n + 1), np.zeros(n + 1), np.zeros(n + 1)
     START = np.zeros((n + 1, 3))
     for q in range(n):
         i = MINE[q]
         A.PLACE[i] = q
-        IMS[q], IIS[q], FELT[q] = BODY[i].inv_mass, BODY[i].inv_inertia, 0.0 if spins_freely(A, i) else BODY[i].extent
+        IMS[q], IIS[q], LEVER[q] = BODY[i].inv_mass, BODY[i].inv_inertia, 0.0 if spins_freely(A, i) else BODY[i].extent
         POSE[q, 0], POSE[q, 1], POSE[q, 2] = BODY[i].x, BODY[i].y, BODY[i].angle
         for c in range(3):
             START[q, c] = t * A.PULL[i, c]
@@ -101,10 +101,10 @@ def unsupported(A: Scene, root: int, t: float, factors: int) -> float:
     problem, slow = Problem(ROWS, IMS, IIS, POSE, n, m), REST_SPEED * A.PAR.pulled * t
     LEFT = np.zeros((n + 1, 3))
     velocities(problem, L[:m], START, LEFT)
-    found, taken = equilibrium(problem, L, START, FELT, slow, factors)
+    found, taken = equilibrium(problem, L, START, LEVER, slow, factors)
     A.COUNT.direct += taken
     if not found:
-        return fastest_point(LEFT, FELT, n)
+        return fastest_point(LEFT, LEVER, n)
     for z in range(m):
         pushed, normal = A.PUSHED[OF[z]], planned * L[z, 0]
         pushed.normal, pushed.tangential, pushed.change = normal, planned * L[z, 1], normal / ROWS[z].k_n

@@ -97,7 +97,7 @@ def local_island(A: Scene, MINE: IntArray, found: IntArray, t: float) -> Island:
     k = n + fixed
     WHO, STATES, SIZES_OF = np.empty(k, np.int64), np.zeros((3 * k, 3)), np.empty(4 * k)
     POSE, V, ACC = STATES[:k], STATES[k : 2 * k], STATES[2 * k :]
-    IMS, IIS, SIZES, FELT = SIZES_OF[:k], SIZES_OF[k : 2 * k], SIZES_OF[2 * k : 3 * k], SIZES_OF[3 * k :]
+    IMS, IIS, SIZES, LEVER = SIZES_OF[:k], SIZES_OF[k : 2 * k], SIZES_OF[2 * k : 3 * k], SIZES_OF[3 * k :]
     for q in range(k):
         i = MINE[q] if q < n else FIXED[q - n]
         WHO[q] = i
@@ -109,7 +109,7 @@ def local_island(A: Scene, MINE: IntArray, found: IntArray, t: float) -> Island:
         if q >= n and IMS[q] > 0.0:
             # A body at rest that supports the island is fixed.
             V[q, 2], IMS[q], IIS[q] = 0.0, 0.0, 0.0
-        FELT[q] = 0.0 if spins_freely(A, i) else SIZES[q]
+        LEVER[q] = 0.0 if spins_freely(A, i) else SIZES[q]
         if q < n:
             for c in range(3):
                 ACC[q, c] = A.PULL[i, c]
@@ -119,7 +119,7 @@ def local_island(A: Scene, MINE: IntArray, found: IntArray, t: float) -> Island:
         PAIRS[c, 2], PAIRS[c, 3] = A.PLACE[A.LINK[found[c, 0]].owner], A.PLACE[A.LINK[found[c, 1]].owner]
     for q in range(n, k):
         A.PLACE[WHO[q]] = -1
-    return Island(WHO, POSE, V, ACC, IMS, IIS, SIZES, FELT, PAIRS)
+    return Island(WHO, POSE, V, ACC, IMS, IIS, SIZES, LEVER, PAIRS)
 
 
 @kernel

@@ -11,7 +11,7 @@ meet, on their `paths.py`; `ends.py` ends or shortens intervals. `ledger.py` acc
 that hold bodies still, `losses.py` for what contacts lose. `component.py` steps one component (`gathered.py`). Its
 responses to impulses (`..newton.response`) are the columns of contacts (`columns.py`) over groups of bodies
 (`groups.py`), which `broyden.py` updates; `..rows.laws` solves with them. `fitting.py` projects velocities onto joints
-after an interval, `lifting.py` corrects penetration, `rest.py` puts islands to rest. `..model.joints` names the arrays.
-A *free* island has no contact or joint with a body that impulses do not move. A scene without joints calls nothing of
-this room.
+after an interval, `correction.py` corrects penetration, `rest.py` puts islands to rest. `..model.joints` names the
+arrays. A *free* island has no contact or joint with a body that impulses do not move. A scene without joints calls
+nothing of this room.
 """

@@ -18,8 +18,10 @@ from ..model.parameters.joints import CONDENSED_PASSES
 from ..newton.effort import work_of_solution
 from ..newton.response import respond
 from ..rows.build import invert
-from ..rows.columns import put_free_body
+from ..rows.columns import put_unjointed
 from .groups import Groups, least_mobility
+
+NORMALS, BOTH = 1, 2  # columns that `fill_group` computes: how many for each contact
 
 
 @kernel
@@ -69,14 +71,14 @@ def work_of_columns(J: Joints, groups: Groups, ROWS: Rows[Row], m: int) -> float
 
 
 @nonallocating
-def fill_free(groups: Groups, C: Columns, ROWS: Rows[Row], IM: FloatArray, II: FloatArray, m: int) -> None:
+def fill_unjointed(groups: Groups, C: Columns, ROWS: Rows[Row], IM: FloatArray, II: FloatArray, m: int) -> None:
     """Compute the columns' entries on bodies without joints."""
     for i in range(m):
         for w in range(C.AT[i], C.AT[i + 1]):
             q = C.BODY[w]
             if groups.COMPONENT[groups.GROUP[q]] >= 0:
                 continue
-            put_free_body(C, w, ROWS[i], q == ROWS[i].b, IM[q], II[q])
+            put_unjointed(C, w, ROWS[i], q == ROWS[i].b, IM[q], II[q])
 
 
 @nonallocating
@@ -100,7 +102,7 @@ def fill_group(
 
     Args:
         INDEX: (k,) places of bodies in the scratch of their component.  PUSH: (bodies of the component, 3) scratch.
-        ways: 2, or 1 for the columns of normal impulses alone.
+        ways: NORMALS, or BOTH, those of tangential impulses too.
     """
     s = groups.COMPONENT[g]
     for i in range(m):

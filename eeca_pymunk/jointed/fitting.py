@@ -16,10 +16,10 @@ from ..model.scene import Scene
 from ..rows.bounded import room_for_rows
 from ..rows.build import normal_rate
 from .advance import Interval, find_hit, join_points, separation
-from .columns import fill_free, make_columns, set_effective_masses
+from .columns import fill_unjointed, make_columns, set_effective_masses
 from .component import project_speeds
+from .correction import fill_at_end, raise_gaps
 from .gathered import gather_component, number_of
-from .lifting import fill_at_end, raise_gaps
 
 
 @kernel
@@ -83,7 +83,7 @@ def stop_closing(A: Scene, J: Joints, interval: Interval, PUSHING: IntArray, fin
         along, across = separation(KEEP[i], motion.END)
         join_points(KEEP[i], along, across)  # which have moved apart
     C = make_columns(groups, KEEP, pushing)
-    fill_free(groups, C, KEEP, isle.IM, isle.II, pushing)
+    fill_unjointed(groups, C, KEEP, isle.IM, isle.II, pushing)
     HIT = find_hit(groups, KEEP, pushing)
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]

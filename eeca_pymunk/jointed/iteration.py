@@ -27,7 +27,7 @@ from ..rows.inplace import copy
 from ..rows.laws import give_slips
 from .advance import Interval, advance, align, farthest_apart
 from .broyden import fit_columns
-from .columns import fill_free, set_effective_masses
+from .columns import fill_unjointed, set_effective_masses
 from .contact_laws import set_aims, solve_laws
 from .gathered import some_refused
 from .iterates import Iterates, begin_agreement, begin_iterates, difference, gives_up
@@ -107,7 +107,7 @@ def iterate(A: Scene, J: Joints, interval: Interval, X: Iterates, S: Agreement, 
             advance(A, J, interval, X.L, X.B, True, X.FORESEEN)
             build = True
         if build and X.free:
-            fill_free(groups, C, ROWS, isle.IM, isle.II, m)
+            fill_unjointed(groups, C, ROWS, isle.IM, isle.II, m)
         if outer == 0:
             EFFECT = accelerations_of_joints(A, J, interval, X, S)
         if few and J.PROGRESS.effort > J.PROGRESS.share:
@@ -164,7 +164,7 @@ def solve_contacts(
         interval: out, the columns of the contacts in their last solution.
     """
     isle, S = interval.isle, J.AGREEMENT
-    fill_free(interval.groups, interval.C, interval.ROWS, isle.IM, isle.II, interval.m)
+    fill_unjointed(interval.groups, interval.C, interval.ROWS, isle.IM, isle.II, interval.m)
     rates(interval.ROWS, isle.V, interval.m)
     X = begin_iterates(A, J, interval, L)
     begin_agreement(S, slow, fast, pull, owed, interval.h)

@@ -32,28 +32,38 @@ from .paths import crossing_of_paths, gap_and_rate, instants_between, passes_thr
 
 
 @kernel
-def end_before(A: Scene, J: Joints, root: int, t: float, fits: bool, spent: bool) -> bool:
-    """End the interval of an island, which was shortened to instant t; whether the island ends before t. Unless the
-    interval is known to fit (`fits`), it is halved while joints do not hold at its end or it has passed through other
-    shapes, at last to nothing, and at once if the work of the step is spent. The island then stays there until t, or
-    moves with its moving partners (`carry`); if the work of the step is `spent`, until the end of the step.
-    """
-    if not under_way(A, root):
-        return False
-    began, then = A.BODY[root].since, t
-    for tries in range(0 if fits else MEET_SECANTS):
-        if not (left_apart(A, J, root) or passes_through(A, root, then) < math.inf):
+def fitting_end(A: Scene, J: Joints, root: int, t: float) -> float:
+    """The end of the interval of an island, shortened to instant t: its length is halved while joints do not hold at
+    its end or it has passed through other shapes, at last to nothing, and at once if the work of the step is spent."""
+    began, end = A.BODY[root].since, t
+    for tries in range(MEET_SECANTS):
+        if not (left_apart(A, J, root) or passes_through(A, root, end) < math.inf):
             break
         J.TALLY.worst = LINEAR
         hopeless = tries + 1 == MEET_SECANTS or work_left(A, J) < 0.0
-        then = began if hopeless else 0.5 * (began + then)
-        shorten(A, J, root, then)
-    end_here(A, J, root, then)
-    if not spent:
-        carry(A, J, root, t)
+        end = began if hopeless else 0.5 * (began + end)
+        shorten(A, J, root, end)
+    return end
+
+
+@kernel
+def wait_until(A: Scene, J: Joints, root: int, end: float, t: float) -> None:
+    """End the interval of an island at its end. The island then stays there until instant t, or moves with its moving
+    partners (`carry`)."""
+    end_here(A, J, root, end)
+    carry(A, J, root, t)
     for i in members_of(A, root):
-        A.BODY[i].since = then if spent else t
-    return bool(then < t)
+        A.BODY[i].since = t
+
+
+@kernel
+def end_by(A: Scene, J: Joints, root: int, t: float) -> bool:
+    """End the interval of an island at instant t, or where it fits before t (`fitting_end`), from where it waits until
+    t; whether it ends before t."""
+    shorten(A, J, root, t)
+    end = fitting_end(A, J, root, t)
+    wait_until(A, J, root, end, t)
+    return bool(end < t)
 
 
 @kernel
@@ -186,12 +196,19 @@ def find_later(A: Scene, J: Joints, S: Meeting) -> bool:
 
 @kernel
 def end_meeting(A: Scene, J: Joints, SEARCH: Rows[Meeting], fits: bool) -> tuple[float, bool]:
-    """`end_before` the instant found, for both islands. Returns it, and whether the shapes are apart there: shapes that
-    close within PAR.instant, which is no interval, meet now."""
+    """End the intervals of both islands at the instant found, or where they fit before it unless both are known to
+    (`fits`). Returns the instant, and whether the shapes are apart there: shapes that close within PAR.instant, which
+    is no interval, meet now."""
     S = SEARCH[0]
     g, crossed = S.gap, S.crossed > 0
-    for end in range(2):
-        if end_before(A, J, S.roots[end], S.t, fits, work_left(A, J) < 0.0):
+    for side in range(2):
+        root = S.roots[side]
+        if not under_way(A, root):
+            continue
+        spent = work_left(A, J) < 0.0  # then the step ends where the island does
+        end = S.t if fits else fitting_end(A, J, root, S.t)
+        wait_until(A, J, root, end, end if spent else S.t)
+        if end < S.t:
             g, crossed = math.inf if work_left(A, J) < 0.0 else gap(A, S.a, S.b, S.t)[0] - S.level, True
     return S.t, crossed and g > max(S.touch, -S.rate * A.PAR.instant)
 
@@ -208,7 +225,7 @@ def locate_impact(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float,
     | `find_contact` | always | by secants on the gap, MEET_SECANTS, fewer where contacts push | shapes touch |
     | `find_apart_before` | no interval ends so | halved, MEET_HALVINGS, to where they are apart | both fit |
     | `find_later` | that is the start | after it, later with each impact, halved | both fit |
-    | `end_before` | not known to fit | of each island by itself: halved, MEET_SECANTS, at last to the start | it fits |
+    | `fitting_end` | not known to fit | of each island by itself: halved, MEET_SECANTS, last to the start | it fits |
 
     where an island fits at an instant if it is not `too_late`. One that never does stays where it is until then.
     """

@@ -17,7 +17,7 @@ from ..rows.gentle import excessive, sweep_gently
 from ..rows.inplace import copy
 from .advance import Interval, advance, advance_aligned, align
 from .bounded_rows import with_bounded
-from .columns import count_operations, fill_free, set_effective_masses, work_of_columns
+from .columns import count_operations, fill_unjointed, set_effective_masses, work_of_columns
 from .gathered import some_give, some_taut
 from .iterates import Iterates, difference, gives_up
 from .losses import lock_jointed, work_error
@@ -38,7 +38,7 @@ def solve_gently(
         advance(A, J, interval, L, B, True, np.empty((0, 3)))
         if free:
             align(interval)
-    fill_free(groups, C, ROWS, isle.IM, isle.II, m)
+    fill_unjointed(groups, C, ROWS, isle.IM, isle.II, m)
     set_effective_masses(groups, C, ROWS, m)
     V = interval.motion.MEAN.copy()
     push_columns(C, L, m, -1.0, V)

@@ -30,13 +30,13 @@ from .advance import Interval, advance, motion_at_start
 from .alone import account_turning, begin_alone, is_component, meets_no_other, set_path
 from .columns import make_columns
 from .contact_laws import few_act
+from .correction import keep_angular_momentum, lift_island
 from .fitting import project_velocities
 from .gathered import restore_joints, save_joints, takes_shorter
 from .groups import find_groups
 from .iteration import solve_contacts
 from .ledger import has_work_for, work_left
 from .lengths import excess, forced_deeper, next_length, too_deep_on_way, within_sagitta
-from .lifting import keep_angular_momentum, lift_island
 from .losses import slip_of
 from .rest import rest_if_still
 from .settling import GIVEN_UP, SOLVED

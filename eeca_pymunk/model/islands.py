@@ -17,8 +17,8 @@ class Island(NamedTuple):
     The ground is among the k if a contact touches it. An island with k = n whose joints connect only these bodies is
     *free* (`..jointed.groups.is_free`): its momenta are conserved. WHO (k,): rows of BODY. POSE, V, ACC (k, 3): poses,
     velocities, and accelerations without contacts, at the start of the interval. IM, II (k,): inverse masses and
-    moments. EXTENT (k,): lengths. FELT (k,): the length by which spin adds to the speed of the body's points; EXTENT,
-    or 0 if contacts exert no torque on the body. PAIRS (p, 4): shapes a and b, local bodies of a and b.
+    moments. EXTENT (k,): lengths. LEVER (k,): the length by which spin counts in speeds: EXTENT, or 0 if contacts exert
+    no torque on the body, so that it spins on. PAIRS (p, 4): shapes a and b, local bodies of a and b.
     """
 
     WHO: IntArray
@@ -28,7 +28,7 @@ class Island(NamedTuple):
     IM: FloatArray
     II: FloatArray
     EXTENT: FloatArray
-    FELT: FloatArray
+    LEVER: FloatArray
     PAIRS: IntArray
 
 

@@ -7,7 +7,7 @@ from typing import Annotated
 from ..arrays import IntArray
 from ..compiled.records import Record
 
-LEVELS = 64  # of the grid: level l has cells twice as long as l - 1
+LEVELS = 64  # of the grid: level l has cells twice as long as l - 1, so that radii may differ by a factor of 2^63
 BATCH = 64  # shapes that a loop chooses before the next one looks at them
 
 

@@ -17,7 +17,7 @@ from .cells import bucket, cell_at, enter, overlaps, set_circle, unlink
 from .rules import append, circle_centre, may_collide, place_in, remove
 from .walls import box_wall, seek_walls
 
-_FIRST_CAPACITY = 8
+_FIRST_CAPACITY = 8  # of a list: NEIGHBOURS shapes, for which margins are chosen
 
 
 @nonallocating

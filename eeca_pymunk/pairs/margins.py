@@ -19,6 +19,7 @@ from ..model.parameters.detection import (
     MARGIN_LEAST,
     MARGIN_MOST,
     MOST_NEIGHBOURS,
+    NEIGHBOURS,
 )
 from ..model.scene import Scene, scene_of
 from .grid import make_lists
@@ -51,12 +52,11 @@ def begin_lists(table: Table) -> int:
 
 
 @nonallocating
-def fill_lists(table: Table, BOUND: FloatArray, neighbours: float) -> bool:
+def fill_lists(table: Table, BOUND: FloatArray) -> bool:
     """Choose margins, unless there are some, and make all lists.
 
     Args:
         BOUND: (m,) bounding radii of the shapes that move, in ascending order.
-        neighbours: mean length of lists for which margins are chosen.
 
     Returns:
         False if the pool is full: call again with a larger one.
@@ -65,7 +65,7 @@ def fill_lists(table: Table, BOUND: FloatArray, neighbours: float) -> bool:
     if A.GRID.cell == 0.0:
         if A.GRID.columns > 0:
             wall_grid(A.BOX, A.GRID, A.CSR)
-        choose_margins(A, middle(BOUND), neighbours)
+        choose_margins(A, middle(BOUND))
     while True:
         set_cell(A)
         made, entries = make_lists(A, 0.0), 0
@@ -109,9 +109,9 @@ def set_cell(A: Scene) -> None:
 
 
 @nonallocating
-def neighbours_factor(A: Scene, wide: float, tall: float, neighbours: float) -> float:
-    """The factor (2 + 2 m / r)² of the packing for which a shape has so many neighbours. A shape of a large part of the
-    area wide x tall is one neighbour of each, not more, as the walls of a container that turns."""
+def neighbours_factor(A: Scene, wide: float, tall: float) -> float:
+    """The factor (2 + 2 m / r)² of the packing for which a shape has NEIGHBOURS. A shape of a large part of the area
+    wide x tall is one neighbour of each, not more, as the walls of a container that turns."""
     squared, before = 0.0, -1.0
     while squared > before:
         large, packing, before = 0, 0.0, squared
@@ -121,20 +121,20 @@ def neighbours_factor(A: Scene, wide: float, tall: float, neighbours: float) -> 
                 large += 1
             else:
                 packing += part
-        squared = max(neighbours - large, 0.0) / max(packing, 1e-6)
+        squared = max(NEIGHBOURS - large, 0.0) / max(packing, 1e-6)
     return squared
 
 
 @nonallocating
-def choose_margins(A: Scene, median: float, neighbours: float) -> None:
-    """Set the margins of the shapes that move, whose bounding radii have this median, for so many neighbours."""
+def choose_margins(A: Scene, median: float) -> None:
+    """Set the margins of the shapes that move, whose bounding radii have this median, for NEIGHBOURS."""
     left, bottom, right, top, largest = math.inf, math.inf, -math.inf, -math.inf, 0.0
     for s in range(A.GRID.moving):
         body, bound = A.BODY[A.LINK[s].owner], A.SHAPE[s].bound
         left, bottom = min(left, body.x - bound), min(bottom, body.y - bound)
         right, top = max(right, body.x + bound), max(top, body.y + bound)
         largest = max(largest, bound)
-    squared = neighbours_factor(A, max(right - left, 1e-300), max(top - bottom, 1e-300), neighbours)
+    squared = neighbours_factor(A, max(right - left, 1e-300), max(top - bottom, 1e-300))
     factor = min(max(0.5 * math.sqrt(squared) - 1.0, MARGIN_LEAST), MARGIN_MOST)
     factor = MARGIN_MOST if A.GRID.moving <= ALL_PAIRS else factor
     # Points have a margin too; if all shapes are points, any length will do.

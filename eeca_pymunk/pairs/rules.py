@@ -51,7 +51,7 @@ def barred(A: Scene, a: int, b: int) -> bool:
 
 @nonallocating
 def law(A: Scene, a: int, b: int) -> tuple[float, float, float, float]:
-    """Elasticity, friction, and surface velocity (x, y) of b relative to a."""
+    """Elasticity, friction, and surface velocity (x, y) of b relative to a, in this step."""
     RULE, one, two, r = A.RULE, A.SHAPE[a], A.SHAPE[b], row_of(A.RULE, a, b)
     if r >= 0:
         sign = 1.0 if a < b else -1.0
@@ -123,7 +123,7 @@ def append(A: Scene, a: int, b: int) -> bool:
     POOL, FLAG, own = A.POOL, A.FLAG, A.LIST[a]
     start, n = own.start, own.number
     if n == own.capacity:
-        end, capacity = A.GRID.pool_end, 2 * n + 8
+        end, capacity = A.GRID.pool_end, 2 * n + 8  # doubled, so that a list of n moves some log2 n times
         if end + capacity > POOL.shape[0]:
             return False
         for q in range(n):

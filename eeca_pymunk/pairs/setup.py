@@ -7,7 +7,6 @@ import numpy as np
 from ..arrays import IntArray
 from ..compiled import Table, replaced, table_of
 from ..compiled.records import Rows
-from ..model.parameters.detection import NEIGHBOURS
 from ..model.scene import Scene, scene_of
 from ..model.shapes import Shape
 from .grid import build
@@ -19,7 +18,11 @@ NO_GRID: IntArray = np.zeros(1, np.int64)  # CSR of few static shapes
 
 
 def pool_sizes(moving: int) -> tuple[int, int]:
-    """Lengths of POOL and of HEAD in a scene with so many moving shapes."""
+    """Lengths of POOL and of HEAD in a scene with so many moving shapes.
+
+    A list of MOST_NEIGHBOURS = 20 has had room for 8 and then for 24 shapes (`rules.append`), and the pool has twice
+    that for each; few shapes may have longer lists. More than half of the buckets in HEAD are empty.
+    """
     return 64 * moving + 1024, 1 << max(1, (2 * moving + 1).bit_length())
 
 
@@ -46,14 +49,14 @@ def filled(table: Table, SHAPE: Rows[Shape], moving: int, found: int, CSR: IntAr
     if found > 0 and (CSR is NO_GRID or len(CSR) != found):
         table = replaced(table, Scene, "CSR", np.zeros(found, np.int64))
     bounds = np.sort(SHAPE["bound"][:moving])
-    while not fill_lists(table, bounds, NEIGHBOURS):
+    while not fill_lists(table, bounds):
         table = table_of(_with_larger_pool(scene_of(table)))
     return table
 
 
 def _with_larger_pool(scene: Scene) -> Scene:
-    """The scene with an empty pool, at least twice as long."""
-    room = more_room(len(scene.POOL))
+    """The scene with an empty pool, twice as long."""
+    room = 2 * len(scene.POOL)
     return scene._replace(POOL=np.zeros(room, np.int32), FLAG=np.zeros(room, np.uint8))
 
 
@@ -64,8 +67,3 @@ def with_more_room(scene: Scene, t: float) -> Scene:
         scene = _with_larger_pool(scene)
         built = build(table_of(scene), t)
     return scene
-
-
-def more_room(room: int) -> int:
-    """Length of the pool that replaces a full one of length `room`."""
-    return 2 * room

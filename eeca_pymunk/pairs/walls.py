@@ -10,6 +10,8 @@ from ..model.scene import Scene
 from ..model.shapes import Grid
 from .rules import append, may_collide, place_in
 
+_CELLS_OF_A_WALL = 32
+
 
 @nonallocating
 def cell_of(distance: float, length: float, count: int) -> int:
@@ -60,6 +62,8 @@ def seek_walls(A: Scene, s: int) -> bool:
         for w in range(BOX.shape[0]):
             room = room and try_wall(A, s, w)
         return room
+    # `cells_of` the box around the circle, but for round-off, by which another cell might be the first: then lists and
+    # contacts would have another order, and solves other bits.
     x, y, radius = A.MARK[s].x, A.MARK[s].y, A.MARK[s].reach
     length, left, bottom = GRID.wall_cell, x - GRID.left, y - GRID.bottom
     west, east = cell_of(left - radius, length, columns), cell_of(left + radius, length, columns)
@@ -78,13 +82,15 @@ def seek_walls(A: Scene, s: int) -> bool:
 
 @nonallocating
 def size_walls(BOX: FloatArray, GRID: Grid) -> int:
-    """Choose the cells of the grid of static shapes with boxes (W, 4), W > 0: about as many as shapes, fewer if large
-    shapes would fill too many. Returns the number of cells that the shapes overlap, counted for each shape."""
+    """Choose the cells of the grid of static shapes with boxes (W, 4), W > 0: about as many as shapes; fewer if these
+    would have more than _CELLS_OF_A_WALL on average. Returns the number of cells that the shapes overlap, counted for
+    each shape."""
     count, left, bottom, right, top = BOX.shape[0], math.inf, math.inf, -math.inf, -math.inf
     for w in range(count):
         left, bottom = min(left, BOX[w, 0]), min(bottom, BOX[w, 1])
         right, top = max(right, BOX[w, 2]), max(top, BOX[w, 3])
     wide, tall = max(right - left, 1e-300), max(top - bottom, 1e-300)
+    # The area of walls in a line is small or 0: there are at most 4 cells along the longer side for each.
     length = max(math.sqrt(wide * tall / count), max(wide, tall) / (4.0 * count))
     GRID.left, GRID.bottom = left, bottom
     while True:
@@ -94,7 +100,7 @@ def size_walls(BOX: FloatArray, GRID: Grid) -> int:
         for w in range(count):
             west, east, south, north = cells_of(GRID, BOX[w, 0], BOX[w, 1], BOX[w, 2], BOX[w, 3])
             entries += (east - west + 1) * (north - south + 1)
-        if entries <= 32 * count or GRID.columns * GRID.rows == 1:
+        if entries <= _CELLS_OF_A_WALL * count or GRID.columns * GRID.rows == 1:
             return entries
         length *= 2.0
 

@@ -75,11 +75,16 @@ def first_close(best: float, near: float, closing: bool, g: float, w: float, of:
 
 
 @nonallocating
-def near_ones(
+def deciding_heights(
     P: FloatArray, p: int, Q: FloatArray, q: int, nx: float, ny: float, a: MotionState, b: MotionState, of: Closing
 ) -> tuple[float, float]:
-    """Heights along n from which on vertices P, and up to which vertices Q, may decide `fixed_axis`: no others can be
-    as near as the nearest pair before that one may close, even if they approach as fast as any."""
+    """Heights along n from which on vertices P, and up to which vertices Q, may decide `fixed_axis`.
+
+    The lowest Q and the highest P may close after the time `best`. The gap of any other pair stays above
+    g + u s - B s² / 2, where u = `slowest` - `fastest` is the least rate that there is: so it is positive until `best`
+    if g > 0 and g > (B best / 2 - u) best. As g is at least the height of P below the lowest Q less `extent`, vertices
+    P that are lower by more than `reach` do not decide; nor do vertices Q as far above the highest P.
+    """
     top, bottom, fastest, slowest, i, j = -math.inf, math.inf, -math.inf, math.inf, 0, 0
     for k in range(p):
         height = P[k, 0] * nx + P[k, 1] * ny
@@ -109,7 +114,7 @@ def fixed_axis(
     best, near, closing = math.inf, math.inf, False
     low, high = -math.inf, math.inf
     if min(p, q) >= MANY_CORNERS:
-        low, high = near_ones(P, p, Q, q, nx, ny, a, b, of)
+        low, high = deciding_heights(P, p, Q, q, nx, ny, a, b, of)
     for i in range(p):
         x, y = P[i, 0], P[i, 1]
         if x * nx + y * ny < low:

@@ -5,9 +5,13 @@ tells. The geometry of others, as of rods that lie flush, does not tell it, as i
 
 1. another shape of one of the bodies that forces hold in contact tells it, as a body lies on one side of a wall;
 2. else shapes that hardly move along their normal n, with the velocity u and the acceleration a without contacts,
-   u² <= 2 |a| near_side, are on the side on which they press against each other: on the other one they would have to
-   have come to rest there against that acceleration, at the one place of that depth;
+   u² <= 2 |a| near_side, are on the side on which they press against each other, see below;
 3. else shapes whose distance is round-off are on the side to which they part.
+
+Of rule 2: on the side on which a presses shapes together, forces may hold them at rest, u = 0, for any time. On the
+other side a moves them apart, so that u² = 2 |a| y with y the way from the place where u is 0: they satisfy the
+condition only if their motion into each other ends within near_side of here, and for a time of
+2 (2 near_side / |a|)^(1/2).
 """
 
 from __future__ import annotations
@@ -34,7 +38,7 @@ def opening(a: MotionState, b: MotionState, nx: float, ny: float, px: float, py:
 
 
 @nonallocating
-def closing_rate(
+def closing_acceleration(
     a: MotionState, b: MotionState, ax_a: float, ay_a: float, q_a: float, ax_b: float, ay_b: float, q_b: float,
     nx: float, ny: float, px: float, py: float,
 ) -> float:  # fmt: skip
@@ -94,7 +98,7 @@ def on_other_side(
     i, j, PULL = A.LINK[a].owner, A.LINK[b].owner, A.PULL
     one, two = motion(A.BODY, i, start), motion(A.BODY, j, start)
     u = opening(one, two, nx, ny, px, py)
-    pressing = closing_rate(
+    pressing = closing_acceleration(
         one, two, PULL[i, 0], PULL[i, 1], PULL[i, 2], PULL[j, 0], PULL[j, 1], PULL[j, 2], nx, ny, px, py
     )
     fast = abs(u) + abs(two.spin - one.spin) * smaller(A, a, b)

@@ -32,7 +32,7 @@ from ..model.scene import Scene
 from ..pairs.rules import face_tolerance
 from .axes import Closing, MotionState, bends, fixed_axis, motion, pulled_along, speed_bound, turning_axis
 from .bounding_circles import carried_circles_meet, circles_meet
-from .sides import begin_side, closing_rate, opening
+from .sides import begin_side, closing_acceleration, opening
 from .work import look_work, most_work
 
 
@@ -44,7 +44,7 @@ def time_to_contact_again(
     part there along n with u >= 0 touch again: 2 u / a_n if the acceleration of the points closes the gap with a_n > 0,
     else infinite."""
     u, i, j = opening(one, two, nx, ny, px, py), A.BODY[A.LINK[a].owner], A.BODY[A.LINK[b].owner]
-    closing = closing_rate(one, two, i.ax, i.ay, i.angular, j.ax, j.ay, j.angular, nx, ny, px, py)
+    closing = closing_acceleration(one, two, i.ax, i.ay, i.angular, j.ax, j.ay, j.angular, nx, ny, px, py)
     return 2.0 * max(u, 0.0) / closing if closing > 0.0 else math.inf
 
 
@@ -161,7 +161,8 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float, most: float) 
     deep as TOUCH (`axes.first_close`), or ends where they touch again if that is before.
 
     Its work is bounded: after ADVANCES looks within an interval of duration / RESOLUTION each look advances by at least
-    that interval over ADVANCES; of shapes that overlap, but do not close, by duration / ADVANCES.
+    that interval over ADVANCES; of shapes that overlap, but do not close, by duration / ADVANCES. So an interval takes
+    about 2 ADVANCES looks at most.
 
     Args:
         a, b: a < b.
@@ -232,6 +233,8 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float, most: float) 
         if fast_a or fast_b:
             safe = max(safe, swept(A, a, b, p, q, one, two, fast_a, fast_b, slow, fixed))
         s += safe if looks < ADVANCES else max(safe, interval / ADVANCES)
+        # More looks in one interval than all intervals may take: s no longer grows, as the duration is round-off or 0,
+        # or a motion is not finite.
         if s > duration or looks > 2.0 * ADVANCES * RESOLUTION:
             return horizon, False
         if start + s > until or A.COUNT.work > most:

@@ -10,9 +10,9 @@ Open `build.py` first, the row of a contact. A solve alternates between
 
 * projected Gauss-Seidel sweeps (`sweeps.py`), accelerated by `conjugate.py`, with the law of one contact in closed form
   (`coulomb.py`);
-* direct solves on the active contacts (`direct.py`: `dense.py` for few contacts, else `polish.py` with the sparse
-  factor of `cholesky.py`, in the order of `dissection.py`), or, of up to some dozen contacts, homotopies (`laws.py`,
-  `homotopy.py`, `homotopy_start.py`, `pivots.py`).
+* direct solves on the active contacts (`direct.py`; `active_set.py` says which these are): by `dense.py` for few
+  contacts, else by `sparse.py` with the factor of `cholesky.py`, in the order of `dissection.py`;
+* or, for up to some dozen contacts, homotopies (`laws.py`, `homotopy.py`, `homotopy_start.py`, `pivots.py`).
 
 Where there is no solution, or only one of excessive impulses, friction is left out, or sweeps are few (`gentle.py`).
 `equilibrium.py` finds contact forces that balance, on the edges of friction cones (`cones.py`); `energy.py` computes
@@ -27,6 +27,6 @@ losses, energies (`energy.py`).
 Names of arguments: ROWS (m,) between local bodies; L (m, 2) impulses lam and beta; V (k, 3) velocities,
 FREE those without impulses; IM, II (k,) inverse masses and moments; the first n of the k bodies move. `worst` is the
 largest change of a contact's velocity in the last sweep, by which solves end. R is the stiffness of the augmentation of
-a direct solve, dimensionless. The active set is held, stuck, slip, rest (`polish.classify`). G, EDGE (K,) are edges of
-friction cones (`cones.py`).
+a direct solve, dimensionless. active, stuck, slope, target_t are the active set (`active_set.classify`); G, EDGE (K,)
+edges of friction cones (`cones.py`).
 """

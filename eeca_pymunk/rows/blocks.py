@@ -22,9 +22,9 @@ from ..model.parameters.impulses import DRIFT_SLIPS, DRIFT_STEADY
 from ..model.parameters.intervals import DIRECT_MOVING, INTERVAL_RESIDUAL_SPEED, SMALL_SWEEPS
 from .build import aim, conserves, largest_terms, normal_rate, rates, rubs
 from .conjugate import sweep_conjugate
-from .coulomb import slip_freely
+from .coulomb import drop_friction
 from .direct import refine, refine_and_sweep
-from .energy import lock, works
+from .energy import lock, losses
 from .sweeps import push, restore_impulses, sweep, velocities
 
 CONVERGED, TRUNCATED = 0, 1  # statuses
@@ -106,7 +106,7 @@ def resolve(
             worst = skip_drift(problem, L, V, FREE, worst)
             OUT[0].sweeps += 1
         log_R, worst, taken = refine_and_sweep(
-            problem, L, V, FREE, log_R, impulses.POLISHES, tolerance, worst, impulses.BLOCK_SWEEPS_AFTER
+            problem, L, V, FREE, log_R, impulses.REFINEMENTS_SPARSE, tolerance, worst, impulses.BLOCK_SWEEPS_AFTER
         )
         OUT[0].sweeps += taken
         OUT[0].direct += 1
@@ -127,7 +127,14 @@ def resolve(
             break
         worst = skip_drift(problem, L, V, FREE, worst)
         log_R, worst = refine(
-            problem, L, V, FREE, impulses.AUGMENTATION, impulses.POLISHES, impulses.DIRECT_RESIDUAL * tolerance, worst
+            problem,
+            L,
+            V,
+            FREE,
+            impulses.AUGMENTATION,
+            impulses.REFINEMENTS_SPARSE,
+            impulses.DIRECT_RESIDUAL * tolerance,
+            worst,
         )
         taken, worst = sweep_conjugate(problem, L, V, tolerance, last)
         OUT[0].sweeps += taken + 1
@@ -143,11 +150,11 @@ def close_block(
     of many sweeps."""
     velocities(problem, L, FREE, V)
     OUT[0].lock = lock(problem, L, V, FREE, owed, exact)
-    OUT[0].restitution, OUT[0].friction = works(problem, L, V)
+    OUT[0].restitution, OUT[0].friction = losses(problem, L, V)
 
 
 @kernel
-def solve_block(problem: AnyProblem, L: FloatArray, V: FloatArray, owed: float, hasty: bool, OUT: Rows[Solved]) -> int:
+def solve_block(problem: AnyProblem, L: FloatArray, V: FloatArray, owed: float, coarse: bool, OUT: Rows[Solved]) -> int:
     """Impulses of m contacts at one instant; V (k, 3) becomes the velocities after the impact.
 
     Args:
@@ -155,8 +162,8 @@ def solve_block(problem: AnyProblem, L: FloatArray, V: FloatArray, owed: float, 
             order of elimination only.
         L: (m, 2) in: initial impulses (0 for none); out: the impulses.
         owed: energy >= 0 that the block has to lose at least.
-        hasty: whether a large lossy island may be solved to a coarse tolerance: a hit on a pile, or on many contacts of
-            components, whose rows have an entry for each body.
+        coarse: whether a large lossy block may be solved as coarsely as the intervals before and after it: a hit on a
+            pile, or on many contacts of components, whose rows have an entry for each body.
         OUT: (1,) the report, out.
 
     Returns:
@@ -180,8 +187,7 @@ def solve_block(problem: AnyProblem, L: FloatArray, V: FloatArray, owed: float, 
     # Direct solves help where contacts stick; where many slip only sweeps converge, so there are more of them.
     first, rounds = impulses.BLOCK_SWEEPS_FRICTION, impulses.BLOCK_DIRECT_FRICTION
     last, drifts = impulses.BLOCK_LAST_SWEEPS_FRICTION, impulses.DRIFTS
-    if hasty and m > impulses.DENSE_CONTACTS and not exact:
-        # A hit on a lossy pile is solved as accurately as the intervals before and after it.
+    if coarse and m > impulses.DENSE_CONTACTS and not exact:
         tolerance = max(INTERVAL_RESIDUAL_SPEED * speed, floor)
         first, rounds, last, drifts = SMALL_SWEEPS, DIRECT_MOVING, 0, 0
     elif not rough:
@@ -195,14 +201,14 @@ def solve_block(problem: AnyProblem, L: FloatArray, V: FloatArray, owed: float, 
 
 
 @kernel
-def solve_freely(
-    problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, owed: float, status: int, hasty: bool,
+def solve_frictionless(
+    problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, owed: float, status: int, coarse: bool,
     OUT: Rows[Solved],
 ) -> int:  # fmt: skip
     """`solve_block` again, without friction, where `solve_block` has left contacts with friction wedged (WEDGED):
     sweeps may end between two states without impulses, or the energy lock may leave none, so that what approaches would
     meet again at the same instant, without end. FREE (k, 3): velocities without impulses. Returns the status; L, V and
-    OUT are those of the solution, OUT with the sweeps and direct solves of both. hasty: as of `solve_block`.
+    OUT are those of the solution, OUT with the sweeps and direct solves of both. coarse: as of `solve_block`.
     """
     ROWS, m = problem.ROWS, problem.m
     if status == CONVERGED or not rubs(ROWS, m):
@@ -212,11 +218,11 @@ def solve_freely(
         worst = max(worst, ROWS[i].target - normal_rate(ROWS[i], V))
     if not worst > impulses.WEDGED * aim(ROWS, m):
         return status
-    slip_freely(ROWS, m)
+    drop_friction(ROWS, m)
     L[:] = 0.0
     velocities(problem, L, FREE, V)
     sweeps, direct = OUT[0].sweeps, OUT[0].direct
-    status = solve_block(problem, L, V, owed, hasty, OUT)
+    status = solve_block(problem, L, V, owed, coarse, OUT)
     OUT[0].sweeps += sweeps
     OUT[0].direct += direct
     return status

@@ -50,9 +50,9 @@ def make_factor(problem: Problem, used: IntArray) -> Factor:
 
 
 @kernel
-def assemble_blocks(problem: Problem, held: IntArray, stuck: IntArray, R: float, factor: Factor) -> None:
-    """Write the blocks of B to `factor`, for the normal rows of contacts with held[i] = 1 and the tangential ones with
-    stuck[i] != 0."""
+def assemble_blocks(problem: Problem, active: IntArray, stuck: IntArray, R: float, factor: Factor) -> None:
+    """Write the blocks of B to `factor`, for the normal rows of contacts with active[i] = 1, and the tangential ones
+    with stuck[i] != 0."""
     ROWS, _, _, _, n, m = problem
     SCALE, place, columns, rows, DIAGONAL, BELOW = factor
     DIAGONAL[:] = 0.0
@@ -65,7 +65,7 @@ def assemble_blocks(problem: Problem, held: IntArray, stuck: IntArray, R: float,
         a, b, nx, ny = ROWS[i].a, ROWS[i].b, ROWS[i].nx, ROWS[i].ny
         for kind in range(2):
             if kind == 0:
-                if held[i] == 0:
+                if active[i] == 0:
                     continue
                 weight = R * ROWS[i].k_n
                 ja[0], ja[1], ja[2] = -nx, -ny, -ROWS[i].arm_na

@@ -1,7 +1,7 @@
 """Contacts of jointed bodies, by response columns: the changes of the velocities of all bodies of a component by a
 unit impulse along n, and along t, of a contact. Y is the matrix of all columns.
 
-The same contact problem as that of free bodies, with the response of components in place of inverse masses.
+The same contact problem as that of bodies without joints, with the response of components in place of inverse masses.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from .coulomb import OPEN, STICK, lawful, limited_slip, mode_of
 
 
 @inlined
-def put_free_body(C: Columns, w: int, row: Row, on_b: bool, mobility: float, turning: float) -> None:
+def put_unjointed(C: Columns, w: int, row: Row, on_b: bool, mobility: float, turning: float) -> None:
     """Write entry w of the columns of a contact, on its body a, or b if `on_b`, which no joint holds: `mobility` and
     `turning` are its inverse mass and moment."""
     sign = 1.0 if on_b else -1.0
@@ -31,7 +31,7 @@ def put_free_body(C: Columns, w: int, row: Row, on_b: bool, mobility: float, tur
 
 @kernel
 def as_columns(problem: Problem) -> JointedProblem:
-    """The contact problem of free bodies by columns, each on the two bodies of its contact."""
+    """The contact problem of bodies without joints by columns, each on the two bodies of its contact."""
     ROWS, IM, II, _, _, m = problem
     C = Columns(
         np.empty(m + 1, np.int64), np.empty(2 * m, np.int64), np.empty((2 * m, 3)), np.empty((2 * m, 3)),
@@ -42,7 +42,7 @@ def as_columns(problem: Problem) -> JointedProblem:
         for side in range(2):
             q = ROWS[i].b if side == 1 else ROWS[i].a
             C.BODY[2 * i + side] = q
-            put_free_body(C, 2 * i + side, ROWS[i], side == 1, IM[q], II[q])
+            put_unjointed(C, 2 * i + side, ROWS[i], side == 1, IM[q], II[q])
     C.AT[m] = 2 * m
     return JointedProblem(ROWS, C, room_for_rows(0, 0), m)
 
@@ -102,9 +102,9 @@ def breach(problem: JointedProblem, L: FloatArray, V: FloatArray) -> float:
 
 @nonallocating
 def sweep_jointed(problem: JointedProblem, L: FloatArray, V: FloatArray) -> float:
-    """One sweep over the contacts as `sweeps.sweep_free`, but that a contact which sticks stays closed where friction
-    alone could open it; and over the bounded rows, whose impulses are L[m:, 0]. Returns the largest change of a
-    velocity."""
+    """One sweep over the contacts as `sweeps.sweep_unjointed`, but that a contact which sticks stays closed where
+    friction alone could open it; and over the bounded rows, whose impulses are L[m:, 0]. Returns the largest change of
+    a velocity."""
     ROWS, C, D, m = problem
     work = SWEEP_WORK * (m + D.USED[0]) + SWEEP_ENTRY_WORK * (C.AT[m] + D.AT[D.USED[0]])
     for i in range(D.USED[0]):

@@ -4,7 +4,7 @@
 
 with its 2 x 2 matrix ((A_nn, A_nt), (A_nt, A_tt)). Tried in turn are sticking, slipping one way, and the other; if
 none obeys the law, the contact has no friction. (Nor have several contacts that have no solution together:
-`slip_freely`.) Newton's law of restitution with friction creates energy where the slip reverses; therefore each
+`drop_friction`.) Newton's law of restitution with friction creates energy where the slip reverses; therefore each
 contact's loss D_n + D_t = -lam (u_n- + b)/2 - beta (u_t- + u_t+)/2 is kept non-negative, by less friction where it
 would be negative: *friction limited by energy*.
 
@@ -32,7 +32,7 @@ OPEN, STICK, SLIP = 1, 2, 3  # modes of a contact
 
 
 @nonallocating
-def slip_freely(ROWS: Rows[Row], m: int) -> None:
+def drop_friction(ROWS: Rows[Row], m: int) -> None:
     """Let m contacts have no friction: wedged between surfaces that move, or conveyed into a corner, they would need
     impulses without bound. What is left of the law, 0 <= lam _|_ u_n - b >= 0, has a solution if any velocities
     satisfy it."""

@@ -1,8 +1,10 @@
 """Direct solve on the active contacts of a small island: Newton's step of the law, in the space of contacts.
 
-As `polish.py`, but with slip in the matrix: a slipping contact acts along n +- mu t, so that the matrix is not
+As `sparse.py`, but with slip in the matrix: a slipping contact acts along n +- mu t, so that the matrix is not
 symmetric, and a few steps suffice if the active contacts are right. A + diag(A) / R with refinement (the proximal point
-method) allows redundant contacts.
+method) allows redundant contacts: each pass leaves the part 1 / (1 + R l) of the error, with l the smallest eigenvalue
+of A scaled to diagonal 1. R is PROXIMAL_DENSE, or with the columns of components COLUMN_PROXIMAL, which is
+larger: homotopies have that matrix too, and fewer passes (HOMOTOPY_REFINEMENTS).
 """
 
 from __future__ import annotations
@@ -14,10 +16,10 @@ from ..compiled import Choice, kernel, nonallocating
 from ..model.contacts import AnyProblem, JointedProblem, Problem
 from ..model.parameters.impulses import PROXIMAL_DENSE
 from ..model.parameters.joints import COLUMN_PROXIMAL, MATRIX_WORK
+from .active_set import clamp, classify
 from .bounded import bounded_rate
 from .build import normal_rate, slip_rate, tangent_rate
 from .coulomb import lossless_slip
-from .polish import clamp, classify
 from .sweeps import velocities
 
 
@@ -46,7 +48,7 @@ def decompose_dense(W: FloatArray, N: int, order: IntArray) -> None:
 
 
 @nonallocating
-def solve_dense(W: FloatArray, N: int, order: IntArray, r: FloatArray, x: FloatArray) -> None:
+def solve_factors(W: FloatArray, N: int, order: IntArray, r: FloatArray, x: FloatArray) -> None:
     """Set x = W^-1 r, with W of `decompose_dense`."""
     for i in range(N):
         s = r[order[i]]
@@ -61,9 +63,9 @@ def solve_dense(W: FloatArray, N: int, order: IntArray, r: FloatArray, x: FloatA
 
 
 @kernel
-def matrix_free(problem: Problem, slip: FloatArray, at: IntArray, kind: IntArray, N: int, W: FloatArray) -> None:
+def matrix_unjointed(problem: Problem, slope: FloatArray, at: IntArray, kind: IntArray, N: int, W: FloatArray) -> None:
     """W[i, j] = velocity along unknown i by a unit impulse of unknown j, for N unknowns of contacts `at`, of `kind` 0
-    (normal, with its slip) or 1 (tangential). slip (m,): beta / lam of slipping contacts."""
+    (normal, with its slip) or 1 (tangential). slope (m,): beta / lam of slipping contacts."""
     ROWS, IM, II, _, _, _ = problem
     J = np.empty((N, 8))  # rows: n or t with arms a, b; then the columns' direction and arms
     for i in range(N):
@@ -71,8 +73,8 @@ def matrix_free(problem: Problem, slip: FloatArray, at: IntArray, kind: IntArray
         row, nx, ny = ROWS[c], ROWS[c].nx, ROWS[c].ny
         if kind[i] == 0:
             J[i, 0], J[i, 1], J[i, 2], J[i, 3] = nx, ny, row.arm_na, row.arm_nb
-            J[i, 4], J[i, 6] = nx - slip[c] * ny, row.arm_na + slip[c] * row.arm_ta
-            J[i, 5], J[i, 7] = ny + slip[c] * nx, row.arm_nb + slip[c] * row.arm_tb
+            J[i, 4], J[i, 6] = nx - slope[c] * ny, row.arm_na + slope[c] * row.arm_ta
+            J[i, 5], J[i, 7] = ny + slope[c] * nx, row.arm_nb + slope[c] * row.arm_tb
         else:
             J[i, 0], J[i, 1], J[i, 2], J[i, 3] = -ny, nx, row.arm_ta, row.arm_tb
             for k in range(4):
@@ -96,9 +98,9 @@ def matrix_free(problem: Problem, slip: FloatArray, at: IntArray, kind: IntArray
 
 @kernel
 def matrix_jointed(
-    problem: JointedProblem, slip: FloatArray, at: IntArray, kind: IntArray, N: int, W: FloatArray
+    problem: JointedProblem, slope: FloatArray, at: IntArray, kind: IntArray, N: int, W: FloatArray
 ) -> None:
-    """As `matrix_free`, with response columns; unknowns of kind 2 are bounded rows."""
+    """As `matrix_unjointed`, with response columns; unknowns of kind 2 are bounded rows."""
     ROWS, C, D, _ = problem
     C.WORK[0] += MATRIX_WORK * N * N
     bodies = 0
@@ -121,7 +123,7 @@ def matrix_jointed(
                 if kind[j] == 2:
                     V[q, k] = D.N[w, k]
                 else:
-                    V[q, k] = C.T[w, k] if kind[j] == 1 else C.N[w, k] + slip[c] * C.T[w, k]
+                    V[q, k] = C.T[w, k] if kind[j] == 1 else C.N[w, k] + slope[c] * C.T[w, k]
             if V[q, 0] != 0.0 or V[q, 1] != 0.0 or V[q, 2] != 0.0:
                 MOVED[q] = j
         for i in range(N):
@@ -140,37 +142,37 @@ def matrix_jointed(
         W[j, j] += abs(W[j, j]) / COLUMN_PROXIMAL
 
 
-matrix = Choice(matrix_free, matrix_jointed)
+matrix = Choice(matrix_unjointed, matrix_jointed)
 
 
 @kernel
-def newton(
+def solve_dense(
     problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, passes: int, tolerance: float, shared: bool
 ) -> tuple[float, int]:
-    """Solve on the active contacts of L; arguments and results as of `polish.polish_free`.
+    """Solve on the active contacts of L; arguments and results as of `sparse.solve_sparse`.
 
     Where energy limits friction, beta (u_t- + u_t+) = -lam (u_n- + b): if `shared`, another contact of the same face
     has u_t+ = 0, and beta follows lam as in slip.
     """
     ROWS, m = problem.ROWS, problem.m
-    held, stuck, slip, rest = classify(ROWS, L, V, m)
+    active, stuck, slope, target_t = classify(ROWS, L, V, m)
     # Unknowns: of contact `at`, the normal impulse (`kind` 0) or the tangential one (1).
     at, kind, N = np.empty(2 * m, np.int64), np.empty(2 * m, np.int64), 0
     for i in range(m):
-        if held[i] == 0:
+        if active[i] == 0:
             continue
         if shared and stuck[i] == 2:
             stuck[i] = 0
-            slip[i] = -min(ROWS[i].un + ROWS[i].target, 0.0) / ROWS[i].ut
+            slope[i] = -min(ROWS[i].un + ROWS[i].target, 0.0) / ROWS[i].ut
         at[N], kind[N] = i, 0
         N += 1
         if stuck[i] != 0:
             at[N], kind[N] = i, 1
             N += 1
         else:
-            L[i, 1] = slip[i] * L[i, 0]
+            L[i, 1] = slope[i] * L[i, 0]
     W, order, r, x = np.empty((N, N)), np.empty(N, np.int64), np.empty(N), np.empty(N)
-    matrix(problem, slip, at, kind, N, W)
+    matrix(problem, slope, at, kind, N, W)
     decompose_dense(W, N, order)
     velocities(problem, L, FREE, V)
     worst = np.inf
@@ -183,16 +185,16 @@ def newton(
                 r[k] = ROWS[i].target - normal_rate(ROWS[i], V)
             else:
                 if stuck[i] == 2 and L[i, 1] != 0.0:
-                    rest[i] = lossless_slip(ROWS[i], L[i, 0], L[i, 1])
-                r[k] = rest[i] - tangent_rate(ROWS[i], V)
+                    target_t[i] = lossless_slip(ROWS[i], L[i, 0], L[i, 1])
+                r[k] = target_t[i] - tangent_rate(ROWS[i], V)
             worst = max(worst, abs(r[k]))
-        if worst <= tolerance or done == passes or not worst <= 0.5 * last:
+        if worst <= tolerance or done == passes or worst > 0.5 * last:
             break
-        solve_dense(W, N, order, r, x)
+        solve_factors(W, N, order, r, x)
         for k in range(N):
             i = at[k]
             L[i, kind[k]] += x[k]
             if kind[k] == 0 and stuck[i] == 0:
-                L[i, 1] = slip[i] * L[i, 0]
+                L[i, 1] = slope[i] * L[i, 0]
         velocities(problem, L, FREE, V)
     return worst, clamp(problem, L, FREE, V)

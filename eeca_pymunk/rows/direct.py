@@ -9,23 +9,24 @@ from ..compiled import Choice, kernel
 from ..model.contacts import AnyProblem, JointedProblem
 from ..model.parameters import impulses
 from ..model.parameters.joints import COLUMN_CONTACTS
-from .dense import newton
-from .polish import polish_free, segment
+from .active_set import segment
+from .dense import solve_dense
+from .sparse import solve_sparse
 from .sweeps import restore_impulses, sweep
 
 
 @kernel
-def polish_jointed(
+def solve_jointed(
     problem: JointedProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, R: float, passes: int, tolerance: float
 ) -> tuple[float, int]:
-    """As `polish_free`: with response columns nothing is sparse, so the dense solve is used, whose work is that of the
+    """As `solve_sparse`: with response columns nothing is sparse, so the dense solve is used, whose work is that of the
     cube of the number of contacts: more than COLUMN_CONTACTS are left to sweeps, as in intervals."""
     if problem.m > COLUMN_CONTACTS:
         return np.inf, 0
-    return newton(problem, L, V, FREE, passes, tolerance, False)
+    return solve_dense(problem, L, V, FREE, passes, tolerance, False)
 
 
-polish = Choice(polish_free, polish_jointed)
+solve_active = Choice(solve_sparse, solve_jointed)
 
 
 @kernel
@@ -37,7 +38,7 @@ def refine(
 
     Args:
         FREE: (k, 3) velocities without impulses.  passes: refinements of the sparse solve at most.
-        log_R: log10 of the augmentation of `polish`.  tolerance: velocity.  worst: change of velocity in the last
+        log_R: log10 of the augmentation of `solve_sparse`.  tolerance: velocity.  worst: change of velocity in the last
             sweep.
 
     Returns:
@@ -51,9 +52,9 @@ def refine(
             # Friction that energy limits: first each contact by itself, then with the other contact of its face.
             if reached > impulses.DIRECT_SINGLE * worst:
                 restore_impulses(L, V, L0, V0)
-                reached, clamped = newton(problem, L, V, FREE, impulses.REFINEMENTS, tolerance, attempt == 1)
+                reached, clamped = solve_dense(problem, L, V, FREE, impulses.REFINEMENTS, tolerance, attempt == 1)
     else:
-        reached, clamped = polish(problem, L, V, FREE, 10.0**log_R, passes, tolerance)
+        reached, clamped = solve_active(problem, L, V, FREE, 10.0**log_R, passes, tolerance)
     part = 1.0
     if not reached <= impulses.DIRECT_LOST * worst + tolerance:
         restore_impulses(L, V, L0, V0)

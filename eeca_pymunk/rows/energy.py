@@ -39,7 +39,7 @@ def losses_of(problem: AnyProblem, L: FloatArray, V: FloatArray, i: int) -> tupl
 
 
 @nonallocating
-def works(problem: AnyProblem, L: FloatArray, V: FloatArray) -> tuple[float, float]:
+def losses(problem: AnyProblem, L: FloatArray, V: FloatArray) -> tuple[float, float]:
     """Sums of D_n and D_t; `offset_gain` of these too, as the solve may be truncated."""
     normal, tangential = 0.0, 0.0
     for i in range(problem.m):

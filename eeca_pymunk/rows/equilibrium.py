@@ -211,29 +211,29 @@ def equilibrium(
     if speed <= tolerance:  # the guess balances
         impulses_of(problem, EDGE, OF, K, L)
         return True, 0
-    held, stuck = np.ones(K, np.int64), np.zeros(K, np.int64)
-    factor = make_factor(edges, held)
+    active, stuck = np.ones(K, np.int64), np.zeros(K, np.int64)
+    factor = make_factor(edges, active)
     most_impulse = STATICS_SUM * n * sum_of_momenta(problem, START, EXTENT)
-    free = True
+    unbounded = True  # whether cones are left out so far
     for done in range(most + 1):
         if speed <= tolerance:
             impulses_of(problem, EDGE, OF, K, L)
             return True, done
         centre = mean_product(EDGE, K, 0.0, 0.0)
-        if done == most or not (speed < np.inf and (centre > 0.0 or free)):
+        if done == most or not (speed < np.inf and (centre > 0.0 or unbounded)):
             break
         if done > 1 and needs_more(edges, START, Y, most_impulse):
             break
-        if done == 0 or not free:
+        if done == 0 or not unbounded:
             for e in range(K):
-                G[e].k_n = 1.0 / (EDGE[e].a_gg + (0.0 if free else EDGE[e].s / EDGE[e].x))
-            assemble_blocks(edges, held, stuck, PROXIMAL_STATICS, factor)
+                G[e].k_n = 1.0 / (EDGE[e].a_gg + (0.0 if unbounded else EDGE[e].s / EDGE[e].x))
+            assemble_blocks(edges, active, stuck, PROXIMAL_STATICS, factor)
             factor_blocks(factor)
         newton_step(edges, EDGE, factor, LEFT, Y, f, V, DY, 0.0, False)
-        if free:
+        if unbounded:
             # Without regard to the cones, the nearest balancing impulses need one linear solve: often they are inside.
-            free = moves_into_cones(EDGE, K)
-            for i in range(n if free else 0):  # all but round-off is left in motions that no contact can end
+            unbounded = moves_into_cones(EDGE, K)
+            for i in range(n if unbounded else 0):  # all but round-off is left in motions that no contact can end
                 for c in range(3):
                     Y[i, c] += DY[i, c]
         else:

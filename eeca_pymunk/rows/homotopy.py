@@ -1,13 +1,13 @@
 """Coulomb's law and bounded impulses along a homotopy of solved problems, from any impulses to the solution.
 
-In the plane both are piecewise linear: contacts are open (lam = 0, u_n >= b), stick (u = (b, 0)) or slip (beta =
-s mu lam, s u_t <= 0); a bounded row has its target velocity, or its impulse is at a bound. Impulses that sweeps leave
-miss the law by a residual in each row. They solve it exactly if the free velocities are not q but q + p, with p such
-that each row's residual is 0. So they are the solution for q + theta p at theta = 1; that for q is at theta = 0. On the
-way there the solution is linear in theta until a state changes; then it goes on, with growing or falling theta, as the
-new state allows (Lemke 1965; of contacts Stewart and Trinkle 1996). A change is one pivot, also where contacts jam
-with redundant impulses, among which sweeps cycle. A homotopy that begins without impulses ends if no target is positive
-and no surface conveys (Anitescu and Potra 1997); others may run to infinity.
+In the plane both are piecewise linear: contacts are open (lam = 0, u_n >= b), stick (u = (b, 0)) or slip (beta = s mu
+lam, s u_t <= 0); a bounded row has its target velocity, or its impulse is at a bound. Impulses that sweeps leave miss
+the law by a residual in each row. They solve it exactly if the velocities without impulses are not q but q + p, with p
+such that each row's residual is 0. So they are the solution for q + theta p at theta = 1; that for q is at theta = 0.
+On the way there the solution is linear in theta until a state changes; then it goes on, with growing or falling theta,
+as the new state allows (Lemke 1965; of contacts Stewart and Trinkle 1996). A change is one pivot, also where contacts
+jam with redundant impulses, among which sweeps cycle. A homotopy that begins without impulses ends if no target is
+positive and no surface conveys (Anitescu and Potra 1997); others may run to infinity.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from .sweeps import velocities
 
 @nonallocating
 def set_impulses(tableau: Tableau, m: int, X: FloatArray, L: FloatArray) -> None:
-    """Set the impulses L of the present states, by the unknowns X (size,) that these leave free."""
+    """Set the impulses L of the present states, by the basic unknowns X (size,)."""
     for c in range(len(tableau.MODE)):
         k, state = unknown_of(m, c), tableau.MODE[c]
         if state == BOUND:
@@ -53,7 +53,7 @@ def correct_residual(problem: JointedProblem, tableau: Tableau, V: FloatArray, X
             if c >= m:
                 off = D.ROWS[c - m].speed + bounded_rate(D, c - m, V)
             elif z == 1:
-                off = tangent_rate(ROWS[c], V) - tableau.REST[c]
+                off = tangent_rate(ROWS[c], V) - tableau.TARGET_T[c]
             else:
                 off = normal_rate(ROWS[c], V) - ROWS[c].target
             T[size + 2, k + z] = off

@@ -52,8 +52,8 @@ def start_homotopy(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: 
         if C.LEFT_OUT[i] == 0 and not ROWS[i].wake < np.inf:
             tableau.MODE[i] = OPEN
             T[size, 2 * i] = normal_rate(ROWS[i], V) - ROWS[i].target
-            tableau.REST[i] = limited_slip(ROWS[i], L[i, 0], L[i, 1])
-            T[size, 2 * i + 1] = tangent_rate(ROWS[i], V) - tableau.REST[i]
+            tableau.TARGET_T[i] = limited_slip(ROWS[i], L[i, 0], L[i, 1])
+            T[size, 2 * i + 1] = tangent_rate(ROWS[i], V) - tableau.TARGET_T[i]
             BEGAN[i], SIGN[i] = mode_of(ROWS[i], V, L[i, 0], L[i, 1], ON_CONE_SWEPT)
             tableau.MU[i] = max(ROWS[i].friction, 0.0) if BEGAN[i] != SLIP or SIGN[i] != 0.0 else 0.0
             X[2 * i], X[2 * i + 1] = L[i, 0], L[i, 1]

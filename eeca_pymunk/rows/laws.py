@@ -12,21 +12,21 @@ from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import JointedProblem, Problem, Row, Solved
+from ..model.parameters import joints
 from ..model.parameters.intervals import LARGE_ISLAND
-from ..model.parameters.joints import COLUMN_CONTACTS, COLUMN_HOMOTOPIES, COLUMN_SWEEPS, COLUMN_SWEEPS_AFTER
+from .active_set import divide_friction
 from .bounded import inside_discs
 from .columns import as_columns, breach
 from .conjugate import sweep_conjugate
-from .coulomb import slip_freely
+from .coulomb import drop_friction
 from .homotopy import follow_homotopy
-from .polish import divide_friction
 from .sweeps import push, restore_impulses, sweep, velocities
 
 
 @nonallocating
 def solved_exactly(n: int, m: int) -> bool:
     """Whether an interval of n bodies without joints has so few contacts, m, that homotopies may solve it."""
-    return n < LARGE_ISLAND and m <= COLUMN_CONTACTS
+    return n < LARGE_ISLAND and m <= joints.COLUMN_CONTACTS
 
 
 @kernel
@@ -46,7 +46,7 @@ def solve_columns(
     worst = sweep_conjugate(problem, L, V, tolerance, sweeps)[1] if sweeps > 0 else breach(problem, L, V)
     best, L0, V0, before, earlier = worst, L.copy(), V.copy(), np.inf, np.inf
     within = inside_discs(problem.D, L, problem.m)  # as long as impulses stay inside, discs are linear rows
-    for _ in range(COLUMN_HOMOTOPIES):
+    for _ in range(joints.COLUMN_HOMOTOPIES):
         if worst <= tolerance:
             return worst
         if problem.C.WORK[0] > work:
@@ -66,21 +66,21 @@ def solve_columns(
                 break
         # Homotopies have no rims of discs: sweeps, in turn with these.
         worst, done = breach(problem, L, V), 0
-        while done < COLUMN_SWEEPS_AFTER and worst > tolerance:
+        while done < joints.COLUMN_SWEEPS_AFTER and worst > tolerance:
             worst = sweep(problem, L, V)
             done += 1
         if worst < best:
             best = worst
             restore_impulses(L0, V0, L, V)
         # Where laws have no solution, homotopies end in the same state again, or alternate between two.
-        if min(abs(worst - before), abs(worst - earlier)) <= 0.1 * worst:
+        if min(abs(worst - before), abs(worst - earlier)) <= joints.COLUMN_REPEATED * worst:
             break
         before, earlier = worst, before
     if worst > tolerance:
         restore_impulses(L, V, L0, V0)
         before = breach(problem, L, V)
         _, worst = sweep_conjugate(problem, L, V, tolerance, most)
-        if not breach(problem, L, V) <= 2.0 * before:
+        if not breach(problem, L, V) <= joints.COLUMN_DIVERGES * before:
             # Sweeps diverge where friction could open contacts.
             restore_impulses(L, V, L0, V0)
             worst = before
@@ -92,11 +92,11 @@ def solve_wedged(
     problem: JointedProblem, L: FloatArray, V: FloatArray, tolerance: float, most: int, work: float
 ) -> float:
     """`solve_columns` without friction, from no impulses of contacts."""
-    slip_freely(problem.ROWS, problem.m)
+    drop_friction(problem.ROWS, problem.m)
     push(problem, L, -1.0, V)
     L[: problem.m] = 0.0
     push(problem, L, 1.0, V)
-    return solve_columns(problem, L, V, tolerance, COLUMN_SWEEPS, most, work)
+    return solve_columns(problem, L, V, tolerance, joints.COLUMN_SWEEPS, most, work)
 
 
 @kernel
@@ -119,10 +119,10 @@ def give_slips(ROWS: Rows[Row], m: int, SLIP: FloatArray) -> None:
 
 @kernel
 def solve_few(problem: Problem, L: FloatArray, V: FloatArray, tolerance: float, out: Solved) -> float:
-    """`solve_columns` of contacts of free bodies, whose sweeps and direct solutions have not converged, with Coulomb's
-    law alone; the energy lock removes the energy that this may give."""
+    """`solve_columns` of contacts of bodies without joints, whose sweeps and direct solutions have not converged, with
+    Coulomb's law alone; the energy lock removes the energy that this may give."""
     SLIP, columns = take_slips(problem.ROWS, problem.m), as_columns(problem)
-    worst = solve_columns(columns, L, V, tolerance, 0, COLUMN_SWEEPS_AFTER, np.inf)
+    worst = solve_columns(columns, L, V, tolerance, 0, joints.COLUMN_SWEEPS_AFTER, np.inf)
     out.operations += columns.C.WORK[0]
     give_slips(problem.ROWS, problem.m, SLIP)
     return worst

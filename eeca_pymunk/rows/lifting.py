@@ -1,4 +1,8 @@
-"""Penetration correction along normals: displacements D = W G^T mu with 0 <= mu _|_ g + G D >= 0."""
+"""Displacements along normals that lift bodies out of each other: D = W G^T mu with 0 <= mu _|_ g + G D >= 0.
+
+What they cost, and which part of them a budget pays, is that of the correction (`..contacts.correction`,
+`..jointed.correction`).
+"""
 
 from __future__ import annotations
 
@@ -13,7 +17,7 @@ from .columns import push_column
 
 
 @inlined
-def push_normal_free(problem: Problem, i: int, d: float, D: FloatArray) -> None:
+def push_normal_unjointed(problem: Problem, i: int, d: float, D: FloatArray) -> None:
     """Add M^-1 G^T of a change d of mu of contact i to D (k, 3)."""
     push_contact(problem.ROWS[i], problem.IM, problem.II, d, 0.0, D)
 
@@ -24,7 +28,7 @@ def push_normal_jointed(problem: JointedProblem, i: int, d: float, D: FloatArray
     push_column(problem.C, i, d, 0.0, D)
 
 
-push_normal = Choice(push_normal_free, push_normal_jointed)
+push_normal = Choice(push_normal_unjointed, push_normal_jointed)
 
 
 @inlined

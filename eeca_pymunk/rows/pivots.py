@@ -21,11 +21,11 @@ class Tableau(NamedTuple):
     (tangential), row i the unknown 2 m + i; size = 2 m + n.
 
     MODE, SIGN (m + n,): states; sign of the friction that slips, or of the bound; else 0.  MU (m,): friction, as long
-    as the homotopy lasts.  LOW, HIGH (n,): bounds.  REST (m,): tangential velocity of contacts that stick, not 0 where
-    energy limits friction (`coulomb.mode_of`). T (size + 3, size): an unknown is an impulse or a velocity less its
-    target; its state leaves one of both free, and fixes the other at 0. Row k has all free ones by changes of the fixed
-    one of unknown k; row `size` their values at theta = 0, the next their changes per theta, the last is scratch. Where
-    a contact slips, beta stands for beta - s mu lam.
+    as the homotopy lasts.  LOW, HIGH (n,): bounds.  TARGET_T (m,): u_t of contacts that stick, not 0 where energy
+    limits friction (`coulomb.mode_of`). T (size + 3, size): an unknown is an impulse and a velocity less its target;
+    its state makes one of both basic, and the other, nonbasic, is 0. Row k has all basic ones by changes of the
+    nonbasic one of unknown k; row `size` their values at theta = 0, the next their changes per theta, the last is
+    scratch. Where a contact slips, beta stands for beta - s mu lam.
 
     A pivot changes each row of T by itself, so a row is brought up to date when it is needed (`update`). BY (room, 3),
     COLUMN (room, size), OF (room,): the pivots, each of unknown OF; see `take_pivot`.  MADE (1,): how many.
@@ -37,7 +37,7 @@ class Tableau(NamedTuple):
     MU: FloatArray
     LOW: FloatArray
     HIGH: FloatArray
-    REST: FloatArray
+    TARGET_T: FloatArray
     T: FloatArray
     BY: FloatArray
     COLUMN: FloatArray
@@ -99,7 +99,7 @@ def update(tableau: Tableau, k: int) -> None:
 
 @nonallocating
 def own_rate(tableau: Tableau, k: int, slope: float) -> float:
-    """Change of the free quantity of unknown k by its fixed one, if the next fixed one changes by `slope` with it."""
+    """Change of the basic quantity of unknown k by its nonbasic one, if that of the next changes by `slope` with it."""
     update(tableau, k)
     if slope == 0.0:
         return float(tableau.T[k, k])
@@ -109,7 +109,7 @@ def own_rate(tableau: Tableau, k: int, slope: float) -> float:
 
 @nonallocating
 def pivot(tableau: Tableau, k: int, before: float, after: float) -> None:
-    """Exchange the free and the fixed quantity of unknown k. before, after: see `take_pivot`."""
+    """Exchange the basic and the nonbasic quantity of unknown k. before, after: see `take_pivot`."""
     T, BY, COLUMN, p = tableau.T, tableau.BY, tableau.COLUMN, tableau.MADE[0]
     size = T.shape[1]
     update(tableau, k)
@@ -126,7 +126,7 @@ def pivot(tableau: Tableau, k: int, before: float, after: float) -> None:
 
 @nonallocating
 def add_friction(tableau: Tableau, n: int, slope: float) -> None:
-    """Let the fixed beta of the contact with normal unknown n change by `slope` with its fixed lam."""
+    """Let the nonbasic beta of the contact with normal unknown n change by `slope` with its nonbasic lam."""
     if slope != 0.0:
         if tableau.FROM[n] != tableau.FROM[n + 1]:
             update(tableau, n)
@@ -142,7 +142,7 @@ def slope_of(tableau: Tableau, c: int) -> float:
 
 @nonallocating
 def slip(tableau: Tableau, c: int, sign: float) -> None:
-    """Let contact c, which is open, slip with friction of that sign: lam becomes free, and beta follows it."""
+    """Let contact c, which is open, slip with friction of that sign: lam becomes basic, and beta follows it."""
     tableau.MODE[c], tableau.SIGN[c] = SLIP, sign
     add_friction(tableau, 2 * c, slope_of(tableau, c))
     pivot(tableau, 2 * c, 0.0, 0.0)
@@ -150,7 +150,7 @@ def slip(tableau: Tableau, c: int, sign: float) -> None:
 
 @nonallocating
 def stick(tableau: Tableau, c: int) -> None:
-    """Let contact c, which slips, stick: beta becomes free."""
+    """Let contact c, which slips, stick: beta becomes basic."""
     pivot(tableau, 2 * c + 1, 0.0, slope_of(tableau, c))
     tableau.MODE[c], tableau.SIGN[c] = STICK, 0.0
 

@@ -13,7 +13,7 @@ from .inplace import copy
 
 
 @nonallocating
-def sweep_free(problem: Problem, L: FloatArray, V: FloatArray) -> float:
+def sweep_unjointed(problem: Problem, L: FloatArray, V: FloatArray) -> float:
     """One sweep over the contacts; updates L and V, and returns the largest change of a contact's velocity."""
     ROWS, IM, II, _, _, m = problem
     worst = 0.0
@@ -29,7 +29,7 @@ def sweep_free(problem: Problem, L: FloatArray, V: FloatArray) -> float:
 
 
 @nonallocating
-def push_free(problem: Problem, L: FloatArray, factor: float, V: FloatArray) -> None:
+def push_unjointed(problem: Problem, L: FloatArray, factor: float, V: FloatArray) -> None:
     """Add factor M^-1 (G^T lam + T^T beta) to V (k, 3)."""
     ROWS, IM, II, _, _, m = problem
     for i in range(m):
@@ -39,8 +39,8 @@ def push_free(problem: Problem, L: FloatArray, factor: float, V: FloatArray) -> 
             push_contact(ROWS[i], IM, II, lam, beta, V)
 
 
-sweep = Choice(sweep_free, sweep_jointed)
-push = Choice(push_free, push_jointed)
+sweep = Choice(sweep_unjointed, sweep_jointed)
+push = Choice(push_unjointed, push_jointed)
 
 
 @nonallocating

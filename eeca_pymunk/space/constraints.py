@@ -35,6 +35,9 @@ _FINITE = (
 )  # fmt: skip
 _POSITIVE = ("max_force", "max_bias", "error_bias", "damping")
 _NOT_ZERO = ("ratio", "ratchet")
+# All attributes that are numbers or points: they change neither the functions of a constraint nor whether its bodies
+# collide.
+NUMBERS = frozenset((*_FINITE, *_POSITIVE, *_NOT_ZERO, "angle", "min", "max"))
 _NEAR_NOTCH = 1e-9  # of a tooth: a body that stands on a notch may be before it by round-off
 
 
@@ -115,7 +118,8 @@ class ConstraintValues(NamedTuple):
         return self.kind, self.bounded, self.anchor_a, self.anchor_b, self.length, self.limits, self.gear
 
     def is_fine(self) -> bool:
-        """Whether all values are valid. A fast test; if it fails, `check_constraint` tests each value."""
+        """Whether all values are valid: the rules of `check_constraint`, in a fifth of its time, as programs that drive
+        joints edit them in every step. Where it fails, `check_constraint` says which value is wrong."""
         (force, error, bias), (lower, upper), (stiffness, damping, rest) = self.force, self.limits, self.spring
         numbers = *self.anchor_a, *self.anchor_b, *self.groove, *self.gear, *self.ratchet, stiffness, damping, rest
         total = sum(numbers) + self.length + self.rate

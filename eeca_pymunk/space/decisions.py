@@ -57,7 +57,7 @@ class Rules:
             if not processed(arbiter):
                 ignored.add(pair)
                 continue
-            own = _law(world.SHAPE, *pair)
+            own = _own_law(world.SHAPE, *pair)
             mu = 0.0 if world.frictionless else arbiter.friction
             law = (arbiter.restitution, mu, *_surface(arbiter, own[2:], a < b))
             if law != own:
@@ -68,7 +68,7 @@ class Rules:
         """The laws of all these pairs, sorted. `parted` pairs do not collide, whatever handlers decide."""
         never = self.ignored.union(parted)
         return {
-            pair: (-1.0, 0.0, *_law(SHAPE, *pair)[2:]) if pair in never else self.changed[pair]
+            pair: (-1.0, 0.0, *_own_law(SHAPE, *pair)[2:]) if pair in never else self.changed[pair]
             for pair in sorted(never.union(self.changed))
         }
 
@@ -76,8 +76,8 @@ class Rules:
 NO_RULES = Rules()  # those of all steps in which no decision applies
 
 
-def _law(SHAPE: Rows[Shape], a: int, b: int) -> Law:
-    """The law of two shapes: pymunk's products, and b's surface velocity relative to a's."""
+def _own_law(SHAPE: Rows[Shape], a: int, b: int) -> Law:
+    """What `..pairs.rules.law` computes for two shapes without rules, which Python cannot call: it is no entry."""
     e, mu = (float(SHAPE[k][a] * SHAPE[k][b]) for k in ("elasticity", "friction"))
     x, y = (float(SHAPE[k][b] - SHAPE[k][a]) for k in ("surface_x", "surface_y"))
     return e, mu, x, y

@@ -15,6 +15,7 @@ from weakref import WeakKeyDictionary, ref
 
 import pymunk
 
+from .bodies import moving
 from .edits import clock, counts
 from .private import shapes as private_shapes
 from .private import spaces as private
@@ -59,8 +60,9 @@ class Late:
             self.reindexings -= 1
             contents = counts(space)[3], clock()
             if contents != self._contents:
-                moving = (body for body in space.bodies if body.shapes and body.body_type != pymunk.Body.STATIC)
-                self._movers, self._contents = private.pointers(moving), contents
+                # Those of `World.movers` may be of an earlier reading.
+                self._movers = private.pointers(body for body in moving(space) if body.shapes)
+                self._contents = contents
             private_shapes.reindex(space, self._movers)
 
 

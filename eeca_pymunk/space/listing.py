@@ -14,7 +14,7 @@ import numpy as np
 import pymunk
 
 from ..model.joints import RATCHET
-from .constraints import ConstraintValues, read
+from .constraints import NUMBERS, ConstraintValues, read
 from .private import joints as private_joints
 from .spring_functions import own_function
 
@@ -28,11 +28,6 @@ _LISTED = (
 # All `ConstraintEdits` by their numbers. To iterate over a `WeakSet` takes ten times as long, in every edit of one.
 _watching: dict[int, ref[ConstraintEdits]] = {}
 _native_setattr = pymunk.Constraint.__setattr__
-# Attributes that do not change what functions a constraint has, or whether its bodies collide.
-_NUMBERS = frozenset((
-    "anchor_a", "anchor_b", "angle", "damping", "distance", "error_bias", "groove_a", "groove_b", "max", "max_bias",
-    "max_force", "min", "phase", "ratchet", "rate", "ratio", "rest_angle", "rest_length", "stiffness",
-))  # fmt: skip
 
 
 class Calls(NamedTuple):
@@ -123,7 +118,7 @@ class ConstraintEdits:
 
     Attributes:
         rows: those of the constraints of which an attribute was set since the last `take`, and whether one was set
-            beside _NUMBERS.
+            beside `constraints.NUMBERS`.
     """
 
     def __init__(self, row: dict[pymunk.Constraint, int]) -> None:
@@ -148,7 +143,7 @@ class ConstraintEdits:
         """Record that this attribute of a constraint was set."""
         row = self._row.get(constraint)
         if row is not None:
-            self.rows[row] = self.rows.get(row, False) or name not in _NUMBERS
+            self.rows[row] = self.rows.get(row, False) or name not in NUMBERS
 
 
 def _set(self: pymunk.Constraint, name: str, value: Any) -> None:

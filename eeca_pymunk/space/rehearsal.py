@@ -38,7 +38,6 @@ if TYPE_CHECKING:
     from .world import World
 
 _BETWEEN_TESTS = 4  # steps from one test whether no handler would be called to the next
-_SILENT = -1
 _NO_PAIRS: tuple[Rows[HandledShape], IntArray] = rows(HandledShape, 0), np.zeros((0, 2), np.int64)
 
 
@@ -62,7 +61,7 @@ class Rehearsal:
         self.failure: BaseException | None = None
         self.decided, self.left_out = False, 0
         self._sync: Sync | None = None  # of the last step, if its rehearsal could be left out
-        self._untested = 0  # number of steps until it is tested whether a step is silent; _SILENT if the last one was
+        self._silent, self._untested = False, 0  # whether the last step was silent; steps until that is tested again
         # Number of steps for which decisions apply at least; ignored collisions are ignored as long as shapes touch.
         self._decision_steps = 1.0
         self._pairs: HandledPairs | None = None
@@ -72,7 +71,7 @@ class Rehearsal:
         """Go on in the next world of the space. Returns whether no decision of a handler can apply. Boxes of shapes and
         wrappers are kept."""
         undecided = self._decision_steps <= 0 and self._sync is not None and self._sync.is_ours()
-        self.world, self._sync, self._untested = world, None, max(self._untested, 0)
+        self.world, self._sync, self._silent = world, None, False
         self.forget_old_handlers()
         if self._pairs is not None:
             self._pairs.type_changes = -1  # so that pairs are found again, in the rows of this world
@@ -83,14 +82,14 @@ class Rehearsal:
         """Forget earlier steps; if sizes, filters or places of shapes have changed, also the pairs with handlers."""
         if reshaped:
             self._pairs = None
-        self._changed, self._untested = [False, False], 0
+        self._changed, self._silent, self._untested = [False, False], False, 0
         self.world.forget_changes()
 
     def is_silent_again(self, dt: float, half_damping: float, sync: Sync) -> bool:
         """Whether this step is silent as the last one was; if so, its rehearsal is done or left out here. For worlds in
         which only handlers can be called (`only_handlers`). Reads the states at the start of the step."""
         world, pairs = self.world, self._pairs
-        if self._untested != _SILENT or sync is not self._sync or pairs is None or world.rules is not NO_RULES:
+        if not self._silent or sync is not self._sync or pairs is None or world.rules is not NO_RULES:
             return False
         calls = world.joints is not None and world.joints.calls_back()
         if calls or pairs.type_changes != type_changes() or not sync.is_ours():
@@ -105,7 +104,7 @@ class Rehearsal:
     def forget_old_handlers(self) -> None:
         """Forget the pairs with handlers, if there are handlers for other types now."""
         if self._pairs is not None and self._pairs.handled != private_versions.handled(self.space):
-            self._pairs, self._untested = None, 0
+            self._pairs, self._silent, self._untested = None, False, 0
 
     def before_call(self, stage: int) -> None:
         """Before a function is called: read the bodies, if pymunk has reached another stage."""
@@ -144,11 +143,11 @@ class Rehearsal:
         if self._untested > 0:
             self._untested -= 1
         elif known and continues and self._calls_none(status > 0):
-            self._untested = _SILENT
+            self._silent = True
             self._step_without_calls(dt, sync)
             return 0
         elif self._decision_steps <= 0 and continues:  # otherwise nothing was tested
-            self._untested = _BETWEEN_TESTS
+            self._silent, self._untested = False, _BETWEEN_TESTS
         self.left_out = 0
         world.scatter(TURNS)
         self._wrap()
@@ -192,11 +191,11 @@ class Rehearsal:
         if self._decision_steps > 0 or (joints is not None and joints.calling):
             return False
         if self._pairs is None or self._pairs.type_changes != type_changes():
-            self._pairs, self._untested = HandledPairs(self.world, self._pairs), 0
+            self._pairs, self._silent = HandledPairs(self.world, self._pairs), False
             self._place = self._bound(self._pairs)
             near = self._place(*self._settings) > 0
         tested = not near and self._pairs.arrays is not None
-        return tested and (self._untested == _SILENT or not self._pairs.remembered())
+        return tested and (self._silent or not self._pairs.remembered())
 
     def take_left_out_step(self) -> None:
         """Take the step of pymunk that was left out, for its arbiters, unless the space has other bodies now."""

@@ -48,8 +48,9 @@ class World(BodyStates):
         gravity: length/time².  damping: pymunk's, the factor on velocities in one second; 1 is none.
         without_contacts: function that makes the arrays of a report without contacts.
         hooks: functions of bodies and constraints.  collisions: whether the space has collision handlers.
-        hooked: whether a step calls functions of bodies or handlers, or damping is 0.  only_handlers: whether collision
-            handlers are the only functions.  plain: neither hooked nor with joints.
+        hooked_steps: whether its steps are hooked whatever its joints are, by functions of bodies or handlers, or as
+            damping is 0.  only_handlers: whether collision handlers are the only functions.  plain: neither hooked
+            steps nor joints.
         rules: decisions of collision handlers about pairs of rows of SHAPE in this step.
         frictionless: whether friction, also that of handlers, is left out.  lacks_friction: and the space has some.
         joints: the constraints of the space, None if it has none.
@@ -117,9 +118,9 @@ class World(BodyStates):
             self.rehearsal.forget_old_handlers()
         self.rules = NO_RULES
         self.hooks = Hooks(self.space, self.bodies, self.joints, *self._functions)
-        self.hooked = self.collisions or self.hooks.any_body or self.damping == 0.0
+        self.hooked_steps = self.collisions or self.hooks.any_body or self.damping == 0.0
         self.only_handlers = self.collisions and not self.hooks.any_body
-        self.plain = not self.hooked and self.joints is None
+        self.plain = not self.hooked_steps and self.joints is None
         self.current = private.watch(self.space, self._edits, self._seen)
 
     def half_damping(self, dt: float) -> float:
@@ -166,7 +167,8 @@ class World(BodyStates):
 
     @cached_property
     def movers(self) -> list[Any]:
-        """Pointers to the Chipmunk bodies that are not static and have shapes."""
+        """Pointers to the Chipmunk bodies that are not static and have shapes, when they were read; `late_shapes`
+        moves those that the space has by now."""
         if len(self.shapes) == len(self.records):
             items = self.bodies.items
             return private.pointers([items[i] for i in sorted(set(self.owner[: self._moving_shapes].tolist()))])
@@ -208,7 +210,7 @@ class World(BodyStates):
         them (`eccentric`), accept these as unedited."""
         joints.write()
         # Where the step has called no function, nothing can have changed.
-        if self.eccentric and (not (self.hooked or joints.functions or joints.calling) or self.current()):
+        if self.eccentric and (not (self.hooked_steps or joints.functions or joints.calling) or self.current()):
             self.gather()
             self.accept_rounding()
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from eeca_pymunk.compiled import table_of
 from eeca_pymunk.compiled.records import columns, rows
-from eeca_pymunk.contacts.correction import lifting
+from eeca_pymunk.contacts.correction import correct_penetration
 from eeca_pymunk.contacts.interval import make_contacts, step_island
 from eeca_pymunk.contacts.memory import copy_recent
 from eeca_pymunk.contacts.works import external_work
@@ -136,7 +136,7 @@ class Pile:
         if m > 0:
             problem, middle = Problem(c.ROWS, self.im, self.ii, self.pose, n, m), self.pose + 0.5 * h * V
             budget = -1.0 if conserves(c.ROWS, m) else float(self.losses.sum())
-            lifting(problem, c.L, middle, c.VN, self.acc, h, self.extent, budget, OVERLAP_LEFT, c.JUMP)
+            correct_penetration(problem, c.L, middle, c.VN, self.acc, h, self.extent, budget, OVERLAP_LEFT, c.JUMP)
 
     def carried(self, vn: np.ndarray) -> float:
         """External work of the contacts, with velocities `vn` after the step."""

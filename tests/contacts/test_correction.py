@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from eeca_pymunk.compiled.records import rows
-from eeca_pymunk.contacts.correction import lifting
+from eeca_pymunk.contacts.correction import correct_penetration
 from eeca_pymunk.contacts.works import kinetic_energy
 from eeca_pymunk.model.contacts import Problem, Row
 from eeca_pymunk.model.parameters.intervals import OVERLAP_LEFT
@@ -22,7 +22,7 @@ def test_it_costs_what_it_may_where_a_common_rotation_keeps_the_angular_momentum
     POSE, V = np.array([[-0.4, 0.0, 0.0], [0.4, 0.0, 0.0]]), np.array([[0.0, -1.0, -10.0], [0.0, 1.0, -10.0]])
     JUMP = np.zeros((2, 6))
     problem, L, extent = Problem(ROWS, IM, II, POSE, 2, 1), np.zeros((1, 2)), np.full(2, 0.5)
-    lifting(problem, L, POSE, V, np.zeros((2, 3)), 0.0, extent, budget, OVERLAP_LEFT, JUMP)
+    correct_penetration(problem, L, POSE, V, np.zeros((2, 3)), 0.0, extent, budget, OVERLAP_LEFT, JUMP)
     before, after = kinetic_energy(V, IM, II, 2), kinetic_energy(V + JUMP[:, 3:], IM, II, 2)
     assert 0.97 * budget <= after - before <= budget
     NEW, W = POSE + JUMP[:, :3], V + JUMP[:, 3:]
@@ -41,7 +41,7 @@ def test_bodies_that_press_on_nobody_do_not_turn_with_others() -> None:
     POSE = np.array([[-0.4, 0.0, 0.0], [0.4, 0.0, 0.0], [5.0, 0.0, 0.0], [7.0, 0.0, 0.0]])
     V = np.array([[0.0, -1.0, -10.0], [0.0, 1.0, -10.0], [0.0, 3.0, 0.0], [1.0, 0.0, 2.0]])
     JUMP, extent = np.zeros((4, 6)), np.full(4, 0.5)
-    lifting(
+    correct_penetration(
         Problem(ROWS, IM, II, POSE, 4, 2), np.zeros((2, 2)), POSE, V, np.zeros((4, 3)), 0.0, extent, 0.5, OVERLAP_LEFT,
         JUMP,
     )  # fmt: skip

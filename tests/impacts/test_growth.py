@@ -14,7 +14,7 @@ from eeca_pymunk.impacts import scene_memory
 def path(monkeypatch: pytest.MonkeyPatch, seed: int, joints: bool, rows: int) -> list[tuple[float, ...]]:
     """The states of a heap whose tables of contacts begin with so many rows."""
     monkeypatch.setattr(scene_memory, "_CONTACTS", rows)
-    monkeypatch.setattr(scene_memory, "_OF_A_BODY", 0)
+    monkeypatch.setattr(scene_memory, "_CONTACTS_OF_A_BODY", 0)
     R, space = random.Random(seed), pymunk.Space()
     space.gravity = 0.0, -900.0
     for p, q in (((-150, 0), (150, 0)), ((-150, 0), (-150, 600)), ((150, 0), (150, 600))):

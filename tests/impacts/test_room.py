@@ -9,6 +9,7 @@ import pymunk
 import pytest
 
 import eeca_pymunk as ep
+from eeca_pymunk.model.scene import Scene
 from eeca_pymunk.pairs import setup
 from scenes.scene import add_disk, add_walls
 
@@ -30,7 +31,11 @@ def test_forces_are_reset_after_a_step_of_more_impacts_than_there_was_room_for()
 @pytest.mark.parametrize("seed", [2, 3])
 def test_lists_that_grow_on_the_way_miss_nobody(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     # Little room is given each time, so that it is wanted again and again.
-    monkeypatch.setattr(setup, "more_room", lambda room: room + 40)
+    def little_more(scene: Scene) -> Scene:
+        room = len(scene.POOL) + 40
+        return scene._replace(POOL=np.zeros(room, np.int32), FLAG=np.zeros(room, np.uint8))
+
+    monkeypatch.setattr(setup, "_with_larger_pool", little_more)
     space, bodies = box_of(np.full(150, math.sqrt(0.3 / math.pi / 150)), seed)
     stepper = ep.EECA(space, sync=False)
     stepper.step(1e-3)

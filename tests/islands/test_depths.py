@@ -62,7 +62,7 @@ def test_the_next_interval_is_as_long_as_a_way_of_second_order_takes(approach: f
     isle = Island(
         WHO=np.array([0, 1]), IM=np.zeros(2), II=np.zeros(2), POSE=np.array([[0.0, radius, 0.0], [0.0, 0.0, 0.0]]),
         V=np.array([[0.0, -approach * 10.0 * room / h, 0.0], [0.0, 0.0, 0.0]]), ACC=np.zeros((2, 3)),
-        EXTENT=np.zeros(2), FELT=np.zeros(2), PAIRS=np.zeros((1, 4), np.int64),
+        EXTENT=np.zeros(2), LEVER=np.zeros(2), PAIRS=np.zeros((1, 4), np.int64),
     )  # fmt: skip
     end = isle.POSE - [[0.0, 10.0 * room, 0.0], [0.0, 0.0, 0.0]]
     rows = zeros(1, ROW)
@@ -107,7 +107,7 @@ def test_an_interval_in_which_a_rod_goes_through_a_wall_is_too_long(way: float, 
     note_side(loop.scene, 0, 1, 0.0, -1.0, True)
     isle = Island(
         WHO=np.array([0, 1]), IM=np.zeros(2), II=np.zeros(2), POSE=np.zeros((2, 3)), V=np.zeros((2, 3)),
-        ACC=np.zeros((2, 3)), EXTENT=np.zeros(2), FELT=np.zeros(2), PAIRS=np.zeros((1, 4), np.int64),
+        ACC=np.zeros((2, 3)), EXTENT=np.zeros(2), LEVER=np.zeros(2), PAIRS=np.zeros((1, 4), np.int64),
     )  # fmt: skip
     rows, after = zeros(1, ROW), np.array([[0.0, -2.0 * way * unit / h, 0.0], [0.0, 0.0, 0.0]])
     rows[0].b, rows[0].key, rows[0].ny = 1, 2, -1.0
@@ -135,7 +135,7 @@ def test_a_rod_in_the_corner_of_a_triangle_is_as_deep_as_the_normal_tells(
     start = np.array([[-1e-4 * unit, 0.98 * unit, 0.0], [0.0, 0.0, 0.0]])
     isle = Island(
         WHO=np.array([0, 1]), IM=np.zeros(2), II=np.zeros(2), POSE=start, V=np.zeros((2, 3)),
-        ACC=np.zeros((2, 3)), EXTENT=np.zeros(2), FELT=np.zeros(2), PAIRS=np.zeros((1, 4), np.int64),
+        ACC=np.zeros((2, 3)), EXTENT=np.zeros(2), LEVER=np.zeros(2), PAIRS=np.zeros((1, 4), np.int64),
     )  # fmt: skip
     gap, nx, ny, _, _ = gap_at(loop.scene, 0, *start[0], 1, *start[1])
     assert gap < 0.0

@@ -14,7 +14,7 @@ from eeca_pymunk.geometry.flight import pose
 from eeca_pymunk.jointed import meet as meetings
 from eeca_pymunk.jointed import paths
 from eeca_pymunk.jointed.ends import carry, shorten
-from eeca_pymunk.jointed.meet import end_before, locate_impact
+from eeca_pymunk.jointed.meet import end_by, locate_impact
 from eeca_pymunk.jointed.paths import passes_through
 from eeca_pymunk.jointed.solve import try_jointed
 from eeca_pymunk.model.joint_steps import LINEAR
@@ -55,8 +55,7 @@ def test_a_path_through_a_wall_is_seen_wherever_it_ends(h: float) -> None:
 def test_an_interval_that_would_lead_through_a_wall_ends_before(h: float) -> None:
     """Its body stays on its side, with the energy that it had, until the instant that it is brought to."""
     A, J = falling(2.0 * h, 1.0)
-    shorten(A, J, 0, h)
-    assert end_before(A, J, 0, h, False, False) == (h > 0.01)
+    assert end_by(A, J, 0, h) == (h > 0.01)
     assert (J.TALLY.worst == LINEAR) == (h > 0.01)
     body = A.BODY[0]
     assert (body.since, A.MEMBER[0].open) == (h, 0)

@@ -15,7 +15,7 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk.arrays import FloatArray
-from eeca_pymunk.jointed import advance, lifting
+from eeca_pymunk.jointed import advance, correction
 
 Join = Callable[[pymunk.Body, pymunk.Body], pymunk.Constraint]
 KEPT = 1e-12  # over the largest momentum of a body
@@ -232,7 +232,7 @@ def test_angular_momentum_that_arms_give_is_taken_back() -> None:
     impulse = 3.0 * n + 0.5 * t
     linear, angular, energy = totals()
     interval: Any = advance.Interval(isle, groups, [row], motion, cast(Any, None), 1, 2, 0.0, 1.0, True)
-    lifting.keep_angular_momentum(joints, interval, np.array([[3.0, 0.5]]))
+    correction.keep_angular_momentum(joints, interval, np.array([[3.0, 0.5]]))
     after = totals()
     assert after[0] == pytest.approx(linear, abs=1e-14)
     assert after[1] == pytest.approx(angular - (apart[0] * impulse[1] - apart[1] * impulse[0]), abs=1e-14)

@@ -7,7 +7,7 @@ import pytest
 
 import eeca_pymunk as ep
 import scenes
-from eeca_pymunk.pairs import setup
+from eeca_pymunk.pairs import margins, setup
 
 from ..crowds import SHORT, box_of, state
 
@@ -41,7 +41,8 @@ def test_how_often_lists_are_renewed_makes_no_difference(
     radii = np.full(count, 0.02) if sizes == "equal" else np.random.default_rng(2).uniform(0.005, 0.03, count)
     steppers = []
     for neighbours in (5.0, 40.0):
-        monkeypatch.setattr(setup, "NEIGHBOURS", neighbours)
+        monkeypatch.setattr(margins, "NEIGHBOURS", neighbours)
+        monkeypatch.setattr(setup, "fill_lists", margins.fill_lists.python)
         space, _ = box_of(radii, 3)
         space.gravity = (0.0, -pull)
         steppers.append(ep.EECA(space, sync=False))

@@ -10,7 +10,7 @@ import pytest
 from scipy.optimize import nnls
 
 from eeca_pymunk.model.contacts import Problem
-from eeca_pymunk.rows.blocks import CONVERGED, solve_freely
+from eeca_pymunk.rows.blocks import CONVERGED, solve_frictionless
 from eeca_pymunk.rows.build import normal_rate
 
 from .block import Block, Floats
@@ -321,7 +321,9 @@ def test_contacts_that_friction_wedges_part_without_it(seed: int) -> None:
     assert block.out[0].residual > 0.01 * fastest
     problem = Problem(block.rows, block.im, block.ii, block.pose, n, m)
     sweeps, direct = block.out[0].sweeps, block.out[0].direct
-    status = solve_freely(problem, block.impulses, block.after, block.velocity, 0.0, block.status, False, block.out)
+    status = solve_frictionless(
+        problem, block.impulses, block.after, block.velocity, 0.0, block.status, False, block.out
+    )
     assert status == CONVERGED
     assert block.out[0].sweeps > sweeps > 0  # the budget of a step pays for both
     assert block.out[0].direct >= direct > 0
@@ -358,6 +360,6 @@ def test_contacts_that_the_energy_lock_leaves_without_impulses_part_without_fric
     assert block.out[0].residual < 1e-3 * fastest
     assert min(normal_rate(row, block.after) - row.target for row in block.rows) < -0.5 * fastest
     problem = Problem(block.rows, block.im, block.ii, block.pose, len(pose) - 1, 3)
-    solve_freely(problem, block.impulses, block.after, block.velocity, 0.0, block.status, False, block.out)
+    solve_frictionless(problem, block.impulses, block.after, block.velocity, 0.0, block.status, False, block.out)
     assert min(normal_rate(row, block.after) - row.target for row in block.rows) >= -1e-10 * fastest
     assert abs(block.energy(block.after) / block.energy(block.velocity) - 1.0) <= 1e-13

@@ -7,14 +7,15 @@ import pytest
 
 from eeca_pymunk.model.contacts import Problem
 from eeca_pymunk.model.parameters.joints import COLUMN_CONTACTS
+from eeca_pymunk.rows.active_set import divide_friction
 from eeca_pymunk.rows.build import normal_rate, rates, tangent_rate
 from eeca_pymunk.rows.cholesky import assemble_blocks, factor_blocks, make_factor, solve_blocks
 from eeca_pymunk.rows.columns import as_columns
 from eeca_pymunk.rows.coulomb import coulomb
-from eeca_pymunk.rows.dense import newton
-from eeca_pymunk.rows.direct import polish_jointed
+from eeca_pymunk.rows.dense import solve_dense
+from eeca_pymunk.rows.direct import solve_jointed
 from eeca_pymunk.rows.dissection import dissect, neighbours
-from eeca_pymunk.rows.polish import divide_friction, polish_free
+from eeca_pymunk.rows.sparse import solve_sparse
 from eeca_pymunk.rows.sweeps import sweep, velocities
 
 from .block import Block
@@ -131,9 +132,9 @@ def test_direct_solution_needs_no_sweeps(dense: bool, sliding: bool) -> None:
     problem = Problem(block.rows, block.im, block.ii, block.pose, 1, 2)
     velocities(problem, L, free, V)
     if dense:
-        reached, _ = newton(problem, L, V, free, 4, 1e-16, False)
+        reached, _ = solve_dense(problem, L, V, free, 4, 1e-16, False)
     else:
-        reached, _ = polish_free(problem, L, V, free, 1e8, 40, 1e-16)  # fmt: skip
+        reached, _ = solve_sparse(problem, L, V, free, 1e8, 40, 1e-16)  # fmt: skip
     if dense or not sliding:
         assert reached <= 1e-14
         assert np.abs(V[0, :2] - turn @ [g * h * max(pull - mu, 0.0), 0.0]).max() <= 1e-14
@@ -160,7 +161,7 @@ def test_points_of_a_face_share_their_friction_as_their_loads() -> None:
     assert L[0, 1] / L[0, 0] == pytest.approx(L[1, 1] / L[1, 0], rel=1e-14)
     velocities(problem, L, free, V)
     assert np.abs(V - before).max() <= 1e-16
-    reached, clamped = polish_free(problem, L, V, free, 1e8, 40, 1e-16)  # fmt: skip
+    reached, clamped = solve_sparse(problem, L, V, free, 1e8, 40, 1e-16)  # fmt: skip
     assert reached <= 1e-15
     assert clamped == 0
     assert np.abs(V[0]).max() <= 1e-15
@@ -184,7 +185,7 @@ def test_contacts_that_a_dense_solution_is_too_expensive_for_are_left_to_sweeps(
     problem = as_columns(Problem(block.rows, block.im, block.ii, block.pose, n, m))
     velocities(problem, L, free, V)
     before = L.copy()
-    reached, _ = polish_jointed(problem, L, V, free, 0.0, 4, 1e-15)
+    reached, _ = solve_jointed(problem, L, V, free, 0.0, 4, 1e-15)
     if solved:
         assert reached <= 1e-12
         assert np.abs(V[:n, 1]).max() <= 1e-12

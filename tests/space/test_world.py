@@ -291,7 +291,7 @@ def test_settings_are_read_anew_without_the_shapes(change: str) -> None:
     world.read_settings()
     assert world.current()
     assert (world.gravity, world.damping) == (tuple(space.gravity), space.damping)
-    assert world.collisions == world.hooked == (change == "handler")
+    assert world.collisions == world.hooked_steps == (change == "handler")
 
 
 def test_an_exchanged_body_and_a_moved_static_one_show_in_what_is_read() -> None:

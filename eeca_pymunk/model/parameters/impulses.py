@@ -54,10 +54,10 @@ AUGMENTATION_MORE = work(0.9, "of the step to a direct solution",
     "Part that is taken from which on the next augmentation is larger.")
 AUGMENTATION_LESS = work(0.3, "of the step to a direct solution",
     "Part that is taken below which the next augmentation is smaller.")
-POLISHES = work(8, "number", "Refinements of a sparse direct solution of a simultaneous impact, at most.")
-POLISHES_INTERVAL = work(6, "number",
-    "These refinements in an interval whose augmentation is above POLISH_AUGMENTATION; else one.")
-POLISH_AUGMENTATION = work(6.0, "log10 of a ratio",
+REFINEMENTS_SPARSE = work(8, "number", "Refinements of a sparse direct solution of a simultaneous impact, at most.")
+REFINEMENTS_INTERVAL = work(6, "number",
+    "These refinements in an interval whose augmentation is above REFINED_AUGMENTATION; else one.")
+REFINED_AUGMENTATION = work(6.0, "log10 of a ratio",
     "Augmentation up to which sparse direct solutions are not refined: it is small where little of the steps to them "
     "was taken.")
 DIRECT_RESIDUAL = accuracy(0.1, "of the residual of sweeps", "Residual at which refinements of a direct solution end.")

@@ -112,6 +112,8 @@ FIT_RESIDUAL = accuracy(1e-06, "of the fastest closing contact",
 FIT_ENERGY = round_off(1e-12, "of the energy", "Change of energy by this projection that is round-off.")
 JOINTED_CORRECTION_SWEEPS = work(40, "sweeps", "Sweeps of the penetration correction of jointed bodies.")
 JOINTED_LIFT_ERROR = accuracy(0.001, "of the deepest overlap", "Error of this correction, also of limits in its way.")
+JOINTED_CORRECTION_TRIES = work(4, "number", "How often it is tried within its budget, at most.")
+JOINTED_CORRECTION_LESS = work(0.25, "of the displacements", "Part of the last try that the next one takes.")
 STEP_WORK = work(32000000.0, "operations",
     "Work of a step with joints besides STEP_WORK_BODY; 2.5e9 operations take about a second.")
 INTERVAL_SHARE = work(0.25, "of what is left of the budget",
@@ -139,6 +141,10 @@ COLUMN_CONTACTS = work(40, "contacts",
 COLUMN_SWEEPS = work(3, "sweeps", "Sweeps over components before the first homotopy.")
 COLUMN_SWEEPS_AFTER = work(4, "sweeps", "Sweeps over components after each homotopy, at most.")
 COLUMN_HOMOTOPIES = work(8, "homotopies", "Homotopies to the solution, at most.")
+COLUMN_REPEATED = work(0.1, "of the residual",
+    "Difference of the residuals of two homotopies up to which they end in the same state: there are no more.")
+COLUMN_DIVERGES = work(2.0, "ratio of residuals",
+    "Growth of the residual by the last sweeps from which on what was before them is kept.")
 COLUMN_PROXIMAL = round_off(10000000000.0, "over the effective mass",
     "Stiffness of the proximal term of redundant contacts of components.")
 OUTER = work(20, "steps of the components", "Iterations between contacts and components, at most.")

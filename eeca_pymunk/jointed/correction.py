@@ -18,8 +18,8 @@ from ..joints.workspace import workspace
 from ..model.contacts import Columns, JointedProblem, Row
 from ..model.joint_steps import SPEEDS
 from ..model.joints import Joints
+from ..model.parameters import joints
 from ..model.parameters.intervals import CORRECTION_ROUND_OFF
-from ..model.parameters.joints import IMPACT_LIMITS, JOINTED_CORRECTION_SWEEPS, JOINTED_LIFT_ERROR, MOMENTUM_LEFT
 from ..model.scene import Scene
 from ..newton.response import prepare_response
 from ..rows.bounded import room_for_rows
@@ -27,7 +27,7 @@ from ..rows.build import normal_rate
 from ..rows.inplace import copy
 from ..rows.lifting import lift_above_walls
 from .advance import Interval, separation
-from .columns import fill_group, set_effective_masses
+from .columns import NORMALS, fill_group, set_effective_masses
 from .component import close_at_poses, passes_limit
 from .gathered import find_places, gather_component
 from .groups import is_free
@@ -41,7 +41,7 @@ def raise_gaps(problem: JointedProblem, n: int, GAPS: FloatArray, D: FloatArray,
     for i in range(problem.m):
         if problem.C.LEFT_OUT[i] != 0:
             GAPS[i] = np.inf
-    return lift_above_walls(problem, n, GAPS, D, tolerance, JOINTED_CORRECTION_SWEEPS)
+    return lift_above_walls(problem, n, GAPS, D, tolerance, joints.JOINTED_CORRECTION_SWEEPS)
 
 
 @kernel
@@ -54,7 +54,7 @@ def fill_at_end(A: Scene, J: Joints, interval: Interval, C: Columns, g: int, ROW
     size = find_places(A, J, s, INDEX)
     if not prepare_response(workspace(J, s), SPEEDS, 2.0):
         return False
-    fill_group(J, groups, C, g, INDEX, ROWS, m, np.empty((size, 3)), 1)
+    fill_group(J, groups, C, g, INDEX, ROWS, m, np.empty((size, 3)), NORMALS)
     return True
 
 
@@ -114,7 +114,7 @@ def keep_angular_momentum(J: Joints, interval: Interval, L: FloatArray) -> None:
         size += (abs(v[0]) + abs(v[1])) * (abs(x) + abs(y)) / isle.IM[q]
         size += abs(v[2]) / isle.II[q] if isle.II[q] > 0.0 else 0.0
         most = max(most, abs(EXCESS[q]))
-    if not most > MOMENTUM_LEFT * size:
+    if not most > joints.MOMENTUM_LEFT * size:
         return
     gained, square = unturn_groups(motion.END, np.zeros((n, 2)), motion.V, isle.IM, isle.II, GROUP, ONE, EXCESS, TURN)
     turn_groups(motion.END, GROUP, ONE, TURN, motion.V, 0)
@@ -146,15 +146,15 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, L: FloatArray, bud
         # prescribe speeds at its end.
         if s >= 0 and J.COMPONENT[s].bounded_joints > 0:
             fill_at_end(A, J, interval, C, g, ROWS, m)
-    D, MU = np.zeros_like(V), np.zeros(m)
-    for _ in range(IMPACT_LIMITS):
+    D, MU, error = np.zeros_like(V), np.zeros(m), joints.JOINTED_LIFT_ERROR * -deepest
+    for _ in range(joints.IMPACT_LIMITS):
         KEEP, D[:] = ROWS[:m].copy(), 0.0
         set_effective_masses(groups, C, KEEP, m)
-        MU = raise_gaps(JointedProblem(KEEP, C, room_for_rows(0, 0), m), n, GAPS, D, JOINTED_LIFT_ERROR * -deepest)
+        MU = raise_gaps(JointedProblem(KEEP, C, room_for_rows(0, 0), m), n, GAPS, D, error)
         again = False
         for g in range(len(groups.COMPONENT)):
             s = groups.COMPONENT[g]
-            if s >= 0 and passes_limit(A, J, s, END, D, isle.IM, isle.II, t + h, h, JOINTED_LIFT_ERROR * -deepest):
+            if s >= 0 and passes_limit(A, J, s, END, D, isle.IM, isle.II, t + h, h, error):
                 again = fill_at_end(A, J, interval, C, g, ROWS, m) or again
         if not again:
             break
@@ -167,14 +167,15 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, L: FloatArray, bud
             if mark_group(GROUP, g, ONE):
                 keep_centre(D, isle.IM, ONE)
     cost, part = -work_of_forces(isle.ACC, isle.IM, isle.II, n, D), admissible(D, isle.EXTENT, n, size)
-    # Contacts that contradict one another give displacements without bound, of which only a part is taken.
+    # Contacts that contradict one another give displacements without bound, of which only a part is taken. What closing
+    # joints costs is known only once it is done, so that there is no `part_for`: it has the other half of the budget.
     round_off = CORRECTION_ROUND_OFF * work_of_forces(np.abs(isle.ACC), isle.IM, isle.II, n, np.abs(D))
-    if cost * part > max(0.5 * budget, round_off * part):  # the other half is for what closing joints costs
+    if cost * part > max(0.5 * budget, round_off * part):
         part = 0.5 * budget / cost
     if lifts_through(A, isle, END, part * D, n, t + h):
         return 0.0
     STORED = np.zeros(len(groups.COMPONENT))
-    for _ in range(4):
+    for _ in range(joints.JOINTED_CORRECTION_TRIES):
         spent = 0.0
         NEW = END + part * D
         for g in range(len(groups.COMPONENT)):
@@ -197,5 +198,5 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, L: FloatArray, bud
                     J.STEPPED[s].stored += STORED[g]
             copy(END, NEW)
             return spent
-        part *= 0.25
+        part *= joints.JOINTED_CORRECTION_LESS
     return 0.0
