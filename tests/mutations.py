@@ -467,7 +467,7 @@ MUTATIONS = (
              "if joint.kind != PIVOT or what == POSES or joint.touched == 0:", "if True:", "joints/test_apart.py",
              "stays_apart and 60 or impact"),
     Mutation("joints: a gain that nothing pays is kept", "joints/gains.py",
-             "fails = keeps_gain(W, h, length, own)", "fails = False", "joints/test_pairs.py", "[803]"),
+             "fails = gain_unpaid(W, h, length, own)", "fails = False", "joints/test_pairs.py", "[803]"),
     Mutation("joints: gears of any ratio keep angular momentum", "joints/frame.py",
              "W.link[k].kind == GEAR and W.J.JOINT[W.link[k].joint].ratio != 1.0", "False",
              "joints/test_kinds.py", "free_wheels"),

@@ -23,7 +23,7 @@ class Impulses:
 
 _PIVOTED = 100  # contacts up to which pivoting is faster than projected gradients, in the hopper
 _DENSE = 160  # contacts up to which a dense matrix is faster than the operator
-_PIVOTS = 25
+_PIVOTS = 25  # exchanges, at most: pivoting may cycle
 _ROUND_OFF = 1e-10  # residual of a direct solution relative to the largest |q|
 _SINGULAR = 1e8  # size of the solution for a generic right-hand side above which the matrix counts as singular
 
@@ -40,7 +40,8 @@ def solve(
     Args:
         q: (m,) velocity.  compliance: (m,) or scalar >= 0, 1/mass.
         start: (m,) first guess of lam, 0 if None.
-        tolerance: bound of the residual, a velocity, relative to max |q|.
+        tolerance: of projected gradients: bound of the residual, a velocity, relative to max |q|; pivoting is within
+            `_ROUND_OFF`.
         max_iterations: of the projected gradients.
     """
     approaching = q < 0

@@ -32,7 +32,7 @@ def traces(
     mass: FloatArray, moment: FloatArray, center: FloatArray, velocity: FloatArray, spin: FloatArray,
     gravity: tuple[float, float],
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:  # fmt: skip
-    """Kinetic and potential energy (T,), linear momentum (T, 2) and angular momentum (T,) at T moments, as of
+    """Kinetic and potential energy (T,), linear momentum (T, 2) and angular momentum (T,) at T instants, as of
     `Invariants`, of n bodies with masses and moments (n,), centres of mass and velocities (T, n, 2) and spins (T, n)
     rad/time."""
     # The spin of a body of infinite moment is constant: its infinite energy is left out.

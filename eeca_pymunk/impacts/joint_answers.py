@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
-from ..jointed.columns import BOTH, fill_group, push_group
+from ..jointed.columns import WITH_TANGENTS, fill_group, push_group
 from ..jointed.component import project_speeds, size_joints
 from ..jointed.gathered import find_places, gather_component
 from ..jointed.groups import Groups
@@ -63,7 +63,7 @@ def answer_impact(A: Scene, J: Joints, block: Block, groups: Groups, C: Columns,
                         V[q, c] = J.LOCAL[INDEX[q]].v0[c]
         if not prepare_response(workspace(J, s), SPEEDS, 2.0):
             continue
-        fill_group(J, groups, C, g, INDEX, ROWS, len(ROWS), PUSH, BOTH)
+        fill_group(J, groups, C, g, INDEX, ROWS, len(ROWS), PUSH, WITH_TANGENTS)
         if not moved:
             keep_allowed(J, block, groups, g, n, INDEX, PUSH)
     return driven

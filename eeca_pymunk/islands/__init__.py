@@ -5,16 +5,17 @@ interval ends, contacts with their impulses, works in the ledger.
 
 An *interval* leads from an instant to the end of the step, or ends earlier; the contacts of the island exert constant
 forces over it. A *hit* is an impact on an island within its interval, which it cuts. *Lossy* are shapes of elasticity
-below 1, and islands with such a shape. The *load* of a contact is its force without the part that stops an approach.
-A body is *busy* for some steps after its island was hit more often than a step allows, or as often with joints and
-without bounces, or once half of the work of the step is spent: all that comes near then joins the island.
+below 1, and islands with such a shape (`membership.lossy`); a pair *loses* if its law has an elasticity below 1. The
+*load* of a contact is its force without the part that stops an approach. A body is *busy* for some steps after its
+island was hit more often than a step allows, or as often with joints and without bounces, or once half of the work of
+the step is spent: all that comes near then joins the island.
 
 Open `building.py` first: islands at the start of a step (`membership.py`: which bodies, which contacts persist;
-`hits.py`: how many hits a step allows).
-`intervals.py` solves one (`candidates.py`: pairs and length of the interval; `depths.py`: how deep contacts may close;
-`local.py`: its bodies in local numbering); `payment.py` says what pays for penetration corrections; `accounting.py`
-ends it, `shortened.py` replaces the forces of a shortened interval that have given energy, `turned.py` keeps the
-angular momentum of bodies in flight.
+`hits.py`: how many hits a step allows). `intervals.py` solves one (`candidates.py`: pairs and length of the interval;
+`depths.py`: how deep contacts may close; `local.py`: its bodies in local numbering); `payment.py` says what pays for
+penetration corrections; `accounting.py` ends it, `shortened.py` replaces the forces of a shortened interval that have
+given energy, `loads.py` has what the bodies of an island bear; `turned.py` keeps the angular momentum of bodies in
+flight.
 
 States of rest, `Member.rest` of the root of an island, and the transitions between them:
 

@@ -91,8 +91,9 @@ def end_interval(A: Scene, root: int, t: float) -> None:
 
 @nonallocating
 def close_interval(A: Scene, root: int, t: float) -> None:
-    """End the interval of one island without joints at instant t: account its contacts, and move its bodies to their
-    poses at t."""
+    """End the interval of one island without joints at instant t: replace forces that gave energy (`repay`), account
+    its contacts, move its bodies to their poses at t, and keep the angular momentum of bodies in flight. Corrections
+    are not made here: `lift_within_step` and `apply_correction` do where the interval ended as planned."""
     repay(A, root, t)
     first, end = contact_range(A, root)
     for c in range(first, end):
@@ -145,7 +146,8 @@ def hold_sides(A: Scene, i: int, end: float) -> None:
 def apply_correction(A: Scene, root: int, end: float) -> None:
     """Apply the penetration correction of an island's bodies, displacements D, dtheta and changes of velocity, at the
     end of its interval. It costs the change of kinetic energy, less the work of forces m a.D + I alpha dtheta. Up to
-    `Rest.payable` the cost is deducted from the losses of the step; beyond it is external work."""
+    `Rest.payable` the cost is deducted from the losses of the step; beyond it is external work.
+    Bodies of an island with joints are only moved to the end."""
     PAR, BODY, PULL, RESTING = A.PAR, A.BODY, A.PULL, A.RESTING
     spent = 0.0
     i = root

@@ -117,7 +117,8 @@ def renew_contacts(A: Scene) -> None:
 
 @nonallocating
 def restart_paths(A: Scene) -> None:
-    """Advance the rest timers of bodies that are not at rest, and let their paths begin again."""
+    """Advance the rest timers of bodies in islands that are not at rest. Bodies whose rest has ended begin a new path;
+    all are predicted again."""
     STATE, MEMBER, BODY = A.STATE, A.MEMBER, A.BODY
     most = A.PAR.pulled * A.PAR.dt
     for i in range(BODY.shape[0] - 1):

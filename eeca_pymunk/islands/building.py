@@ -139,7 +139,10 @@ def join_reachable(A: Scene, QUEUE: IntArray, queued: int, t: float) -> int:
 
 @kernel
 def build_islands(A: Scene) -> None:
-    """Build the islands of the start of a step."""
+    """Build the islands of the start of a step: those for which something has changed wake, and all that are not at
+    rest are dissolved (`wake_changed`); bodies whose contacts lasted and persist are united, components of joints,
+    bodies that were placed into each other, and what touches these islands or comes near busy bodies
+    (`join_reachable`)."""
     STATE, COUNT, BODY = A.STATE, A.COUNT, A.BODY
     n = BODY.shape[0] - 1
     if COUNT.any_placed > 0:

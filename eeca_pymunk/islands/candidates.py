@@ -122,8 +122,9 @@ def sweeps_of(n: int, t: float) -> int:
 @nonallocating
 def interval_length(A: Scene, found: IntArray, t: float) -> float:
     """Length of an interval from instant t: to the end of the step, or until a normal of the pairs `found` (p, 2) may
-    have rotated by NORMAL_TURN. Normals rotate with polygons and segments, and as circles move around each other.
-    Islands of more than EXACT_CONTACTS contacts have one interval, as each costs a solve."""
+    have rotated by NORMAL_TURN. Normals rotate with polygons and segments, and as circles move around each other. Of
+    more than EXACT_CONTACTS pairs, and once hits make intervals short (`to_end_of_step`), normals do not limit it, as
+    each interval costs a solve."""
     BODY, LINK = A.BODY, A.LINK
     h = A.PAR.dt - t
     if found.shape[0] > intervals.EXACT_CONTACTS or to_end_of_step(A):

@@ -26,8 +26,8 @@ from .candidates import before_end, excess_way
 @nonallocating
 def left_to_lift(A: Scene, end: float) -> float:
     """Depth, in parts of the smallest body, up to which contacts are not lifted at the end of an interval: OVERLAP_LEFT
-    at the end of the step. Within it contacts are lifted only if that correction, which moves no point by more than
-    CORRECTION_STEP, may not reach: what a wall that turns fast carries along sinks in each interval."""
+    at the end of the step; before it half of what the correction at the end of the step, which moves no point by more
+    than CORRECTION_STEP, may lift: what a wall that turns fast carries along sinks in each interval until then."""
     return 0.5 * intervals.CORRECTION_STEP if before_end(A, end) else intervals.OVERLAP_LEFT
 
 
@@ -66,10 +66,10 @@ def known_depth(A: Scene, a: int, b: int) -> float:
 
 @nonallocating
 def room_of(A: Scene, a: int, b: int, gap: float) -> float:
-    """Way (length) that shapes a and b with this gap may close in an interval: the gap and `depth_limit`, of which from
-    half of the way to the middle of both on that part is left which is left of this way. So what rocks on a rounded
-    side, deeper and deeper, is integrated more finely, and does not rock through a wall. Joints may press bodies into
-    others with any force: with them it is the whole limit."""
+    """Way (length) that shapes a and b with this gap may close in an interval: an open gap and
+    `depth_limit`. Let w be the sum of their half widths: at depths from w/2 to w the limit falls linearly to
+    INTERVAL_DEPTH_LEAST. So what rocks on a rounded side, deeper and deeper, is integrated more finely, and does not
+    rock through a wall. Joints may press bodies into others with any force: with them it is the whole limit."""
     width, most = half_width(A, a) + half_width(A, b), depth_limit(A, a, b)
     held = max(A.MEMBER[A.LINK[a].owner].tied, A.MEMBER[A.LINK[b].owner].tied) >= 0
     if not held and width > 0.0 and 2.0 * (width + gap) < width:
@@ -80,11 +80,14 @@ def room_of(A: Scene, a: int, b: int, gap: float) -> float:
 @nonallocating
 def too_deep(A: Scene, a: int, b: int, gap: float, closing: float) -> float:
     """How many times too long an interval is in which a contact of shapes a and b with this gap closes by `closing`
-    (lengths); 0 if it is not."""
+    (lengths); 0 if it gets no deeper than INTERVAL_RETRY times its limit. What is more is at least so much that the
+    interval is solved again, also where most of the way is a gap."""
     if not closing > intervals.INTERVAL_DEPTH_LEAST * smaller(A, a, b):
         return 0.0
-    room = room_of(A, a, b, gap)
-    return max(closing / room, 1.01 * intervals.INTERVAL_RETRY) if closing > 1.5 * room - 0.5 * max(gap, 0.0) else 0.0
+    room, apart = room_of(A, a, b, gap), max(gap, 0.0)
+    if not closing > apart + intervals.INTERVAL_RETRY * (room - apart):
+        return 0.0
+    return max(closing / room, 1.01 * intervals.INTERVAL_RETRY)
 
 
 @nonallocating
@@ -100,8 +103,8 @@ def turns_corners(A: Scene, isle: Island, END: FloatArray, row: Row, a: int, b: 
 
 @kernel
 def too_deep_at_end(A: Scene, isle: Island, END: FloatArray, ROWS: Rows[Row], m: int, h: float, every: bool) -> float:
-    """How many times too long an interval h is at whose poses END (k, 3) a contact is deeper than its linear row
-    predicts; 0 if it is not. `every`: of all pairs, else of thin shapes and of those that turn."""
+    """How many times too long an interval h is in which a pair closes farther than `room_of`, by its gaps at the poses
+    END (k, 3); 0 if none does. `every`: of all pairs, else of thin shapes, and of shapes with corners that turn."""
     far, last = 0.0, -1
     for z in range(m):
         a, b = shapes_of(A, ROWS[z])
@@ -182,8 +185,8 @@ def deep_at_end(A: Scene, isle: Island, END: FloatArray, ROWS: Rows[Row], m: int
 
 @nonallocating
 def rises_too_far(A: Scene, ROWS: Rows[Row], L: FloatArray, VN: FloatArray, m: int, h: float) -> float:
-    """How many times too long an interval h is within which one of m contacts is too far open, if more
-    than INTERVAL_RETRY.
+    """How many times too long an interval h is within which one of m contacts is too far open; up to INTERVAL_RETRY it
+    is not.
 
     A contact with an impulse that opens with u at the start and closes with u+ at the end has a constant force in
     between, under which it rises to (1/2) h u^2 / (u - u+); in truth it is open, without a force, and rises to u^2/2a
@@ -200,7 +203,8 @@ def rises_too_far(A: Scene, ROWS: Rows[Row], L: FloatArray, VN: FloatArray, m: i
 
 @kernel
 def times_too_long(A: Scene, isle: Island, contacts: IslandContacts, m: int, h: float) -> float:
-    """How many times too long a solved interval h of m contacts is, if more than INTERVAL_RETRY."""
+    """How many times too long a solved interval h of m contacts is; up to INTERVAL_RETRY it is not. Poses at the end
+    tell what rows do not: of thin shapes, and of corners of bodies that turn."""
     ROWS, VN = contacts.ROWS, contacts.VN
     far = max(excess_way(A, ROWS, isle.V, VN, m, h), closes_too_far(A, isle, ROWS, VN, m, h))
     far = max(far, rises_too_far(A, ROWS, contacts.L, VN, m, h))

@@ -26,8 +26,9 @@ def hits_of(A: Scene, a: int, b: int) -> int:
 
 @nonallocating
 def most_hits(A: Scene, a: int, b: int) -> int:
-    """Largest number of hits in a step on the islands of shapes a and b: RESOLUTION; of lossy ones that divided by the
-    number of bodies, or by half of it where joints connect bodies, as a hit moves all of these at once."""
+    """Largest number of hits in a step on the islands of shapes a and b: RESOLUTION if the pair loses nothing; else
+    that over the bodies of the larger island, as each hit is a solve of all of them, and WORK_JOINTED times that with
+    joints."""
     if law(A, a, b)[0] >= 1.0:
         return RESOLUTION
     hung = jointed(A, A.LINK[a].owner) or jointed(A, A.LINK[b].owner)
@@ -62,18 +63,19 @@ def make_busy(A: Scene, i: int) -> None:
 
 @kernel
 def passed_over(A: Scene, a: int, b: int, t: float) -> bool:
-    """Whether an impact of shapes a and b at instant t on an island is passed over: the budget of the island is spent,
-    and they `stays_shallow` until the end of the step. Bodies of a lossy one then are `busy`. One without losses whose
-    contact persists from then on is not passed over: friction of other contacts makes such bounces ever shorter."""
-    i, j, lossy = A.LINK[a].owner, A.LINK[b].owner, law(A, a, b)[0] < 1.0
+    """Whether an impact of shapes a and b at instant t on an island is passed over: it was hit `most_hits` times, or
+    its budget is spent (`budget_spent`), and they `stays_shallow` until the end of the step. Bodies of a pair with
+    losses then are `busy`. One without losses whose contact persists from then on is not passed over: friction of other
+    contacts makes such bounces ever shorter."""
+    i, j, loses = A.LINK[a].owner, A.LINK[b].owner, law(A, a, b)[0] < 1.0
     spent = budget_spent(A, A.STATE[i].island) or budget_spent(A, A.STATE[j].island)
     if hits_of(A, a, b) < most_hits(A, a, b) and not spent:
         return False
-    if not lossy and not jointed(A, i) and not jointed(A, j) and persists_from(A, a, b, t):
+    if not loses and not jointed(A, i) and not jointed(A, j) and persists_from(A, a, b, t):
         return False
     if not stays_shallow(A, a, b, t, A.PAR.dt - t):
         return False
-    if lossy:
+    if loses:
         make_busy(A, i)
         make_busy(A, j)
     return True

@@ -41,8 +41,9 @@ def bodies_with_supports(A: Scene, isle: Island, n: int) -> int:
 def begin_interval(A: Scene, root: int, t: float) -> int:
     """Begin an interval of an island at instant t, at which all its bodies are. Bodies without contacts leave it.
 
-    The interval ends with the step, or earlier if it would exceed a limit of `excess_way` or `depths.closes_too_far`;
-    it is then solved again, shorter.
+    The interval ends with the step, or earlier: before a normal rotates far (`interval_length`), before bodies move far
+    by their present velocities (`interval_within_way`), or where slip ends (`slip_time`). If the motion that was solved
+    goes too far (`depths.times_too_long`), it is solved again, shorter; the last attempt is kept.
 
     Returns DONE, or PUSHES_FULL, which leaves everything as it was.
     """
@@ -51,7 +52,7 @@ def begin_interval(A: Scene, root: int, t: float) -> int:
         status, longest = try_interval(A, root, t, longest, attempt + 1 == INTERVAL_TRIES or A.COUNT.together > 0)
         if status != AGAIN:
             return status
-    return DONE
+    return DONE  # not reached: the last attempt is never AGAIN
 
 
 @nonallocating
@@ -121,7 +122,7 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
     shortest = A.PAR.dt / RESOLUTION
     if p > 0 and h > 0.0:
         m = step_island(A, isle, contacts, n, h, sweeps, least_reach, owed, rest_speed)
-        # With losses nothing bounces for long: there only a single contact ends one interval of a step so.
+        # Where slip turns round, intervals of elastic islands end; of lossy ones only a first of one contact.
         turns = COUNT.together == 0 and (not may_lose or (m == 1 and t == 0.0))
         sticks, stuck = not candidates.to_end_of_step(A), h
         if (turns or sticks) and OUT[0].at_rest == 0:

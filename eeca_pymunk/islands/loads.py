@@ -62,9 +62,9 @@ def add_loads(A: Scene, root: int, t: float, LOAD: FloatArray) -> None:
 
 @kernel
 def unsupported(A: Scene, root: int, t: float, factors: int) -> float:
-    """Speed which loads give the bodies of an island, at rest since the start of the step, up to instant t with the
-    impulses of its contacts. 0 if others can support these loads: then the impulses, which are those of a whole step,
-    are set to the mean forces found, by this number of factorisations at most."""
+    """Speed that the impulses of its contacts leave to an island, at rest since the start of the step, under its loads
+    up to instant t; 0 if some impulses balance these loads. Then the contacts get these, scaled to a whole step.
+    factors: factorisations for that, at most."""
     BODY, planned = A.BODY, A.PAR.planned / t
     MINE, GATHERED = members_of(A, root), take_places(A)
     n = len(MINE)

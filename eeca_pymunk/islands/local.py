@@ -190,7 +190,7 @@ def drop_contacts(A: Scene, low: int, high: int) -> None:
 @nonallocating
 def is_last_support(A: Scene, c: int, kept: int) -> bool:
     """Whether contact c presses on an island at rest, and none of its pair is among the first `kept` that have ended:
-    `support.renew_support` needs one."""
+    `loads.renew_support` needs one."""
     a, b, at_rest = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, False
     for shape in (a, b):
         j = A.LINK[shape].owner

@@ -83,7 +83,8 @@ def in_large_island(A: Scene, a: int, b: int) -> bool:
 
 @nonallocating
 def budget_spent(A: Scene, root: int) -> bool:
-    """Whether a large island is neither hit nor joined any more in this step, as bodies have been solved enough."""
+    """Whether bodies were solved so often in this step that a large island is not joined any more, and is hit only by
+    what would otherwise get too deep (`hits.passed_over`)."""
     if root < 0 or A.MEMBER[root].bodies < LARGE_ISLAND or A.MEMBER[root].open == 0:
         return False
     most = SOLVES_BEFORE_HASTE * (WORK_JOINTED if A.MEMBER[root].jointed > 0 else 1)
@@ -209,6 +210,7 @@ def persists(A: Scene, a: int, b: int, t: float) -> bool:
 @nonallocating
 def persists_from(A: Scene, a: int, b: int, t: float) -> bool:
     """Whether the contact of shapes a and b, which meet at instant t, persists from then on: their impact is the last.
+    The paths of their bodies then begin at t (`flight.move_to`).
 
     e < 1: all bounces of e |u| under the acceleration a_n of the gap end within the step, 2 e |u| <= -a_n (1 - e)
     (dt - t); or a body had n >= RESOLUTION impacts in the step, or e^n <= 1/RESOLUTION if no force or gravity acts on

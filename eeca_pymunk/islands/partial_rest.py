@@ -1,12 +1,12 @@
-"""Partial rest: the largest part of an island that static forces support, while its other bodies move.
+"""Partial rest: the slow bodies of a lossy island are at rest, if static forces hold them all, while its others move.
 
 Slow bodies are tested for static forces (`..contacts.statics`) under the contact forces of the others, which are solved
 first with the slow ones as fixed. If there are none, the island is solved as a whole, and the next test of these bodies
 is postponed.
 
 In large islands a few bodies always vibrate, and residuals of truncated solves move the others; both wake what is at
-rest beside them. Therefore a large island whose bodies are all slow is frozen first: if static forces hold it, they
-stop, and these forces are the start of the next solve. Losses within a step would end such small motions as well.
+rest beside them. Therefore every REST_RETRY steps a large island whose bodies are all slow is frozen first: if static
+forces hold it, they stop, and these forces are the start of the next solve. The kinetic energy counts as restitution.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ def test_rest(A: Scene, MINE: IntArray, V0: FloatArray, with_supports: int, free
 
     Args:
         MINE: its bodies (n,).  V0: (n, 3) their velocities, which the forces have to end too.
-        with_supports: number of bodies, with those of islands that support it.
+        with_supports: number of bodies by which the threshold of rest is chosen: those of the whole island.
         freezing: True to test without the contacts of other islands; bodies then stop, but remain awake, and may be
             tested for rest at once.
     """
@@ -125,8 +125,9 @@ def split_slow(A: Scene, MINE: IntArray, STAND: IntArray, MOVE: IntArray) -> int
 
 @kernel
 def rests_in_part(A: Scene, root: int) -> bool:
-    """At the start of a step: put the slow bodies of an island to rest, as far as static forces hold them, and solve
-    the others alone. Returns whether that was tried: the island then has been solved."""
+    """At the start of a step: put all slow bodies of a lossy island to rest, if static forces hold them, and solve the
+    others with these as fixed; if they do not, solve the whole island. Every REST_RETRY steps a large island is frozen
+    before. Returns whether that was tried: the island then has been solved."""
     BODY, STATE, MEMBER = A.BODY, A.STATE, A.MEMBER
     n = MEMBER[root].bodies
     if A.COUNT.may_support == 0 or A.PAR.pulled == 0.0 or MEMBER[root].open > 0 or STATE[root].island != root:

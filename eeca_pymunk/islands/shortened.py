@@ -98,8 +98,9 @@ def pressing_groups(A: Scene, MINE: IntArray, first: int, end: int) -> IntArray:
 @kernel
 def scale_impulses(A: Scene, root: int, t: float) -> None:
     """Scale the impulses of an island, whose bodies are at the start of its interval, so that they give no energy up to
-    instant t: q in the docstring of the module, or 0, for each group of bodies that press on each other. The energy is
-    that of a height, so that bodies sink by it: those whose contacts have given none keep their impulses."""
+    instant t: q in the docstring of the module, or 0, for each group of bodies that press on each other. Bodies
+    stood too high by the energy that was given, and sink by it; groups whose contacts have given none keep their
+    impulses."""
     first, end = contact_range(A, root)
     start = A.PUSHED[first].start
     MINE = number_bodies(A, root)

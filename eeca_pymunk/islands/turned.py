@@ -25,7 +25,7 @@ from .shortened import pressing_groups
 def angular_gain(A: Scene, c: int, t: float) -> float:
     """Angular momentum that contact c adds if its interval h is cut after s, since its arms are those of the middle of
     the whole: -(1/2) s (h - s) (v_b - v_a) x f, with the force f and v at the start of the interval. t: the instant of
-    the cut. Bodies without mobility do not count."""
+    the cut. All bodies move by impulses (`keep_angular_momentum`)."""
     pushed, BODY = A.PUSHED[c], A.BODY
     i, j = A.LINK[A.PUSHED_BY[c].a].owner, A.LINK[A.PUSHED_BY[c].b].owner
     s, h = t - pushed.start, pushed.length

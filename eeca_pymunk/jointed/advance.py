@@ -21,7 +21,7 @@ from ..newton.response import prepare_response
 from ..rows.build import push_contact
 from ..rows.inplace import copy
 from .bounded_rows import fill_rows, let_slip, list_rows, note_rows
-from .columns import BOTH, fill_group
+from .columns import WITH_TANGENTS, fill_group
 from .component import step_in_scratch
 from .gathered import find_places, gather_component, lead_component, number_of, rewind_joints
 from .groups import Groups
@@ -140,7 +140,7 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
             first = list_rows(A, J, B, s, h, motion.MEAN)
             if prepare_response(workspace(J, s), STEP, h):
                 PUSH = np.empty((size, 3))
-                fill_group(J, groups, C, g, INDEX, ROWS, m, PUSH, BOTH)
+                fill_group(J, groups, C, g, INDEX, ROWS, m, PUSH, WITH_TANGENTS)
                 fill_rows(J, groups, B, g, first, INDEX, PUSH)
             else:
                 B.USED[0] = first

@@ -21,7 +21,7 @@ from ..rows.build import invert
 from ..rows.columns import put_unjointed
 from .groups import Groups, least_mobility
 
-NORMALS, BOTH = 1, 2  # columns that `fill_group` computes: how many for each contact
+NORMALS, WITH_TANGENTS = 1, 2  # columns that `fill_group` computes: how many for each contact
 
 
 @kernel
@@ -102,7 +102,7 @@ def fill_group(
 
     Args:
         INDEX: (k,) places of bodies in the scratch of their component.  PUSH: (bodies of the component, 3) scratch.
-        ways: NORMALS, or BOTH, those of tangential impulses too.
+        ways: NORMALS, or WITH_TANGENTS, those of tangential impulses too.
     """
     s = groups.COMPONENT[g]
     for i in range(m):

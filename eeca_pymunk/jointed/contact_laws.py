@@ -29,9 +29,11 @@ from .columns import count_operations
 
 
 class Manner(NamedTuple):
-    """How contacts are solved: `exactly`, to round-off, if they are `elastic`, as none of them loses energy, or few
-    (`few_act`), so that homotopies solve them; else roughly. rounds: steps of the components, at most. sweeps: of one
-    solution of the laws, at most."""
+    """How contacts are solved: `exactly`, to round-off, or roughly. Few (`Interval.few`) are solved by homotopies,
+    exactly; others by sweeps, exactly if they are `elastic`, as none of them loses energy.
+
+    rounds: steps of the components, at most.  sweeps: of one solution of the laws, at most.
+    """
 
     elastic: bool
     exactly: bool
@@ -99,12 +101,13 @@ def solve_laws(
     S: Agreement, sweeps: int, first: bool,
 ) -> None:  # fmt: skip
     """Solve the laws of the contacts with the columns, from impulses L, which are replaced. FORESEEN: out, the
-    velocities by the columns. Of S are set `residual`, that of the laws or the change of velocities in the last sweep;
-    `converged`; and `rough`: whether the solution is by sweeps, as the exact one of the `first` motion has excessive
-    impulses.
+    velocities by the columns. If contacts are wedged (`solve_wedged`), their rows have no friction from then on, in
+    this interval. Of S are set `residual`, that of the laws or the change of velocities in the last sweep; `converged`;
+    and `rough`: whether the solution is by sweeps, as the exact one of the `first` motion has excessive impulses.
 
     Args:
-        D: bounded rows.  sweeps: before the first homotopy.  first: whether this is the first solution of the interval.
+        D: bounded rows.  sweeps: of few contacts before the first homotopy.
+        first: whether this is the first solution of the interval.
     """
     m, C, USED, problem = interval.m, interval.C, L.copy(), JointedProblem(interval.ROWS, interval.C, D, interval.m)
     BOTH = begin_laws(interval, problem, L, FORESEEN)

@@ -36,8 +36,8 @@ from .losses import lost
 
 @kernel
 def raise_gaps(problem: JointedProblem, n: int, GAPS: FloatArray, D: FloatArray, tolerance: float) -> FloatArray:
-    """Displacements D (k, 3) = Y mu with 0 <= mu _|_ g + G D >= 0, for contacts that are not left out, whose GAPS
-    (m,) become infinite; returns mu (m,)."""
+    """Displacements D (k, 3) = Y mu with 0 <= mu _|_ g + G D >= 0, for contacts that are not left out; GAPS (m,) of
+    those that are become infinite. Returns mu (m,). `fitting.stop_closing` has velocities in the place of gaps."""
     for i in range(problem.m):
         if problem.C.LEFT_OUT[i] != 0:
             GAPS[i] = np.inf
@@ -75,7 +75,7 @@ def lift_island(A: Scene, J: Joints, interval: Interval, L: FloatArray, root: in
 @nonallocating
 def keep_centre(D: FloatArray, IM: FloatArray, ONE: FlagArray) -> None:
     """Add a common displacement to D (k, 3) of the bodies with flags ONE (n,), with which their centre of mass stays:
-    columns that were fitted to motions (`secant`) do not conserve momentum exactly."""
+    columns that were fitted to motions (`broyden.fit_columns`) do not conserve momentum exactly."""
     mass = x = y = 0.0
     for i in range(len(ONE)):
         if ONE[i] != 0:
@@ -168,7 +168,8 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, L: FloatArray, bud
                 keep_centre(D, isle.IM, ONE)
     cost, part = -work_of_forces(isle.ACC, isle.IM, isle.II, n, D), admissible(D, isle.EXTENT, n, size)
     # Contacts that contradict one another give displacements without bound, of which only a part is taken. What closing
-    # joints costs is known only once it is done, so that there is no `part_for`: it has the other half of the budget.
+    # joints costs is known only once it is done, so that there is no `..contacts.correction.part_for`: it has the other
+    # half of the budget.
     round_off = CORRECTION_ROUND_OFF * work_of_forces(np.abs(isle.ACC), isle.IM, isle.II, n, np.abs(D))
     if cost * part > max(0.5 * budget, round_off * part):
         part = 0.5 * budget / cost

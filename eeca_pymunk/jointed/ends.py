@@ -62,7 +62,7 @@ def shorten(A: Scene, J: Joints, root: int, t: float) -> int:
     first, after = contact_range(A, root)
     if A.RESTING[root].until != t:
         take_back(A, root)
-        began, A.RESTING[root].strays, A.RESTING[root].until = A.BODY[root].since, 0.0, t
+        began, A.RESTING[root].excess_left, A.RESTING[root].until = A.BODY[root].since, 0.0, t
         for s in components_of(A, J, root):
             restore_joints(J, s)
         if t - began > A.PAR.instant:
@@ -97,10 +97,10 @@ def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
 @kernel
 def left_apart(A: Scene, J: Joints, root: int) -> bool:
     """Whether the interval of an island ends in a state that no impact should start from: joints are not closed, or
-    were opened by more than LINEAR_APART, or unsolved contacts are too deep."""
+    were opened by more than LINEAR_APART, or the interval is still too long (`Rest.excess_left`)."""
     if not under_way(A, root):
         return False
-    if A.RESTING[root].strays > INTERVAL_RETRY:
+    if A.RESTING[root].excess_left > INTERVAL_RETRY:
         return True
     for s in components_of(A, J, root):
         if (J.STEPPED[s].status == LINEAR and gave_way(J, s)) or J.STEPPED[s].gave > LINEAR_APART:

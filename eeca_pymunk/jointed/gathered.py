@@ -37,8 +37,9 @@ def restore_joints(J: Joints, s: int) -> None:
 @nonallocating
 def gave_way(J: Joints, s: int) -> bool:
     """Whether joints of component s hold worse in the interval that it has just taken than they did at its start:
-    elastically, or by linear rows. Those that contradict one another do so in an interval of any length; joints that
-    were elastic before hold worse only if they are softer, and more than twice as far apart."""
+    elastically, or by linear rows. Not if an earlier step has left some apart: these contradict one another in an
+    interval of any length. Joints that were elastic before hold worse only if they are softer, and more than twice as
+    far apart."""
     B = J.STEPPED[s]
     if B.status < ELASTIC:
         return False
@@ -57,7 +58,8 @@ def takes_shorter(A: Scene, J: Joints, s: int, t: float, h: float, effort: float
     were elastic before, have opened by no more than NEARLY_HELD, and the step has too little work for shorter ones, of
     the effort that this one took: joints that hold in an interval of no length, as of a chain that is straight up to
     round-off, would stop the step. Nor below GIVEN_INTERVAL: limits that contradict each other lie ever closer ahead of
-    what slows down between them, and intervals that end before would come to no end."""
+    what slows down between them, and intervals that end before would come to no end. Without work it is shorter, too:
+    the step then ends early."""
     first = J.COUPLING[J.COMPONENT[s].first_joint].joint  # has the compliance of all
     if h <= GIVEN_INTERVAL * A.PAR.planned or not gave_way(J, s):
         return False

@@ -45,8 +45,8 @@ def accelerations(interval: Interval, L: FloatArray, B: Bounded) -> tuple[FloatA
 
 @kernel
 def accelerations_of_joints(A: Scene, J: Joints, interval: Interval, X: Iterates, S: Agreement) -> FloatArray:
-    """`accelerations` after the first motion: springs and motors accelerate bodies, too. A guess is dropped if bodies
-    do not move as the columns say."""
+    """`accelerations` after the first motion: springs and motors accelerate bodies, too. The guess is dropped if bodies
+    would, by the columns, be faster than GUESS_SPEED times `top_speed` without it."""
     EFFECT, most = accelerations(interval, X.L, X.B)
     if most * interval.h > joints.GUESS_SPEED * S.top_speed and X.L.any():
         X.L[:] = 0.0
@@ -141,23 +141,25 @@ def solve_contacts(
 
     Each iteration steps the components under L, and ends if their velocities agree with FORESEEN, those that the
     contacts' laws gave before; else it solves these laws with the columns, for L and FORESEEN. Columns are computed
-    again in every CHORD-th iteration, else updated (`broyden`). A long interval (PROGRESS.length) is given up where a
-    component gives way or is not stepped as a whole; of many contacts only if the step has work for many shorter
-    intervals; and where contacts have not converged when its work is spent, or is for what replaces their impulses.
-    Iterations end in five ways:
+    again in every CHORD-th iteration, else updated (`broyden`). Solutions are *exact* if contacts are few or elastic
+    (`Manner`). A long interval (PROGRESS.length) is given up where a component gives way or is not stepped as a whole,
+    if solutions are not exact only if the step has work for many shorter intervals; and where contacts have not
+    converged when its work is spent, or is for what replaces their impulses. Iterations end in six ways:
 
     | because | `agreed` | `converged` | impulses |
     |---|---|---|---|
-    | contacts and components agree, and contacts gain no energy | yes | yes | L |
-    | of many contacts, the laws' residual is larger than their difference | yes | as the laws' last solution | L |
+    | contacts and components agree, and the lock can take what contacts gain | yes | yes | L |
+    | the same, but contacts gain more, friction is limited already, and the difference stalls | yes | yes | L |
+    | not exact: the laws' residual is larger than the difference | yes | as the laws' last solution | L |
     | the laws' last solution gives the present motion | yes | as that solution | USED, those of this motion |
-    | iterations or work are used up | no | as that solution, if it agrees | L, or BEST if these agreed better |
-    | of few contacts, work is used up by the step of the components | no | no | as below |
-    | of few contacts, CHORD iterations have come no nearer, or nowhere near | no | likewise | likewise |
+    | work or iterations are used up, or exact ones come no nearer | no | as that solution, if it agrees | L or BEST |
+    | few contacts: work is used up by the step of the components | no | no | those of `solve_gently` |
 
-    What comes no nearer agrees at `enough`: near rest velocities have to agree better, but less is a solution, too.
-    Where the exact solution of the first iteration is excessive, sweeps take its place (`rough`), and iterations go on.
-    Impulses that are excessive in the end, or not converged, are replaced (`solve_gently`). The lock is last.
+    Exact ones come no nearer after CHORD iterations that have not, or that are more than `scale` apart. BEST takes the
+    place of L if it agreed better. What comes no nearer agrees at `enough`: near rest velocities have to agree better,
+    but less is a solution, too. Where the exact solution of the first iteration is excessive, sweeps take its place
+    (`rough`), and iterations go on. Impulses that are excessive in the end are replaced (`solve_gently`), and those of
+    few contacts that have not converged; those of many are kept. The lock is last.
 
     Args:
         slow, fast, pull: see `..contacts.interval.speeds`.  owed: energy >= 0 that the island has to lose at least.

@@ -3,7 +3,7 @@
 Between both ends of an interval paths are parabolas, which are searched for impacts; joints only hold at the ends.
 Therefore bodies that may meet others turn by no more than half a radian, and leave their free flight by no more than
 half their size; contacts close by no more than their depth limit, and their points part by no more than half the
-size of the smaller body.
+size of the smaller body. These are the aims: an interval is solved again from INTERVAL_RETRY times as much on.
 """
 
 from __future__ import annotations
@@ -51,12 +51,12 @@ def may_meet_others(A: Scene, i: int, way: float, t: float, h: float, KEY: IntAr
 
 
 @nonallocating
-def strays(
+def excess_of_body(
     A: Scene, i: int, wx: float, wy: float, turned: float, V: FloatArray, ACC: FloatArray, t: float, h: float,
     KEY: IntArray, m: int,
 ) -> float:  # fmt: skip
-    """How many times too long an interval h from instant t is for the motion of body i; 0 if the body meets nothing but
-    the m contacts KEY.
+    """How many times too long an interval h from instant t is for the motion of body i; 0 if that is no more than
+    INTERVAL_RETRY, or the body meets nothing but the m contacts KEY.
 
     With way w = (wx, wy, turned), velocity V at the end and accelerations ACC without joints and contacts, the body
     leaves its free flight by w - h (v + h ACC/2) at the end. In between, the cubic through places and velocities at
@@ -85,7 +85,7 @@ def excess_alone(A: Scene, J: Joints, s: int, t: float, h: float) -> float:
             i, local = int(J.JOINED[first + w].body), J.LOCAL[w]
             b = A.BODY[i]
             wx, wy, turned = local.pose[0] - b.x, local.pose[1] - b.y, local.pose[2] - b.angle
-            far = max(far, strays(A, i, wx, wy, turned, local.v0, A.PULL[i], t, h, A.BLOCK, 0))
+            far = max(far, excess_of_body(A, i, wx, wy, turned, local.v0, A.PULL[i], t, h, A.BLOCK, 0))
     return far
 
 
@@ -93,7 +93,8 @@ def excess_alone(A: Scene, J: Joints, s: int, t: float, h: float) -> float:
 def within_sagitta(A: Scene, found: IntArray, t: float) -> float:
     """Length of an interval from instant t: to the end of the step, or until the points of a rotating wall leave their
     chord by SAGITTA times the size of a body that touches it, R (w h)^2 / 8 at a distance R from the wall's centre.
-    Bodies that friction and joints hold on such a wall creep by as much. `found` (p, 2): pairs of shapes."""
+    Bodies that friction and joints hold on such a wall creep by as much. At least dt/RESOLUTION. `found` (p, 2): pairs
+    of shapes."""
     most = 0.0
     for c in range(found.shape[0]):
         small = smaller(A, found[c, 0], found[c, 1])
@@ -121,15 +122,18 @@ def points_part(interval: Interval, L: FloatArray) -> float:
 
 @kernel
 def excess(A: Scene, interval: Interval, L: FloatArray) -> float:
-    """How many times too long an interval is for the motion of its bodies under impulses L (m, 2) of its contacts,
-    if more than INTERVAL_RETRY."""
+    """How many times too long an interval is for the motion of its bodies under impulses L (m, 2) of its contacts;
+    what is no more than INTERVAL_RETRY for single bodies counts as 0."""
     isle, _, ROWS, motion, _, m, n, t, h, _ = interval
     far, KEY = 0.0, np.empty(m, np.int64)
     for z in range(m):
         KEY[z] = ROWS[z].key
     for q in range(n):
         i, turned = int(isle.WHO[q]), motion.END[q, 2] - isle.POSE[q, 2]
-        far = max(far, strays(A, i, motion.WAY[q, 0], motion.WAY[q, 1], turned, motion.V[q], isle.ACC[q], t, h, KEY, m))
+        far = max(
+            far,
+            excess_of_body(A, i, motion.WAY[q, 0], motion.WAY[q, 1], turned, motion.V[q], isle.ACC[q], t, h, KEY, m),
+        )
     far = max(far, closes_too_far(A, isle, ROWS, motion.MEAN, m, h), points_part(interval, L))
     return max(far, too_deep_on_way(A, interval))
 
@@ -159,6 +163,6 @@ def forced_deeper(A: Scene, interval: Interval) -> int:
 
 @nonallocating
 def next_length(h: float, far: float) -> float:
-    """Largest length of the interval after one of length h that was `far` times too long (`excess`), INTERVAL_RETRY at
-    most: as its motion allows, up to INTERVAL_GROWTH times h."""
+    """Largest length of the interval after one of length h that was `far` <= INTERVAL_RETRY times too long (`excess`):
+    h/far, at least INTERVAL_RETRY h and at most INTERVAL_GROWTH h."""
     return h * max(INTERVAL_RETRY, 1.0 / max(far, 1.0 / INTERVAL_GROWTH))

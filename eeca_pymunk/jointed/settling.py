@@ -57,17 +57,25 @@ def solve_gently(
 
 @kernel
 def settle(A: Scene, J: Joints, interval: Interval, X: Iterates, S: Agreement) -> int:
-    """Replace impulses that are no solution, make the arms of contacts fit the motion, and lock its energy; what
-    `solve_contacts` returns."""
+    """What `solve_contacts` returns, after these stages:
+
+    1. Unless impulses are dropped below, components are stepped once more if iterations ended without agreement, or
+       joints were only near (PROGRESS.near); under BEST if L agrees no better. Only what agrees counts as converged.
+    2. A long interval that has not converged and has no work left is given up.
+    3. Impulses that are excessive, and those of few contacts that have not converged, are replaced.
+    4. The arms of contacts of a free island are made to fit the motion. After another motion their error `bent` is not
+       known: infinite.
+    5. The energy lock scales the impulses.
+    """
     isle, groups, ROWS, motion, _, m, n, _, h, few = interval
     L, B, free, FORESEEN, near = X.L, X.B, X.free, X.FORESEEN, J.PROGRESS.near
     J.PROGRESS.near = 0.0
-    # What is not solved is solved gently, or given up: the motion does not count.
-    gentle = S.agreed == 0 and S.converged == 0 and (few or gives_up(J, 0.0))
-    if not gentle and (S.agreed == 0 or near > 0.0):
+    # Impulses that will be replaced, or given up with the interval: their motion does not count.
+    dropped = S.agreed == 0 and S.converged == 0 and (few or gives_up(J, 0.0))
+    if not dropped and (S.agreed == 0 or near > 0.0):
         S.bent = np.inf if free else 0.0
         advance(A, J, interval, L, B, False, X.UNKNOWN)
-    if not gentle and S.agreed == 0:
+    if not dropped and S.agreed == 0:
         off = difference(interval, FORESEEN)
         if not off <= S.least:
             copy(L, X.BEST)
@@ -75,8 +83,8 @@ def settle(A: Scene, J: Joints, interval: Interval, X: Iterates, S: Agreement) -
         S.converged = int(S.converged > 0 and min(off, S.least) <= S.enough)
     if S.converged == 0 and gives_up(J, 0.0):
         return GIVEN_UP
-    # Impulses that are no solution may let walls do any work.
     S.top_speed = S.fast + S.pull * h
+    # Impulses that are no solution may let walls do any work.
     if excessive(L, m, isle.IM, n, S.top_speed) or (S.converged == 0 and few):
         if gives_up(J, work_of_columns(J, groups, ROWS, m)):
             return GIVEN_UP

@@ -64,12 +64,13 @@ def note_residual(A: Scene, interval: Interval, L: FloatArray, solved: bool, tol
 @kernel
 def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
     """Begin an interval of an island with joints at instant t, the instant of all its bodies: of length h, or shorter
-    if joints do not hold, work is short, or bodies move too far (`lengths`).
+    if joints do not hold, contacts are not solved, work is short, or bodies move too far (`lengths`).
 
     A length that was too long is not tried again at once: the next interval is at most INTERVAL_RETRY times as long as
     one that was shortened, and else as long as its motion allows, at most INTERVAL_GROWTH times (`Rest.longest`).
 
-    Returns DONE; or, with everything as before, PUSHES_FULL, or SPENT if the step has no work left.
+    Returns DONE; PUSHES_FULL, with everything as before; or SPENT if the step has no work left, with only
+    `Rest.longest` set.
     """
     rest, longest = A.RESTING[root], h
     # One as short as PAR.instant would be empty (`ends.end_here`).
@@ -81,7 +82,7 @@ def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
         h = max(h, least)
         last = attempt + 1 == INTERVAL_TRIES or A.COUNT.together > 0 or h <= least or (spent and attempt > 0)
         if t > 0.0 and spent:
-            rest.longest = max(h, tried / UNSOLVED_PART)  # where the next step begins
+            rest.longest = max(h, tried / UNSOLVED_PART)  # with which the next step begins
             return SPENT
         left = work_left(A, J)
         status, then = try_jointed(A, J, root, t, h, last)
@@ -98,7 +99,7 @@ def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
         # Whether there is no work for another attempt, which takes a part of this one's, as it is solved more easily.
         spent = UNSOLVED_PART * work_left(A, J) < left - work_left(A, J)
         tried, h = h, min(then, h / RESOLUTION) if spent else then
-    return DONE
+    return DONE  # not reached: the last attempt is never AGAIN
 
 
 @kernel
@@ -106,8 +107,8 @@ def excess_length(
     A: Scene, J: Joints, interval: Interval, L: FloatArray, root: int, effort: float, solved: bool, last: bool
 ) -> float:
     """How many times too long the interval of an island is, whose motion under impulses L of its contacts took so much
-    effort; also sets its `strays`. `iteration.solve_contacts` gives a long interval up before there is a motion, for
-    what only its iterations show: components that are not stepped as a whole, or work that is spent.
+    effort; also sets its `excess_left`. `iteration.solve_contacts` gives a long interval up before there is a motion,
+    for what only its iterations show: components that are not stepped as a whole, or work that is spent.
 
     Args:
         solved: whether contacts are.  last: whether no other attempt follows, see `try_jointed`.
@@ -117,10 +118,10 @@ def excess_length(
         if takes_shorter(A, J, s, interval.t, interval.h, effort):
             far = 2.0
     if last and solved:
-        A.RESTING[root].strays = too_deep_on_way(A, interval)
+        A.RESTING[root].excess_left = too_deep_on_way(A, interval)
         return far
-    strays = excess(A, interval, L)
-    A.RESTING[root].strays, far = 0.0 if solved else strays, max(far, strays)
+    long = excess(A, interval, L)
+    A.RESTING[root].excess_left, far = 0.0 if solved else long, max(far, long)
     if solved:
         return far
     # A motion that is no solution does not tell how long the interval may be. Contacts that are not solved in a long
@@ -133,7 +134,7 @@ def excess_length(
 def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) -> tuple[int, float]:
     """`begin_jointed` for one length h. Returns DONE and the length that the next interval may have; or, with nothing
     done, PUSHES_FULL, or AGAIN and the length to try next, if h is too long and this is not the `last` attempt."""
-    single, A.RESTING[root].strays = is_component(A, J, root), 0.0
+    single, A.RESTING[root].excess_left = is_component(A, J, root), 0.0
     if single and meets_no_other(A, root):
         return begin_alone(A, J, root, t, h, last)
     COUNT = A.COUNT

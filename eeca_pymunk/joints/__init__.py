@@ -13,5 +13,5 @@ converge, `unheld.py` steps that do not converge at all. `limits.py` meets bound
 
 Symbols and names of arguments are those of `..newton`. At one instant, for POSES and SPEEDS, h is 2: a change of v1
 then is the displacement, or the change of velocity, itself. *Left apart* are joints that an earlier step solved by
-linear rows has left off their targets, not an edit; `own` says that there are only such.
+linear rows has left off their targets, not an edit; `own` says that none is apart by an edit.
 """

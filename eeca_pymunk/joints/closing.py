@@ -39,7 +39,7 @@ def set_targets(W: Workspace, h: float) -> tuple[bool, bool, bool, bool]:
 
     Returns:
         edited: whether any joint was EDITED since the last step.  unknown: whether any is TAKEN_OVER.
-        apart: whether any is to be closed.  own: whether steps alone, and no edit, have left joints apart.
+        apart: whether any is to be closed.  own: whether no joint is apart by an edit, and no body was edited.
     """
     joint, hinge, link = W.J.JOINT, W.J.HINGE, W.link
     edited, unknown, apart, own = False, False, False, True
@@ -122,7 +122,7 @@ def keep_closed(W: Workspace) -> None:
 @nonallocating
 def close_joints(W: Workspace, h: float, ledger: JointLedger) -> bool:
     """Close joints that are apart by the share of one step, and make velocities fit them after an edit. The costs enter
-    the ledger of the step. Returns whether no edit has left joints apart."""
+    the ledger of the step. Returns `own`, see `set_targets`."""
     stored = springs_of(W)
     edited, unknown, apart, own = set_targets(W, h)
     if apart:

@@ -6,7 +6,7 @@
 | ELASTIC, LINEAR | all that nothing else explains (`close_ledger`) | `take_gain` | bodies move as one |
 
 Where the motion is too slow to pay what exact rows have given, bodies keep a gain that is round-off; of a larger one
-(`keeps_gain`) they move as one, too (`unheld.stop_joints`). `lock` takes energy from the motion. Before, momenta and
+(`gain_unpaid`) they move as one, too (`unheld.stop_joints`). `lock` takes energy from the motion. Before, momenta and
 ledger are put right (`clear_errors`). Without a frame of the supports (`frame`) these may do any work: the ledger gives
 it to them, and nothing is a gain.
 """
@@ -74,10 +74,10 @@ def repaid(W: Workspace, h: float, length: float, own: bool) -> bool:
 
 
 @nonallocating
-def keeps_gain(W: Workspace, h: float, length: float, own: bool) -> bool:
-    """Whether bodies keep what exact rows have given: more than GAIN_KEPT of what they had and of the work of forces
-    over the size `length` of the component, and more than that of the velocities which round-off of places is over h.
-    Not where joints need not be exact yet."""
+def gain_unpaid(W: Workspace, h: float, length: float, own: bool) -> bool:
+    """Whether exact rows have given energy that the motion could not pay: more than GAIN_KEPT of what bodies had and of
+    the work of forces over the size `length` of the component, and more than that of the velocities which round-off of
+    places is over h. Not where joints need not be exact yet (PROGRESS.near)."""
     if W.J.PROGRESS.near > 0.0:
         return False
     gain, mass = min(gain_of_rows(W, own), unexplained(W) - W.J.PART_LEDGER.frame_work), 0.0
@@ -124,14 +124,14 @@ def gain_taken(W: Workspace, h: float, length: float) -> bool:
 def take_gain(W: Workspace, h: float, length: float, status: int, own: bool, before: float) -> int:
     """Take from the motion what joints have given in a step of this status, if `repaid` has not; returns the status.
 
-    If the motion cannot pay, or linear rows leave joints farther apart than `before`, or pass a limit, all bodies move
-    as one: LINEAR.
-    `own`: see `repaid`.
+    If the motion cannot pay, or linear rows leave joints farther apart than `before` by more than LINEAR_APART, or pass
+    a limit, all bodies move as one: LINEAR; of elastic and linear steps only if supports do not move apart. `own`: see
+    `repaid`.
     """
     if fit_led(W):
         clear_errors(W, h, length)
     if status < ELASTIC:
-        fails = keeps_gain(W, h, length, own)
+        fails = gain_unpaid(W, h, length, own)
     else:
         fails = not gain_taken(W, h, length)
         if status == LINEAR and not fails:

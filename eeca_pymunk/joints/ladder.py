@@ -3,9 +3,9 @@
 Order 2 (midpoint with discrete gradients), or 4 by Suzuki's composition (s, s, 1 - 4s, s, s) h, s = 1/(4 - 4^(1/3)), if
 nothing in the component dissipates, drives or meets a limit. The rungs are tried in turn: ORDER_4, WHOLE_STEP, three of
 more parts, then those of elastic joints, from ELASTIC_RUNG on. PARTS_ON has their numbers of parts, COMPLIANCE_ON the
-compliances of joints over (h / ELASTIC_PARTS)^2: beside the bodies, joints are as soft in a part for any h. They begin
-at a billionth of what the bodies themselves give, and become ten times softer from rung to rung, the last time a
-hundred times.
+compliances of joints over (h / ELASTIC_PARTS)^2: beside the bodies, joints are as soft in a part for any h. The first
+elastic rung takes the step as a whole, the others in ELASTIC_PARTS. They begin at a billionth of what the bodies
+themselves give, and from the third on become ten times softer from rung to rung, the last time a hundred times.
 
 Joints that contradict one another (`contradicts`) become elastic at once: all rungs before would fail alike. Where a
 shorter interval is tried instead, exact joints take the step as a whole or not at all if the interval is long

@@ -82,7 +82,8 @@ class Member(Record):
     jointed: int  # of the root: 1 if joints hold bodies of its island
     rest: int  # AWAKE, AT_REST or CHANGED
     loaded: int  # of the root of an island at rest: 1 while support of moving neighbours is unverified
-    with_supports: int  # of the root: `bodies`, and those of the islands that support them
+    with_supports: int  # of the root: `bodies`, and those of the islands that support them; after a partial rest those
+    # of the whole island
     placed: int  # UNMOVED or MOVED while the body may overlap others deeply; else 0
     # Of the root of an island at rest: 1 while the islands below have not been tested with its new forces.
     new_forces: int
@@ -107,7 +108,8 @@ class Rest(Record):
     lost: float  # of the root: energy lost in this step; if negative, energy that later intervals have to take out
     until: float  # of the root: instant at which the interval ends
     longest: float  # in an island with joints: length with which its next interval is tried, at most
-    strays: float  # of its root: how many times too long its interval has remained (`..jointed.solve`)
-    rest_timer: float  # steps in a row at whose start the body was slow; negative after a failed test
+    excess_left: float  # of its root: how many times too long its interval still is; of one that is solved, and not
+    # tried again, for the depth of its contacts alone
+    rest_timer: float  # steps in a row at whose start the body was slow, in islands; -REST_RETRY after a failed test
     speed: float  # `Midstep`: bound of the speed of the body's points in the step, length/time
     rest_due: float  # `due` of a body at rest at the end of the last step

@@ -108,7 +108,7 @@ class Agreement(Record):
     pull: float  # the largest acceleration of a point, |a|
     owed: float  # energy >= 0 that the contacts have to lose at least
     top_speed: float  # the largest speed that impulses may explain
-    scale: float  # the unit of errors, and three tolerances (`..jointed.contact_laws.aims`)
+    scale: float  # the unit of errors, and three tolerances (`..jointed.contact_laws.set_aims`)
     agree: float
     enough: float
     fine: float
@@ -167,9 +167,9 @@ class JointLedger(Record):
     status: int  # of the step
 
 
-# Status of a component's step: joints hold to round-off; the step was taken in parts; joints gave way elastically in
-# some part; rows of the start held at mid-velocity in some part (energy conserved, joints to O(h^2)), or all bodies
-# moved as one (`..joints.lock.move_rigidly`).
+# Status of a component's step: joints hold to round-off; the step was taken in parts, or elastically with errors up to
+# NEARLY_HELD; joints gave way elastically in some part; rows of the start held at mid-velocity in some part (energy
+# conserved, joints to O(h^2)), or all bodies moved as one (`..joints.lock.move_rigidly`).
 EXACT, HALVED, ELASTIC, LINEAR = 0, 1, 2, 3
 # Length of an interval with contacts: no other attempt follows; a shorter one may, also for a LONG one, in which no
 # component is stepped in parts.

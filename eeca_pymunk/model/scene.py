@@ -26,7 +26,8 @@ class Scene(NamedTuple):
     contact), friction, surface velocity of b relative to a.
     HEAP_TIME, HEAP_BODY: the queue of events.  LOG: impulses of the step.
     BEGAN (n, 3): poses at the start of the step.  PULL (n, 3): accelerations without contacts.
-    PLACE (n,): -1, or a body's place in BLOCK (n,), a scratch list of bodies.
+    PLACE (n,): -1, or a number that a function gives to bodies as long as it runs: the place in BLOCK (n,), a scratch
+    list of bodies, or in an island. What needs it within another one calls `islands.local.take_places`.
     MEMBER, RESTING (n,): islands, and the state of their solves and rest.
     PUSHED_BY, PUSHED: contacts of the intervals, shapes and impulses, one row each.
     KEYS, FORCES: hash table of the forces of the last step (`..contacts.memory`).

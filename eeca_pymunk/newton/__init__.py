@@ -7,7 +7,7 @@ component responds to given impulses.
 Open first `rows.py`, the equations of all ten joints (`points.py`, `angles.py`, `springs.py`), then `solve.py`, the
 iteration. `systems.py` builds its linear systems from `entries.py` and `saturation.py` (bounded impulses);
 `banded.py` (bodies and rows together), `condensed.py` (bodies alone) and `dual.py` (rows alone) solve them. `motion.py`
-moves bodies by their velocities; `response.py` has the response to impulses.
+moves bodies by their velocities; `response.py` has the response to impulses, `effort.py` the work of all this.
 
 Symbols: h is the length of a step or of a part of one, v0 and v1 the velocities at its start and end, and x = h v_m = h
 (v0 + v1)/2 the *way* of a body, (length, length, rad). A joint has rows: functions g of the poses, lengths or angles,
@@ -19,7 +19,6 @@ moments, mobilities their inverses, roots the square roots of mobilities.
 Names of arguments: k a joint of the component, r one of its rows, i a body, c its direction (0 along x, 1 along y, 2
 about its centre of mass). `link`, `hinge`, `local` are the component's COUPLING, HINGE and LOCAL. `what` is solved for:
 STEP, POSES, SPEEDS or LINEAR_STEP; `system`: WHOLE, CONDENSED or DUAL; `build`: whether the matrix is built, or the
-right side alone; `give`: compliance of the joints over h², 0 if they hold exactly. `loops`: whether rows may be
-redundant, and begin without impulses. A row *acts* unless it is that of a limit on which its joint does not stand
-(`entries.acts`).
+right side alone; `give`: compliance of the joints over h², 0 if they hold exactly. A row *acts* unless it is that of a
+limit on which its joint does not stand (`entries.acts`).
 """

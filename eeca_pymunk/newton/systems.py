@@ -63,7 +63,8 @@ def first_iterate(W: Workspace, what: int, h: float) -> None:
 @inlined
 def put_exact(W: Workspace, what: int, k: int, h: float, give: float, system: int, build: bool) -> float:
     """Write the equations of the rows of joint k that are exact or elastic; returns the largest of their errors for
-    `what`. Rows that do not act, and bounded ones if bodies are still, are written as free."""
+    `what`. Rows that do not act are written as free; so are bounded ones if bodies are still, or their impulses
+    given."""
     hinge, link, local, band = W.J.HINGE, W.link, W.J.LOCAL, W.J.COMPONENT[W.s].band
     a, b = link[k].body[0], link[k].body[1]
     per, slopes, bounded, farthest = 2.0 / h, what == STEP, link[k].bounded != 0, 0.0
@@ -175,7 +176,8 @@ def linearise(
 
 @inlined
 def decompose(W: Workspace, what: int, system: int, epsilon: float, give: float) -> bool:
-    """Factor what `assemble` has built, in place, with `epsilon` on the diagonal of the rows; False if that fails."""
+    """Factor what `assemble` has built, in place, with `epsilon` on the diagonal of the rows, but for a condensed
+    system, whose rows have the stiffness `weight`; False if that fails."""
     matrix = W.J.MATRIX
     size, band = W.J.COMPONENT[W.s].unknowns, W.J.COMPONENT[W.s].band
     W.J.PROGRESS.effort += work_of_factors(system, W.J.COMPONENT[W.s])

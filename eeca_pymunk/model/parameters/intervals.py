@@ -17,7 +17,7 @@ SAGITTA = accuracy(0.01, "of the smaller body",
     "How far points of a turning wall leave their chord in one interval with joints. Larger: jointed bodies creep on "
     "such walls.")
 NORMAL_TURN = accuracy(0.1, "rad", "Rotation of a normal in one interval. Larger: longer intervals, coarser rolling.")
-EXACT_CONTACTS = heuristic(12, "contacts",
+EXACT_CONTACTS = heuristic(12, "contacts, or pairs that may touch",
     "Number up to which an interval ends where a slipping contact begins to stick or a normal has rotated.")
 STICK_TOLERANCE = accuracy(1e-06, "of the friction limit",
     "Friction and slip, relative to their bounds, below which a contact sticks.")
@@ -92,4 +92,4 @@ CORRECTION_SHARE = accuracy(0.99, "of a budget that does not suffice",
 CORRECTION_TRIES = work(5, "number",
     "How often a correction is made smaller, as moments of inertia change with it; the last one is none.")
 REPAY_ROUND_OFF = round_off(1e-13, "of the energies",
-    "Energy gain of a shortened interval below which its forces are not scaled.")
+    "Energy gain of a shortened interval below which its forces are not replaced.")
