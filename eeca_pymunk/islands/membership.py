@@ -26,7 +26,8 @@ def fixed_support(A: Scene, i: int) -> bool:
 
 @nonallocating
 def unite(A: Scene, i: int, j: int) -> int:
-    """Unite the islands of bodies i and j, or the bodies themselves; returns the root."""
+    """Unite the islands of bodies i and j, or the bodies themselves; with i = j a body becomes an island. Returns the
+    root."""
     MEMBER, STATE = A.MEMBER, A.STATE
     for k in (i, j):
         if STATE[k].island < 0:

@@ -51,8 +51,8 @@ def turns_over(W: Workspace, k: int) -> bool:
 @nonallocating
 def bend_rows(W: Workspace, k: int, h: float) -> None:
     """Give joint k the impulse of the whole step in `lam`, so that its rows turn with their force. A joint *pulls* if
-    its STIFF adds to the inertia of its bodies, and *presses* if it takes from it: lam is 0 if the joint presses and
-    all joints that press on one of its bodies would take more than TAUT of that body's `inertia`.
+    its STIFF adds to the inertia of its bodies, and *presses* if it takes from it: lam is 0 if the joint presses, and
+    it and the joints before it that press would take more than TAUT of the `inertia` of one of its bodies.
 
     The part that a full STIFF takes is bounded by the sums of its rows (Gershgorin), so that the remaining inertia of
     all bodies is positive. A groove's force turns with body a: its STIFF has both signs, whatever its diagonal. So has
@@ -60,15 +60,15 @@ def bend_rows(W: Workspace, k: int, h: float) -> None:
     """
     hinge, local = W.J.HINGE, W.J.LOCAL
     hinge[k].lam[0], hinge[k].lam[1] = hinge[k].total[0], hinge[k].total[1]
-    kind = joint_rows(W, k, h, True)
-    full = kind == STIFF_ALL
+    filled = joint_rows(W, k, h, True)
+    full = filled == STIFF_ALL
     pulls, slight = W.link[k].kind != GROOVE and not (full and W.link[k].kind < GEAR and turns_over(W, k)), True
-    for c in range(6 if kind != STIFF_NONE else 0):
+    for c in range(6 if filled != STIFF_NONE else 0):
         if full or c % 3 == 2:
             at = W.link[k].body[c // 3]
             pulls = pulls and W.J.STIFF[c, c] * local[at].mobility[c % 3] <= 0.0
             slight = slight and local[at].inertia[c % 3] - inertia_taken(W, k, c, full, h) >= 1.0 - TAUT
-    if kind == STIFF_NONE or not (pulls or slight):
+    if filled == STIFF_NONE or not (pulls or slight):
         hinge[k].lam[0] = hinge[k].lam[1] = 0.0
         return
     for c in range(0 if pulls else 6):
