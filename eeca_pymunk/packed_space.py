@@ -17,7 +17,7 @@ from .errors import NotFiniteError
 from .impacts.scene import EventLoop
 from .impacts.taking_over import Kept
 from .model.step import ENERGY, NOT_FINITE, OVERFLOW
-from .space.arbiters import Touches, touches_of
+from .space.arbiters import Touches
 from .space.checks import check_ignored
 from .space.decisions import NO_RULES, Decisions, Rules
 from .space.describe import describe
@@ -199,7 +199,7 @@ class PackedSpace(Stepper):
         if world is None or loop is None or not self._sync.is_ours():
             return None
         if self._shown[:2] != (loop.stamp, world):
-            self._shown = loop.stamp, world, Touches(touches_of(loop.events, world.shapes))
+            self._shown = loop.stamp, world, Touches(loop.events, world.shapes)
         return self._shown[2]
 
     def _adopt(self, world: World) -> World:

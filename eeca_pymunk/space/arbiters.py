@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import cached_property
 from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
@@ -41,20 +42,28 @@ class Touch(NamedTuple):
 
 
 class Touches:
-    """The pairs of a step.
+    """The pairs of a step, which are made of its impulses when they are first read.
 
-    Attributes:
-        all: the pairs, by the addresses of both shapes in Chipmunk.
+    Args:
+        EVENT: (m,) the impulses, kept.  shapes: by row.
     """
 
-    def __init__(self, found: Sequence[Touch]) -> None:
-        self.all: dict[frozenset[int], Touch] = {}
-        self._of: dict[pymunk.Body | None, dict[frozenset[int], Touch]] = {}
-        for touch in found:
-            key = frozenset((private_arbiters.shape_key(touch.a), private_arbiters.shape_key(touch.b)))
-            self.all[key] = touch
+    def __init__(self, EVENT: Rows[Impulse], shapes: Sequence[pymunk.Shape]) -> None:
+        self._made_of = EVENT, shapes
+
+    @cached_property
+    def all(self) -> dict[frozenset[int], Touch]:
+        """The pairs, by the addresses of both shapes in Chipmunk."""
+        key = private_arbiters.shape_key
+        return {frozenset((key(touch.a), key(touch.b))): touch for touch in touches_of(*self._made_of)}
+
+    @cached_property
+    def _of(self) -> dict[pymunk.Body | None, dict[frozenset[int], Touch]]:
+        found: dict[pymunk.Body | None, dict[frozenset[int], Touch]] = {}
+        for key, touch in self.all.items():
             for body in (touch.a.body, touch.b.body):
-                self._of.setdefault(body, {})[key] = touch
+                found.setdefault(body, {})[key] = touch
+        return found
 
     def of(self, body: pymunk.Body) -> dict[frozenset[int], Touch]:
         """The pairs of a body."""
@@ -62,7 +71,7 @@ class Touches:
 
 
 ReadTouches = Callable[[], "Touches | None"]
-_asleep: WeakKeyDictionary[pymunk.Body, dict[frozenset[int], Touch]] = WeakKeyDictionary()
+_asleep: WeakKeyDictionary[pymunk.Body, Touches] = WeakKeyDictionary()  # of the step in which they fell asleep
 _native_each: Any = pymunk.Body.each_arbiter
 _native_batch: Any = batch.get_space_arbiters
 _native_draw: Any = pymunk.Space.debug_draw
@@ -104,7 +113,10 @@ def keep_sleeping(space: pymunk.Space, bodies: Iterable[pymunk.Body]) -> None:
     pymunk's own."""
     last = _last(space)
     for body in bodies:
-        _asleep[body] = {} if last is None else last.of(body)
+        if last is None:
+            _asleep.pop(body, None)
+        else:
+            _asleep[body] = last
 
 
 def _last(space: pymunk.Space) -> Touches | None:
@@ -113,13 +125,18 @@ def _last(space: pymunk.Space) -> Touches | None:
     return None if read is None else read()
 
 
+def _of_sleeper(body: pymunk.Body) -> dict[frozenset[int], Touch]:
+    touches = _asleep.get(body)
+    return {} if touches is None else touches.of(body)
+
+
 def _kept(body: pymunk.Body, space: pymunk.Space) -> dict[frozenset[int], Touch]:
     """The pairs of a body that sleeps, or of one that is not dynamic with those that do."""
     if body.is_sleeping:
-        return _asleep.get(body, {})
+        return _of_sleeper(body)
     if body.body_type == pymunk.Body.DYNAMIC:
         return {}
-    found = (pair for one in private_sleep.asleep(space) for pair in _asleep.get(one, {}).items())
+    found = (pair for one in private_sleep.asleep(space) for pair in _of_sleeper(one).items())
     return {key: touch for key, touch in found if body in (touch.a.body, touch.b.body)}
 
 
