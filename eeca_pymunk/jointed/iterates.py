@@ -26,7 +26,7 @@ class Iterates(NamedTuple):
     B: bounded rows of the joints; NOW: their impulses in the motion before the last one.
     BEFORE: velocities of the motion before the last one.  FORESEEN: by the contacts' laws for the next one.  UNKNOWN
     (0, 3): in its place where none are foreseen.
-    SLIP: work of slip that friction may do beside Coulomb's law (`..rows.laws`).
+    SLIP: (m,) slips of the contacts before the interval, by which energy limits friction once rows have them again.
     manner: how contacts are solved.  free: whether nothing outside holds the island.
     """
 
