@@ -224,7 +224,7 @@ MUTATIONS = (
              "return np.tanh(damping * rate) / rate if rate > 0.0 else damping", "return damping",
              "joints/test_kinds.py", "stiff_damper"),
     Mutation("joints: a rope that pushes", "joints/correct.py", "if pull > max(", "if -pull > max(",
-             "joints/test_limits.py", "bead"),
+             "joints/test_limits.py", "thrown_inwards"),
     Mutation("joints: parts of order 4", "joints/ladder.py", "(1.0 - 4.0 * SUZUKI) * h", "(1.0 - 3.0 * SUZUKI) * h",
              "joints/test_linkages.py", "published_place"),
     # Ledger and lock.
