@@ -349,7 +349,7 @@ MUTATIONS = (
              "if near.distance > reach or near.nx * mx + near.ny * my >= 0.0:", "if True:",
              "islands/test_large_steps.py", "rod"),
     Mutation("corners: the side that looks out of them", "geometry/sides.py", "lx, ly = -sign * uy, sign * ux",
-             "lx, ly = sign * uy, -sign * ux", "islands/test_corners.py", "stays_in_its_corner"),
+             "lx, ly = sign * uy, -sign * ux", "islands/test_corners.py", "inner_side"),
     Mutation("manifold: rows stay as seen from the other shape", "geometry/manifold.py",
              "    reverse(OUT, count)\n    return count\n\n\n@nonallocating\ndef support",
              "    return count\n\n\n@nonallocating\ndef support",

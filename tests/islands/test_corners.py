@@ -12,6 +12,7 @@ import pytest
 import eeca_pymunk as ep
 from eeca_pymunk.compiled.records import rows
 from eeca_pymunk.geometry.corners import find_corners, thin
+from eeca_pymunk.geometry.sides import corner_of
 from eeca_pymunk.model.shapes import Corner, Link
 
 G = 9.81
@@ -56,6 +57,22 @@ def test_a_rod_that_slides_along_a_wall_stays_in_its_corner(
             x, y = body.local_to_world((end, 0.0))
             assert abs(x) < 5.0 + 1e-3
             assert y > -1e-3
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_the_inner_side_of_a_corner_is_that_of_what_lies_in_it(turned: bool) -> None:
+    """Of a floor that a wall stands on, whichever end of the floor is first: upwards; it counts as if it went on."""
+    space, floor = pymunk.Space(), ((-5.0, 0.0), (5.0, 0.0))
+    space.gravity = 0.0, -G
+    walls(space, space.static_body, floor[::-1] if turned else floor, ((5.0, 0.0), (5.0, 3.0)))
+    rod(space, 3.8, 0.2, 0.0)
+    stepper = ep.EECA(space)
+    stepper.step(1e-3)  # sides are remembered
+    assert stepper.event_loop is not None
+    W, end = np.array(floor[::-1] if turned else floor), 0 if turned else 1
+    found = corner_of(stepper.event_loop.scene, W, 1, 0, 4.8, 0.0, 0.0, 1.0, 0.25)
+    assert found == (end, 0.0, 1.0)
+    assert tuple(W[end]) == (5.25, 0.0)
 
 
 @pytest.mark.parametrize("along", [-3.9, 3.8, -6.2, 6.1])
