@@ -87,7 +87,7 @@ MUTATIONS = (
     Mutation("limits: what is apart has passed its bound", "joints/bounds.py", "if side * left > 0.0:", "if False:",
              "joints/test_limits.py", "left_apart"),
     Mutation("limits: round-off lets go", "joints/limits.py", "    if at_once:", "    if False:",
-             "joints/test_limits.py", "without_a_search"),
+             "joints/test_limits.py", "circles and 4e-13-1.0"),
     Mutation("limits: what is let go stays so, though it closes", "joints/correct.py",
              "release(W, SPEEDS) or hold_closing(W, False)", "release(W, SPEEDS)", "joints/test_bounds.py", "fit_all"),
     Mutation("limits: each hop is met", "joints/limits.py", "S.hopped < W.joints and bounds.", "False and bounds.",

@@ -104,8 +104,9 @@ def test_what_circles_at_the_end_of_its_rope_stays_there(slack: float, unit: flo
         weight = body(space, 2.0, 0.5 * unit**2, (0.0, (1.0 - slack) * unit))
         space.add(pymunk.SlideJoint(space.static_body, weight, (0, 0), (0, 0), 0.0, unit))
         weight.velocity = (10.0 * turns * unit, -1e-9 * turns * unit)
-        run(space, 0.1, 1)
+        parts = run(space, 0.1, 1).joints.PARTS
         assert weight.position.length < (1.0 + 1e-11) * unit
+        assert parts.events <= 2  # what round-off lets go is held at once, not met again and again
 
 
 def test_what_hangs_at_its_limit_is_held_without_a_search() -> None:
