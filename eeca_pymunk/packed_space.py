@@ -199,7 +199,7 @@ class PackedSpace(Stepper):
         if world is None or loop is None or not self._sync.is_ours():
             return None
         if self._shown[:2] != (loop.stamp, world):
-            self._shown = loop.stamp, world, Touches(loop.events, world.shapes)
+            self._shown = loop.stamp, world, Touches(loop.events, dict(enumerate(world.shapes)))
         return self._shown[2]
 
     def _adopt(self, world: World) -> World:

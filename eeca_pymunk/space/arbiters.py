@@ -13,12 +13,13 @@ m_t with the effective masses m.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import cached_property
 from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
+import numpy as np
 import pymunk
 from pymunk import batch
 
@@ -45,11 +46,25 @@ class Touches:
     """The pairs of a step, which are made of its impulses when they are first read.
 
     Args:
-        EVENT: (m,) the impulses, kept.  shapes: by row.
+        EVENT: (m,) the impulses, kept.  shapes: by row, at least all of the impulses.
     """
 
-    def __init__(self, EVENT: Rows[Impulse], shapes: Sequence[pymunk.Shape]) -> None:
+    def __init__(self, EVENT: Rows[Impulse], shapes: Mapping[int, pymunk.Shape]) -> None:
         self._made_of = EVENT, shapes
+
+    @cached_property
+    def _row(self) -> dict[pymunk.Shape, int]:
+        return {shape: row for row, shape in self._made_of[1].items()}
+
+    def alone(self, bodies: Iterable[pymunk.Body]) -> Touches:
+        """The pairs of these bodies, which keep neither the impulses nor the shapes of others."""
+        EVENT, shapes = self._made_of
+        mine = np.zeros(max(shapes, default=-1) + 1, bool)
+        mine[[self._row[shape] for body in bodies for shape in body.shapes if shape in self._row]] = True
+        first, second = (EVENT[name].astype(np.int64) for name in ("first", "second"))
+        kept = mine[first] | mine[second]
+        rows = {*first[kept].tolist(), *second[kept].tolist()}
+        return Touches(EVENT[kept], {row: shapes[row] for row in rows})
 
     @cached_property
     def all(self) -> dict[frozenset[int], Touch]:
@@ -86,7 +101,7 @@ def show_contacts() -> None:
         batch.get_space_arbiters = _get_space_arbiters
 
 
-def touches_of(EVENT: Rows[Impulse], shapes: Sequence[pymunk.Shape]) -> list[Touch]:
+def touches_of(EVENT: Rows[Impulse], shapes: Mapping[int, pymunk.Shape]) -> list[Touch]:
     """The pairs of the (m,) impulses of a step, in which a pair may come in either order; `shapes` by row."""
     found: dict[tuple[int, int], list[tuple[Any, float]]] = {}
     for e in EVENT:
@@ -111,12 +126,13 @@ def touches_of(EVENT: Rows[Impulse], shapes: Sequence[pymunk.Shape]) -> list[Tou
 def keep_sleeping(space: pymunk.Space, bodies: Iterable[pymunk.Body]) -> None:
     """Keep the pairs of the last step of bodies that have just fallen asleep, until they wake; none if that was
     pymunk's own."""
-    last = _last(space)
+    last, bodies = _last(space), list(bodies)
+    kept = None if last is None else last.alone(bodies)
     for body in bodies:
-        if last is None:
+        if kept is None:
             _asleep.pop(body, None)
         else:
-            _asleep[body] = last
+            _asleep[body] = kept
 
 
 def _last(space: pymunk.Space) -> Touches | None:

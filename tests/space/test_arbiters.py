@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gc
 import math
+import weakref
 
 import numpy as np
 import pymunk
@@ -297,3 +299,29 @@ def test_arbiters_of_sleeping_bodies_keep_the_impulses_of_their_last_step(others
     space.remove(pile[1], *pile[1].shapes)
     stepper.step(1 / 60)
     assert weights(pile[0]) == pytest.approx([10.0 / 60.0])
+
+
+def test_sleeping_bodies_keep_no_shapes_of_others() -> None:
+    """They keep the pairs of the step in which they fell asleep, but not what else there was in it."""
+    space = pymunk.Space()
+    space.gravity, space.sleep_time_threshold = (0.0, -10.0), 0.1
+    space.add(pymunk.Segment(space.static_body, (-9.0, 0.0), (9.0, 0.0), 0.0))
+    box, ball = pymunk.Body(1.0, 1.0), pymunk.Body(1.0, 1.0)
+    box.position, ball.position = (-3.0, 0.5), (3.0, 0.2)
+    space.add(box, pymunk.Poly.create_box(box, (1.0, 1.0)), ball, disk := pymunk.Circle(ball, 0.2))
+    ball.velocity = 1.0, 0.0  # without friction it slides on, and stays awake
+    stepper = ep.EECA(space)
+    while not box.is_sleeping:
+        stepper.step(1 / 60)
+    assert not ball.is_sleeping
+    mover = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    mover.position, mover.velocity = (0.0, 50.0), (1.0, 0.0)
+    space.add(mover, pymunk.Circle(mover, 0.2))
+    space.remove(ball, disk)
+    gone = weakref.ref(disk)
+    del disk, ball
+    for _ in range(3):
+        stepper.step(1 / 60)
+    assert weights(box) == [pytest.approx(10.0 / 60, rel=1e-9)]
+    gc.collect()
+    assert gone() is None
