@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from .runs import RunningStepper
 
-_MARK = 0x65656361_00000005
+_MARK = 0x65656361_00000006
 
 
 def get_state(stepper: RunningStepper) -> IntArray:

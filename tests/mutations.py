@@ -44,6 +44,16 @@ MUTATIONS = (
              "lifted_through or turned_through"),
     Mutation("straight chains: a kinematic body that moves", "space/joints.py", "None if any(at[3:]) else at[:3]",
              "at[:3]", "jointed/test_straight.py", "kinematic"),
+    # Kinematic bodies that their own functions accelerate.
+    Mutation("accelerated: contacts", "islands/local.py", "ACC[q, c] = A.PULL[i, c]",
+             "ACC[q, c] = A.PULL[i, c] if q < n else 0.0", "programs/test_accelerated.py", "bounces_and_rolls"),
+    Mutation("accelerated: joints", "jointed/gathered.py", "= A.PULL[body, 0], A.PULL[body, 1]", "= 0.0, 0.0",
+             "programs/test_accelerated.py", "hangs_on"),
+    Mutation("accelerated: work in a part of an interval", "islands/accounting.py",
+             "pushed.work_unaccelerated + f * (pushed.work - pushed.work_unaccelerated)", "pushed.work",
+             "programs/test_accelerated.py", "bounces_and_rolls"),
+    Mutation("accelerated: rest of what begins to move", "contacts/statics.py", " or FREE[i, c] != 0.0", "",
+             "programs/test_accelerated.py", "begins_to_rise"),
     # Arbiters.
     Mutation("arbiters: pairs in both orders", "space/arbiters.py", "append((e, -1.0))", "append((e, 1.0))",
              "space/test_arbiters.py", "both_orders"),

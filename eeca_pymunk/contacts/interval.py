@@ -79,7 +79,7 @@ def speeds(isle: Island, n: int, h: float, REACH: FloatArray) -> tuple[float, fl
         x /= mass
         y /= mass
     square, most, pull, wall_speed = 0.0, 0.0, 0.0, 0.0
-    for i in range(n):
+    for i in range(len(IM)):
         pull = max(pull, math.sqrt(ACC[i, 0] ** 2 + ACC[i, 1] ** 2) + abs(ACC[i, 2]) * EXTENT[i])
     for i in range(len(IM)):
         speed = math.sqrt((V[i, 0] - x) ** 2 + (V[i, 1] - y) ** 2) + abs(V[i, 2]) * EXTENT[i]

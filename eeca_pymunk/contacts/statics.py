@@ -32,14 +32,16 @@ from ..rows.inplace import copy
 
 
 @nonallocating
-def set_motionless(problem: Problem, V: FloatArray, close: float) -> bool:
+def set_motionless(problem: Problem, V: FloatArray, FREE: FloatArray, close: float) -> bool:
     """Set targets and velocities of the rows to 0, those without motion. Returns False if a surface or one of the fixed
-    bodies, from n on, moves; some rows may be changed then. close: length/time; a contact whose gap would have to close
-    faster keeps its target, which is below 0, and so exerts no static force."""
+    bodies, from n on, moves, with velocities V at the start and FREE at the end; some rows may be changed then. close:
+    length/time; a contact whose gap would have to close faster keeps its target, which is below 0, and so exerts no
+    static force."""
     ROWS, _, _, _, n, m = problem
     for i in range(n, len(V)):
-        if V[i, 0] != 0.0 or V[i, 1] != 0.0 or V[i, 2] != 0.0:
-            return False
+        for c in range(3):
+            if V[i, c] != 0.0 or FREE[i, c] != 0.0:
+                return False
     for i in range(m):
         if ROWS[i].surface != 0.0:
             return False
@@ -74,7 +76,7 @@ def find_static_forces(
     """
     n = problem.n
     VN[:] = 0.0
-    if not set_motionless(problem, V, min(rest_speed, REST_CANDIDATE_LARGE) * change):
+    if not set_motionless(problem, V, FREE, min(rest_speed, REST_CANDIDATE_LARGE) * change):
         return False, 0
     PULL, START = FREE - V, FREE - V
     for i in range(n):

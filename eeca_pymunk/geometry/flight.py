@@ -23,6 +23,12 @@ def has_velocity(body: Body) -> bool:
 
 
 @nonallocating
+def moves(body: Body) -> bool:
+    """Whether a body has a velocity at SINCE or an acceleration."""
+    return bool(has_velocity(body) or body.ax != 0.0 or body.ay != 0.0 or body.angular != 0.0)
+
+
+@nonallocating
 def fastest(body: Body) -> float:
     """Bound of the speed of a body's points at SINCE: that of its centre, and the one that its spin adds at most."""
     return norm(body.vx, body.vy) + abs(body.spin) * body.extent

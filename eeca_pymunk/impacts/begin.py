@@ -7,7 +7,7 @@ import math
 from ..arrays import IntArray
 from ..compiled import nonallocating
 from ..contacts.works import kinetic
-from ..geometry.flight import has_velocity
+from ..geometry.flight import moves
 from ..geometry.sides import forget_pair, forget_sides
 from ..islands.accounting import flag_pairs
 from ..islands.at_rest import stays_at_rest, unchanged
@@ -96,9 +96,9 @@ def begin(A: Scene, IDS: IntArray) -> None:
             even = False
             continue
         if BODY[i].inv_mass == 0.0:
-            A.MEMBER[i].rest = AWAKE if unchanged(A, i) else CHANGED
+            A.MEMBER[i].rest = CHANGED if moves(BODY[i]) or not unchanged(A, i) else AWAKE
             fixed += 1
-            if has_velocity(BODY[i]):
+            if moves(BODY[i]):
                 COUNT.closing = 1
         ax, ay = BODY[i].ax, BODY[i].ay
         A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2] = ax, ay, BODY[i].angular

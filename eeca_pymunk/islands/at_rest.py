@@ -32,7 +32,7 @@ def unchanged(A: Scene, i: int) -> bool:
 
 @nonallocating
 def moves_itself(A: Scene, i: int) -> bool:
-    """Whether body i, without mobility, has a velocity in this step, or the program has moved it."""
+    """Whether body i, without mobility, moves in this step, or the program has moved it."""
     return bool(A.BODY[i].inv_mass == 0.0 and A.MEMBER[i].rest == CHANGED)
 
 

@@ -23,8 +23,9 @@ from .membership import approach, fixed_support, persists, remembered_force
 @nonallocating
 def travel_bound(A: Scene, i: int, h: float) -> float:
     """Bound of the distance that points of body i travel in a time h, with a margin; for `Midstep`."""
-    pulled = 0.5 * A.PAR.pulled * h if A.BODY[i].inv_mass > 0.0 else 0.0
-    return intervals.TRAVEL_MARGIN * (A.RESTING[i].speed + pulled) * h
+    body = A.BODY[i]
+    pulled = A.PAR.pulled if body.inv_mass > 0.0 else norm(body.ax, body.ay) + abs(body.angular) * body.extent
+    return intervals.TRAVEL_MARGIN * (A.RESTING[i].speed + 0.5 * pulled * h) * h
 
 
 @kernel

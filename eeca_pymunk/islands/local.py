@@ -10,6 +10,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..contacts.memory import shapes_of, table_has_room
 from ..contacts.works import external_work
+from ..geometry.flight import pose, rate
 from ..model.bodies import AT_REST
 from ..model.contacts import ENDED
 from ..model.islands import Island, IslandContacts
@@ -101,16 +102,14 @@ def local_island(A: Scene, MINE: IntArray, found: IntArray, t: float) -> Island:
     for q in range(k):
         i = MINE[q] if q < n else FIXED[q - n]
         WHO[q] = i
-        s = t - BODY[i].since
-        V[q, 0], V[q, 1], V[q, 2] = BODY[i].vx, BODY[i].vy, BODY[i].spin
-        POSE[q, 0], POSE[q, 1] = BODY[i].x + V[q, 0] * s, BODY[i].y + V[q, 1] * s
-        POSE[q, 2] = BODY[i].angle + V[q, 2] * s
+        POSE[q, 0], POSE[q, 1], POSE[q, 2] = pose(BODY, i, t)
+        V[q, 0], V[q, 1], V[q, 2] = rate(BODY, i, t)
         IMS[q], IIS[q], SIZES[q] = BODY[i].inv_mass, BODY[i].inv_inertia, BODY[i].extent
+        LEVER[q] = 0.0 if spins_freely(A, i) else SIZES[q]
         if q >= n and IMS[q] > 0.0:
             # A body at rest that supports the island is fixed.
             V[q, 2], IMS[q], IIS[q] = 0.0, 0.0, 0.0
-        LEVER[q] = 0.0 if spins_freely(A, i) else SIZES[q]
-        if q < n:
+        else:
             for c in range(3):
                 ACC[q, c] = A.PULL[i, c]
     PAIRS = np.empty((p, 4), np.int64)
@@ -154,6 +153,7 @@ def write_contacts(
         pushed.un_before, pushed.ut_before = ROWS[z].un, ROWS[z].ut - ROWS[z].swung
         pushed.un_after, pushed.ut_after = normal_rate(ROWS[z], VN), tangent_rate(ROWS[z], VN) + ROWS[z].swung
         pushed.work = external_work(ROWS[z : z + 1], L[z : z + 1], isle.V, VN, isle.IM, isle.II, 1)
+        pushed.work_unaccelerated = external_work(ROWS[z : z + 1], L[z : z + 1], isle.V, isle.V, isle.IM, isle.II, 1)
         pushed.held = 0.0
         pushed.nx, pushed.ny = ROWS[z].nx, ROWS[z].ny
         # The point from its arms: r = arm_t n - arm_n t.

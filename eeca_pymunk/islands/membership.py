@@ -8,10 +8,10 @@ from ..arrays import IntArray
 from ..compiled import kernel, nonallocating
 from ..contacts.memory import find, key_of
 from ..contacts.targets import hardly_bounces
-from ..geometry.flight import move_to, opening_rate
+from ..geometry.flight import move_to, opening_rate, pose, rate
 from ..geometry.gap import gap_at
 from ..geometry.widths import smaller
-from ..model.bodies import AT_REST
+from ..model.bodies import AT_REST, Body
 from ..model.parameters.events import RESOLUTION, WORK_JOINTED
 from ..model.parameters.intervals import ELASTIC_REST, ELASTIC_REST_ON, LARGE_ISLAND, SOLVES_BEFORE_HASTE, TOUCH
 from ..model.scene import Scene
@@ -138,43 +138,36 @@ def remembered_force(A: Scene, a: int, b: int, since: float) -> tuple[float, flo
 
 
 @nonallocating
-def turning_acceleration(A: Scene, i: int, j: int, nx: float, ny: float, h: float) -> float:
-    """Acceleration (length/time²) with which bodies i and j close along n, from i to j, as one without mobility turns:
-    w² n.(x - c) - 2 w t.(v - v_c), with its spin w and centre c, and n to the other one. The path of i begins now, that
-    of j a time h earlier."""
-    BODY, sign = A.BODY, 1.0
-    if BODY[j].inv_mass == 0.0:
-        i, j, sign = j, i, -1.0
-    spin = BODY[i].spin
-    if BODY[i].inv_mass > 0.0 or spin == 0.0:
+def turning_acceleration(
+    i: Body, j: Body, nx: float, ny: float, x: float, y: float, vx: float, vy: float, spin_i: float, spin_j: float
+) -> float:  # fmt: skip
+    """Acceleration (length/time²) with which bodies i and j close along n, from i to j, as one without mobility turns
+    with spin w: w² n.x - 2 w t.v, with the way x and the velocity v from i to j, and t = z x n."""
+    spin = spin_j if j.inv_mass == 0.0 else spin_i
+    if (i.inv_mass > 0.0 and j.inv_mass > 0.0) or spin == 0.0:
         return 0.0
-    vx, vy = BODY[j].vx - BODY[i].vx, BODY[j].vy - BODY[i].vy
-    x, y = BODY[j].x - BODY[i].x, BODY[j].y - BODY[i].y
-    x, y = (x + BODY[j].vx * h, y + BODY[j].vy * h) if sign > 0.0 else (x - BODY[i].vx * h, y - BODY[i].vy * h)
-    return sign * spin * (spin * (nx * x + ny * y) - 2.0 * (nx * vy - ny * vx))
+    return spin * (spin * (nx * x + ny * y) - 2.0 * (nx * vy - ny * vx))
 
 
 @nonallocating
 def approach(A: Scene, a: int, b: int, t: float) -> tuple[float, float, float, float, float]:
     """Gap (length) of shapes a and b at instant t, its rate u (length/time, negative when closing), the accelerations
     (length/time²) with which it closes without contacts and on the present paths, both with `turning_acceleration`, and
-    the effective mass of the contact. The path of a's body begins at t; that of b's body may begin earlier, and is
-    extrapolated to t without its acceleration."""
+    the effective mass of the contact. The path of a's body begins at t; that of b's body may begin earlier."""
     BODY, PULL, i, j = A.BODY, A.PULL, A.LINK[a].owner, A.LINK[b].owner
-    h = t - BODY[j].since
-    g, nx, ny, px, py = gap_at(
-        A, a, BODY[i].x, BODY[i].y, BODY[i].angle,
-        b, BODY[j].x + BODY[j].vx * h, BODY[j].y + BODY[j].vy * h, BODY[j].angle + BODY[j].spin * h,
-    )  # fmt: skip
-    xi, yi, xj, yj = (px - BODY[i].x, py - BODY[i].y, px - BODY[j].x - BODY[j].vx * h, py - BODY[j].y - BODY[j].vy * h)
+    x, y, angle = pose(BODY, j, t)
+    g, nx, ny, px, py = gap_at(A, a, BODY[i].x, BODY[i].y, BODY[i].angle, b, x, y, angle)
+    xi, yi, xj, yj = px - BODY[i].x, py - BODY[i].y, px - x, py - y
     arm_i, arm_j = xi * ny - yi * nx, xj * ny - yj * nx
-    one, two = (BODY[i].vx, BODY[i].vy, BODY[i].spin), (BODY[j].vx, BODY[j].vy, BODY[j].spin)
+    one, two = (BODY[i].vx, BODY[i].vy, BODY[i].spin), rate(BODY, j, t)
     u = opening_rate(nx, ny, arm_i, arm_j, one, two)
     closing = nx * (PULL[i, 0] - PULL[j, 0]) + ny * (PULL[i, 1] - PULL[j, 1])
     closing += arm_i * PULL[i, 2] - arm_j * PULL[j, 2]
     present = nx * (BODY[i].ax - BODY[j].ax) + ny * (BODY[i].ay - BODY[j].ay)
     present += arm_i * BODY[i].angular - arm_j * BODY[j].angular
-    turns = turning_acceleration(A, i, j, nx, ny, h)
+    turns = turning_acceleration(
+        BODY[i], BODY[j], nx, ny, x - BODY[i].x, y - BODY[i].y, two[0] - one[0], two[1] - one[1], one[2], two[2]
+    )
     of_spins = BODY[i].inv_inertia * arm_i * arm_i + BODY[j].inv_inertia * arm_j * arm_j
     mass = 1.0 / (BODY[i].inv_mass + BODY[j].inv_mass + of_spins)
     return g, u, closing + turns, present + turns, mass

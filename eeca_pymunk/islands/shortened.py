@@ -128,7 +128,8 @@ def scale_impulses(A: Scene, root: int, t: float) -> None:
         pushed, part = A.PUSHED[c], Q[group_of(A, GROUP, c)]
         if part != 1.0:
             pushed.normal, pushed.tangential = part * pushed.normal, part * pushed.tangential
-            pushed.work, pushed.change = part * pushed.work, part * pushed.change
+            pushed.work, pushed.work_unaccelerated = part * pushed.work, part * pushed.work_unaccelerated
+            pushed.change *= part
             pushed.un_before, pushed.un_after, pushed.ut_before, pushed.ut_after = 0.0, 0.0, 0.0, 0.0
     clear_places(A, MINE)
 

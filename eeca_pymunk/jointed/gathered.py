@@ -115,15 +115,17 @@ def gather_fixed(A: Scene, J: Joints, s: int, i: int, t: float) -> bool:
     if member.freedoms > 0:
         return False
     body = int(member.body)
+    for c in range(3):
+        local.acceleration[c] = local.mobility[c] = 0.0
     if body < n:
         local.pose[0], local.pose[1], local.pose[2] = pose(A.BODY, body, t)
         local.v0[0], local.v0[1], local.v0[2] = rate(A.BODY, body, t)
+        local.acceleration[0], local.acceleration[1] = A.PULL[body, 0], A.PULL[body, 1]
+        local.acceleration[2] = A.PULL[body, 2]
     else:
         P = J.PARTNER[body - n]
         local.pose[0], local.pose[1], local.pose[2] = P.x, P.y, P.angle
         local.v0[0], local.v0[1], local.v0[2] = P.vx, P.vy, P.spin
-    for c in range(3):
-        local.acceleration[c] = local.mobility[c] = 0.0
     return True
 
 

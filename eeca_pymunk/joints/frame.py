@@ -60,7 +60,8 @@ def has_prescribed_motion(W: Workspace) -> bool:
     whether joints act on it or not."""
     for i in range(W.bodies):
         for c in range(3):
-            if not W.J.LOCAL[i].mobility[c] > 0.0 and W.J.LOCAL[i].v0[c] != 0.0:
+            body = W.J.LOCAL[i]
+            if not body.mobility[c] > 0.0 and (body.v0[c] != 0.0 or body.acceleration[c] != 0.0):
                 return True
     return False
 
@@ -119,12 +120,13 @@ def frame_of(W: Workspace) -> Frame:
     for i in range(W.bodies):
         body = local[i]
         if supports(body, 2):
-            rigid = rigid and not (turns and body.v0[2] != spin)
+            rigid = rigid and not (turns and body.v0[2] != spin) and body.acceleration[2] == 0.0
             spin, turns = body.v0[2], True
     for i in range(W.bodies):
         body = local[i]
         if supports(body, 0):
             rigid = rigid and not (hangs and (body.v0[0] != vx or body.v0[1] != vy))
+            rigid = rigid and body.acceleration[0] == 0.0 and body.acceleration[1] == 0.0
             rigid = rigid and not (hangs and spin != 0.0 and (body.pose[0] != x or body.pose[1] != y))
             x, y, vx, vy, hangs = body.pose[0], body.pose[1], body.v0[0], body.v0[1], True
     if rigid and not hangs:

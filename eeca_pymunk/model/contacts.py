@@ -56,6 +56,7 @@ class Pushed(Record):
     ut_before: float  # tangential velocity likewise
     ut_after: float
     work: float  # energy that kinematic bodies and moving surfaces give over the interval
+    work_unaccelerated: float  # the same if these kept their velocities of its start
     # Normal impulse at the end of the interval by which velocities fitted to joints do not close the contact; its loss
     # is in the ledger.
     held: float

@@ -160,8 +160,10 @@ class Outside:
         contacts = report.contacts
         box = contacts.bodies.index(self.box)
         carried = (contacts.body_a == box) | (contacts.body_b == box)
-        far = np.hypot(*(contacts.point - self.place).T) + self.speed * dt
-        fast = self.belt + carried * (self.speed + self.spin * far)
+        speed = max(self.speed, self.box.velocity.length)
+        spin = max(self.spin, abs(self.box.angular_velocity))
+        far = np.hypot(*(contacts.point - self.place).T) + speed * dt
+        fast = self.belt + carried * (speed + spin * far)
         total = float(np.hypot(report.impulse, report.friction) @ fast)
         weight = sum(b.mass for b in self.space.bodies if b is not self.box) * self.space.gravity.length
         depth = max(self.depth, -min(contacts.gap, default=0.0))

@@ -17,6 +17,14 @@ KINDS: dict[str, float] = {
     "flat": 0.3,  # up to 20 flat polygons of up to 100 corners
     "posts": 0.3,  # planks on pivots without slack between two kinematic bodies at rest, where joints are
 }
+SWINGS = 0.3  # share, of the containers that move, of those that their own velocity function accelerates
+STRENGTH = 9.0  # 1/s^2: acceleration of such a container for its way from where it began
+
+
+def swing(body: pymunk.Body, gravity: tuple[float, float], damping: float, dt: float) -> None:
+    """A velocity function of a kinematic body: it oscillates about the origin and the angle 0."""
+    body.velocity -= STRENGTH * dt * body.position
+    body.angular_velocity -= STRENGTH * dt * body.angle
 
 
 class Rare(Varied):
@@ -32,6 +40,14 @@ class Rare(Varied):
             self._flatten(C)
         if "posts" in self.has and self.space.constraints and not self.turns:
             self._span(C)
+        if self.turns and C.random() < SWINGS:
+            self.has.add("swings")
+            super().drive(0)
+            self.box.velocity_func = swing
+
+    def drive(self, k: int) -> None:
+        if "swings" not in self.has:
+            super().drive(k)
 
     def _keep(self, body: pymunk.Body, shape: pymunk.Shape, least: float) -> pymunk.Body:
         """Add a body of this least size."""
