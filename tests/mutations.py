@@ -42,8 +42,9 @@ MUTATIONS = (
              "            if through and k > n:", "            through = False\n            if through and k > n:",
              "islands/test_lifting.py",
              "lifted_through or turned_through"),
-    Mutation("straight chains: a kinematic body that moves", "space/joints.py", "None if any(at[3:]) else at[:3]",
-             "at[:3]", "jointed/test_straight.py", "kinematic"),
+    Mutation("straight chains: a kinematic body that moves", "space/joints.py",
+             "None if any((at := state[place, :6].tolist())[3:]) else at[:3]", "state[place, :3].tolist()",
+             "jointed/test_straight.py", "kinematic"),
     # Kinematic bodies that their own functions accelerate.
     Mutation("accelerated: contacts", "islands/local.py", "ACC[q, c] = A.PULL[i, c]",
              "ACC[q, c] = A.PULL[i, c] if q < n else 0.0", "programs/test_accelerated.py", "bounces_and_rolls"),
@@ -51,7 +52,7 @@ MUTATIONS = (
              "programs/test_accelerated.py", "hangs_on"),
     Mutation("accelerated: work in a part of an interval", "islands/accounting.py",
              "pushed.work_unaccelerated + f * (pushed.work - pushed.work_unaccelerated)", "pushed.work",
-             "programs/test_accelerated.py", "bounces_and_rolls"),
+             "programs/test_accelerated.py", "comes_to_rest"),
     Mutation("accelerated: rest of what begins to move", "contacts/statics.py", " or FREE[i, c] != 0.0", "",
              "programs/test_accelerated.py", "begins_to_rise"),
     # Arbiters.

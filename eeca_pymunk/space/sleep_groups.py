@@ -21,34 +21,35 @@ from .arbiters import keep_sleeping
 from .bodies import Bodies
 from .edits import SLEEP, record
 from .late_shapes import make_arbiters
+from .private import batch as private_batch
 from .private import sleep as private_sleep
-from .private import spaces as private
 
 _leaders: weakref.WeakKeyDictionary[pymunk.Body, weakref.ref[pymunk.Body]] = weakref.WeakKeyDictionary()
 
 
-def touching(space: pymunk.Space) -> list[tuple[pymunk.Body, pymunk.Body]]:
-    """Pairs of bodies that touch according to pymunk."""
+def touching(space: pymunk.Space, ids: IntArray) -> IntArray:
+    """(n, 2) which of the bodies with these ids (N,), all that are known, touch according to pymunk."""
     make_arbiters(space)
-    return private.touching(space)
+    pairs, order = private_batch.touching(space), np.argsort(ids)
+    found = order[np.searchsorted(ids, pairs, sorter=order) % len(ids)]
+    known: IntArray = found[(ids[found] == pairs).all(axis=1)]
+    return known
 
 
 def resting_groups(
-    space: pymunk.Space, bodies: Bodies, ready: IntArray, contacts: Contacts,
+    space: pymunk.Space, bodies: Bodies, ids: IntArray, ready: IntArray, contacts: Contacts,
     jointed: Iterable[tuple[pymunk.Body, pymunk.Body]],
 ) -> list[list[pymunk.Body]]:  # fmt: skip
     """The groups of bodies that touch or are jointed, all of which may fall asleep.
 
     Args:
-        ready: (N,) 1 for bodies that have been at rest for long enough.  contacts: of the last step.
-        jointed: the bodies of each constraint.
+        ids: (N,) of the bodies.  ready: (N,) 1 for those that have been at rest for long enough.
+        contacts: of the last step.  jointed: the bodies of each constraint.
     """
     row = bodies.row
+    joined = np.array([(row[a], row[b]) for a, b in jointed if a in row and b in row], np.int64).reshape(-1, 2)
     # pymunk's contacts count too: it keeps one with a sleeping body forever, so that both bodies must sleep or neither.
-    more = [(row[a], row[b]) for a, b in (*jointed, *touching(space)) if a in row and b in row]
-    pairs = np.concatenate(
-        (np.column_stack((contacts.body_a, contacts.body_b)), np.array(more, np.int64).reshape(-1, 2))
-    )
+    pairs = np.concatenate((np.column_stack((contacts.body_a, contacts.body_b)), joined, touching(space, ids)))
     group = np.zeros(len(bodies), np.int64)
     connect(pairs, bodies.VALUES["kind"].astype(np.int64), ready, group)
     resting: dict[int, list[pymunk.Body]] = {}
@@ -105,7 +106,9 @@ def wake_neighbours(space: pymunk.Space) -> None:
     under pymunk, forever."""
     if not private_sleep.asleep(space):
         return
-    pairs = [*((c.a, c.b) for c in space.constraints), *touching(space)]
+    known = [*space.bodies, space.static_body]
+    touch = touching(space, np.array([body.id for body in known], np.int64))
+    pairs = [*((c.a, c.b) for c in space.constraints), *((known[i], known[j]) for i, j in touch.tolist())]
     bodies = {body for pair in pairs for body in pair}
     again = True
     while again:

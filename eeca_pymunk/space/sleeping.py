@@ -27,7 +27,7 @@ import pymunk
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..compiled.records import over
-from ..layout import BODY_ROW
+from ..layout import BODY_ROW, KNOWN_ID
 from ..model.contacts import Impulse
 from ..model.parameters.rest import SLEEP_PATIENCE, SLEEP_RETRY, SLEEP_SHARE, SLEEP_SPEED
 from ..report import Contacts, StepReport
@@ -240,7 +240,8 @@ class Sleep:
         if len(ready) < enough or len(self._left_alone(ready, dt)) < enough:
             return
         pairs = () if joints is None else joints.pairs.values()
-        groups = self._left_alone(resting_groups(self.space, bodies, self._ready, report.contacts, pairs), dt)
+        ids = self.world.IDS[KNOWN_ID]
+        groups = self._left_alone(resting_groups(self.space, bodies, ids, self._ready, report.contacts, pairs), dt)
         if sum(map(len, groups)) < enough:
             return
         self._since = 0

@@ -148,7 +148,7 @@ class Sync:
                 private_arbiters.set_impulse(arbiter, None)
         slept = self._asleep and world.bodies.in_order()
         # Writing all bodies would wake those that sleep; those that came since the last reading have no room.
-        all_known = not world.sleeps and len(self.space.bodies) == len(world.bodies) - 1
+        all_known = not self._asleep and world.same_things() and len(self.space.bodies) == len(world.bodies) - 1
         stop, go_on = self._stopper if all_known else private_rest.stopper(self.space)
         stop()
         then = [go_on]

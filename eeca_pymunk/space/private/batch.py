@@ -20,6 +20,7 @@ TYPES = ("pmBatchedData *", "pmFloatArray *", "pmIntArray *")
 _MOTION = batch.BodyFields.VELOCITY | batch.BodyFields.ANGULAR_VELOCITY
 _MOTION |= batch.BodyFields.FORCE | batch.BodyFields.TORQUE
 _BOTH_IDS = batch.ArbiterFields.BODY_A_ID | batch.ArbiterFields.BODY_B_ID
+_COUNT = batch.ArbiterFields.CONTACT_COUNT
 # The readers and writers of whole spaces have attributes: `values` and `numbers`, the C arrays to which a later call
 # may give other memory (`last`), and `held`, the present memory, which is not freed before.
 
@@ -121,17 +122,29 @@ def stopper(space: pymunk.Space, count: int) -> tuple[Callable[[], None], Callab
     return read_and_stop, go_on
 
 
-def arbiter_bodies(space: pymunk.Space) -> list[int]:
-    """For each arbiter that pymunk keeps, the exclusive or of the ids of both bodies."""
+def _of_arbiters(space: pymunk.Space, fields: batch.ArbiterFields, columns: int) -> IntArray:
+    """(n, columns) these integers of each arbiter that pymunk keeps."""
     floats, numbers = ffi.new("pmFloatArray *"), lib.pmIntArrayNew(0)
     try:
-        data = batched(_BOTH_IDS, floats, numbers)
+        data = batched(fields, floats, numbers)
         lib.cpSpaceEachCachedArbiter(space._space, ffi.addressof(lib, "pmSpaceArbiterIteratorFuncBatched"), data)
-        ids = np.frombuffer(ffi.buffer(numbers.arr, 8 * numbers.num), np.int64)
-        found: list[int] = (ids[::2] ^ ids[1::2]).tolist()
+        return np.frombuffer(ffi.buffer(numbers.arr, 8 * numbers.num), np.int64).reshape(-1, columns).copy()
     finally:
         lib.pmIntArrayFree(numbers)
+
+
+def arbiter_bodies(space: pymunk.Space) -> list[int]:
+    """For each arbiter that pymunk keeps, the exclusive or of the ids of both bodies."""
+    ids = _of_arbiters(space, _BOTH_IDS, 2)
+    found: list[int] = (ids[:, 0] ^ ids[:, 1]).tolist()
     return found
+
+
+def touching(space: pymunk.Space) -> IntArray:
+    """(n, 2) ids of the pairs of bodies that touched in pymunk's last step, or have woken since: arbiters that pymunk
+    only remembers have no contact."""
+    found = _of_arbiters(space, _BOTH_IDS | _COUNT, 3)
+    return found[found[:, 2] > 0, :2]
 
 
 def _one_by_one(

@@ -108,13 +108,6 @@ def raw_arbiters(space: pymunk.Space) -> list[Any]:
     return list(space._get_arbiters())
 
 
-def touching(space: pymunk.Space) -> list[tuple[pymunk.Body, pymunk.Body]]:
-    """Pairs of bodies of the space that touched in pymunk's last step, or have woken since."""
-    now, known = lib.cpSpaceGetTimestamp(space._space), {body._body: body for body in space.bodies}
-    pairs = [(one.body_a, one.body_b) for one in space._get_arbiters() if one.stamp == now]
-    return [(known[a], known[b]) for a, b in pairs if a in known and b in known]
-
-
 def velocity_function(body: pymunk.Body) -> Callable[..., None] | None:
     """The velocity function of the program, None if it is pymunk's; the public property does not distinguish."""
     return body._velocity_func
