@@ -39,7 +39,7 @@ MUTATIONS = (
              "            awake[PAIRS[p, 0]] = 1", "space/test_sleeping.py", "groups_sleep"),
     # What no contact of an interval tells.
     Mutation("corrections: through a wall that is not touched", "islands/intervals.py",
-             "            if through and k > n:", "            through = False\n            if through and k > n:",
+             "    if through and len(isle.WHO) > n:", "    through = False\n    if through and len(isle.WHO) > n:",
              "islands/test_lifting.py",
              "lifted_through or turned_through"),
     Mutation("straight chains: a kinematic body that moves", "space/joints.py",

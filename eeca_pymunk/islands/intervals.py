@@ -12,7 +12,7 @@ from ..contacts.correction import correct_penetration, without_turning
 from ..contacts.counts import count_solve, note_lock, note_unmet
 from ..contacts.interval import make_contacts, step_island
 from ..model.contacts import Problem
-from ..model.islands import Island
+from ..model.islands import Island, IslandContacts
 from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES
 from ..model.scene import Scene
@@ -86,14 +86,55 @@ def begin_paths(A: Scene, MINE: IntArray, V: FloatArray, VN: FloatArray, h: floa
 
 
 @kernel
+def correct_interval(
+    A: Scene, root: int, isle: Island, contacts: IslandContacts, n: int, m: int, t: float, h: float, placed: bool
+) -> float:  # fmt: skip
+    """Set the penetration correction at the end of an interval h from instant t, as `contacts.JUMP`: 0 where it would
+    lift a body through another, and in a second attempt without rotations where there are walls. Returns what may
+    still be paid for it (`payment`). placed: whether the program has placed a body of the island."""
+    ROWS, L, VN, JUMP, OUT = contacts.ROWS, contacts.L, contacts.VN, contacts.JUMP, contacts.OUT
+    lost, before = OUT[0].restitution + OUT[0].friction, A.RESTING[root].lost
+    budget, payable = payment(A, isle, ROWS, L, VN, n, m, lost, before, placed, False)
+    problem, middle = Problem(ROWS, isle.IM, isle.II, isle.POSE, n, m), isle.POSE + 0.5 * h * isle.V
+    left, last_pose = left_to_lift(A, t + h), middle + 0.5 * h * VN
+    correct_penetration(problem, L, middle, VN, isle.ACC, h, isle.EXTENT, budget, left, JUMP)
+    through = lifts_through(A, isle, last_pose, JUMP, n, t + h)
+    if through and len(isle.WHO) > n:
+        correct_penetration(without_turning(problem), L, middle, VN, isle.ACC, h, isle.EXTENT, budget, left, JUMP)
+        through = lifts_through(A, isle, last_pose, JUMP, n, t + h)
+    if through:
+        JUMP[:] = 0.0
+    return payable
+
+
+@kernel
+def take_interval(
+    A: Scene, root: int, isle: Island, contacts: IslandContacts, MINE: IntArray, m: int, t: float, h: float,
+    payable: float, with_supports: int,
+) -> None:  # fmt: skip
+    """Let the bodies MINE go along a solved interval h from instant t, with m contacts. payable: what may still be paid
+    for its correction.  with_supports: see `bodies_with_supports`."""
+    TOUCHED = np.zeros(len(isle.WHO), np.uint8)
+    for z in range(m):
+        TOUCHED[contacts.ROWS[z].a] = TOUCHED[contacts.ROWS[z].b] = 1
+    lost, hits = A.RESTING[root].lost, A.MEMBER[root].hits
+    set_lifts(A, MINE, contacts.JUMP)
+    head = begin_paths(A, MINE, isle.V, contacts.VN, h, TOUCHED)
+    if head >= 0:
+        open_interval(A, head, isle, contacts, contacts.VN, m, t, h)
+        A.MEMBER[head].hits, A.MEMBER[head].with_supports = hits, with_supports
+        A.RESTING[head].payable, A.RESTING[head].lost = payable, lost
+        if contacts.OUT[0].at_rest > 0:
+            put_to_rest(A, head)
+
+
+@kernel
 def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> tuple[int, float]:
     """One attempt of `begin_interval`, with an interval no longer than `longest`. Returns DONE, PUSHES_FULL, or, if the
     interval is too long, AGAIN and the length for the next attempt; no path is changed then. AGAIN is never the result
     of the `last` attempt."""
-    MEMBER, COUNT = A.MEMBER, A.COUNT
-    MINE = number_bodies(A, root)
+    COUNT, MINE, may_lose = A.COUNT, number_bodies(A, root), lossy(A, root)
     n = len(MINE)
-    may_lose = lossy(A, root)
     found = candidates.pairs_within(A, root, t, longest, may_lose, MINE)
     h = candidates.interval_within_way(A, found, longest) if A.COUNT.together == 0 else longest
     if h < longest:
@@ -105,13 +146,11 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
         return PUSHES_FULL, 0.0
     isle = local_island(A, MINE, found, t)
     clear_places(A, MINE)
-    k, V, contacts = len(isle.WHO), isle.V, make_contacts(p, len(isle.WHO))
-    ROWS, L = contacts.ROWS, contacts.L
-    VN, JUMP, OUT = contacts.VN, contacts.JUMP, contacts.OUT
-    least_reach = 0.0
+    contacts, least_reach = make_contacts(p, len(isle.WHO)), 0.0
+    VN, OUT = contacts.VN, contacts.OUT
     if COUNT.together > 0:
-        for q in range(k):
-            least_reach = max(least_reach, candidates.travel_bound(A, isle.WHO[q], h))
+        for i in isle.WHO:
+            least_reach = max(least_reach, candidates.travel_bound(A, i, h))
     sweeps = candidates.sweeps_of(n, t)
     m = 0
     with_supports = bodies_with_supports(A, isle, n)
@@ -126,7 +165,7 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
         turns = COUNT.together == 0 and (not may_lose or (m == 1 and t == 0.0))
         sticks, stuck = not candidates.to_end_of_step(A), h
         if (turns or sticks) and OUT[0].at_rest == 0:
-            stuck = candidates.slip_time(ROWS, L, V + h * isle.ACC, VN, m, h, turns, sticks)
+            stuck = candidates.slip_time(contacts.ROWS, contacts.L, isle.V + h * isle.ACC, VN, m, h, turns, sticks)
         if stuck < h:
             # The interval ends where slip ends, as the law of friction changes there.
             h = min(max(stuck, shortest), h)
@@ -139,38 +178,14 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
             count_solve(A, n, p, m, OUT)
             return AGAIN, h / far
         if m > 0 and OUT[0].at_rest == 0:
-            lost, before = OUT[0].restitution + OUT[0].friction, A.RESTING[root].lost
-            budget, payable = payment(A, isle, ROWS, L, VN, n, m, lost, before, placed, False)
-            problem, middle = Problem(ROWS, isle.IM, isle.II, isle.POSE, n, m), isle.POSE + 0.5 * h * V
-            left, last_pose = left_to_lift(A, t + h), middle + 0.5 * h * VN
-            correct_penetration(problem, L, middle, VN, isle.ACC, h, isle.EXTENT, budget, left, JUMP)
-            through = lifts_through(A, isle, last_pose, JUMP, n, t + h)
-            if through and k > n:
-                correct_penetration(
-                    without_turning(problem), L, middle, VN, isle.ACC, h, isle.EXTENT, budget, left, JUMP
-                )
-                through = lifts_through(A, isle, last_pose, JUMP, n, t + h)
-            if through:
-                JUMP[:] = 0.0
+            payable = correct_interval(A, root, isle, contacts, n, m, t, h, placed)
         note_lock(A, OUT)
-    at_rest = OUT[0].at_rest > 0
     if OUT[0].residual > OUT[0].tolerance:
         note_unmet(A, CONTACTS, isle.PAIRS[0, 0], isle.PAIRS[0, 1], OUT[0].residual, OUT[0].tolerance)
     COUNT.solves += 1
     COUNT.direct += OUT[0].direct
     count_solve(A, n, p, m, OUT)
-    TOUCHED = np.zeros(k, np.uint8)
-    for z in range(m):
-        TOUCHED[ROWS[z].a] = TOUCHED[ROWS[z].b] = 1
-    lost, hits = A.RESTING[root].lost, MEMBER[root].hits
-    set_lifts(A, MINE, JUMP)
-    head = begin_paths(A, MINE, V, VN, h, TOUCHED)
-    if head >= 0:
-        open_interval(A, head, isle, contacts, VN, m, t, h)
-        MEMBER[head].hits, MEMBER[head].with_supports = hits, with_supports
-        A.RESTING[head].payable, A.RESTING[head].lost = payable, lost
-        if at_rest:
-            put_to_rest(A, head)
+    take_interval(A, root, isle, contacts, MINE, m, t, h, payable, with_supports)
     return DONE, 0.0
 
 

@@ -29,17 +29,17 @@ from .groups import Groups
 
 class Motion(NamedTuple):
     """The motion of the k bodies of an island over an interval h, arrays (k, 3); v is the velocity at the start. V,
-    END: velocities and poses at the end. WAY: sums of h v_m over the parts of the interval. MEAN = 2 WAY/h - v: not V
-    if a limit is met within the interval, since joints then change the velocity there. MID (k, 2): mean places over
-    time, where constant forces act. PUSHED: accelerations without joints under which it was computed, to round-off,
-    else NaN.
+    END: velocities and poses at the end. WAY: sums of h v_m over the parts of the interval. EVEN = 2 WAY/h - v, the
+    velocity at the end if an even acceleration led this way: not V if a limit is met within the interval, since joints
+    then change the velocity there. MID (k, 2): mean places over time, where constant forces act. PUSHED: accelerations
+    without joints under which it was computed, to round-off, else NaN.
 
-    Contacts have their laws by MEAN: an impulse lam that is spread over the interval does the work lam . WAY/h, with
-    WAY/h the mean of v and MEAN. So the losses of contacts follow their laws, whatever joints do within the interval.
+    Contacts have their laws by EVEN: an impulse lam that is spread over the interval does the work lam . WAY/h, with
+    WAY/h the mean of v and EVEN. So the losses of contacts follow their laws, whatever joints do within the interval.
     """
 
     V: FloatArray
-    MEAN: FloatArray
+    EVEN: FloatArray
     WAY: FloatArray
     END: FloatArray
     MID: FloatArray
@@ -71,7 +71,7 @@ def motion_at_start(isle: Island, k: int) -> Motion:
         STATES[:k], STATES[k : 2 * k], STATES[2 * k : 3 * k], STATES[3 * k : 4 * k], np.zeros((k, 2)), STATES[4 * k :]
     )
     copy(motion.V, isle.V)
-    copy(motion.MEAN, isle.V)
+    copy(motion.EVEN, isle.V)
     copy(motion.END, isle.POSE)
     motion.PUSHED[:] = math.nan
     return motion
@@ -130,14 +130,14 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
         for w in range(groups.FIRST[g], groups.FIRST[g + 1]):
             q = groups.BODY[w]
             for c in range(3):
-                motion.MEAN[q, c] = 2.0 * motion.WAY[q, c] / h - isle.V[q, c]
+                motion.EVEN[q, c] = 2.0 * motion.WAY[q, c] / h - isle.V[q, c]
                 motion.PUSHED[q, c] = ACC[q, c] if J.PROGRESS.near == 0.0 else math.nan
         if not fill:
-            note_rows(A, J, B, s, h, motion.MEAN)
+            note_rows(A, J, B, s, h, motion.EVEN)
         elif HIT[g] > 0:
             size = find_places(A, J, s, INDEX)
             let_slip(J, s, True, few)
-            first = list_rows(A, J, B, s, h, motion.MEAN)
+            first = list_rows(A, J, B, s, h, motion.EVEN)
             if prepare_response(workspace(J, s), STEP, h):
                 PUSH = np.empty((size, 3))
                 fill_group(J, groups, C, g, INDEX, ROWS, m, PUSH, WITH_TANGENTS)
@@ -152,7 +152,7 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
             motion.V[q, c] = isle.V[q, c] + h * ACC[q, c]
             motion.WAY[q, c] = 0.5 * h * (isle.V[q, c] + motion.V[q, c])
             motion.END[q, c] = isle.POSE[q, c] + motion.WAY[q, c]
-            motion.MEAN[q, c] = motion.V[q, c]
+            motion.EVEN[q, c] = motion.V[q, c]
         for c in range(2):
             motion.MID[q, c] = isle.POSE[q, c] + 0.5 * motion.WAY[q, c]
 

@@ -43,7 +43,7 @@ def fit_columns(
     3) are impulses of contacts, of bounded rows, and velocities of the one before; L (m, 2) the present impulses. False
     if a contact that its own impulse moved no longer is: the columns are then invalid."""
     groups, ROWS, motion, C, m = interval.groups, interval.ROWS, interval.motion, interval.C, interval.m
-    ERROR, D, n = motion.MEAN - V, L[:m] - BEFORE[:m], B.USED[0]
+    ERROR, D, n = motion.EVEN - V, L[:m] - BEFORE[:m], B.USED[0]
     push_columns(C, D, m, -1.0, ERROR)
     SQUARE = np.zeros(len(groups.COMPONENT) + 1)  # d.d of each group; one more, for GROUP -1
     for i in range(m):

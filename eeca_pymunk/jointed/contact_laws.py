@@ -87,7 +87,7 @@ def set_aims(S: Agreement, h: float, elastic: bool) -> None:
 def begin_laws(interval: Interval, problem: JointedProblem, L: FloatArray, FORESEEN: FloatArray) -> FloatArray:
     """The impulses with which a solution of the laws begins: L, without contacts that are left out, and those of the
     bounded rows. FORESEEN becomes the velocities by the columns under these."""
-    copy(FORESEEN, interval.motion.MEAN)
+    copy(FORESEEN, interval.motion.EVEN)
     for i in range(interval.m):
         if interval.C.LEFT_OUT[i] != 0:
             push_column(interval.C, i, -L[i, 0], -L[i, 1], FORESEEN)

@@ -16,6 +16,7 @@ from ..islands.payment import payment
 from ..joints.bounds import stand_as_stepped
 from ..joints.workspace import workspace
 from ..model.contacts import Columns, JointedProblem, Row
+from ..model.islands import Island
 from ..model.joint_steps import SPEEDS
 from ..model.joints import Joints
 from ..model.parameters import joints
@@ -122,31 +123,20 @@ def keep_angular_momentum(J: Joints, interval: Interval, L: FloatArray) -> None:
 
 
 @kernel
-def correct_overlaps(A: Scene, J: Joints, interval: Interval, L: FloatArray, budget: float) -> float:
-    """Move the poses at the end of an island's motion out of each other, at a cost of at most `budget`, not at all if
-    that is below 0; returns the cost.
-
-    It is -m a.D for displacements D, rotations included, and the energy that springs gain. D is along the joints, and
-    limits that a solution passes, which hold in the next; errors of second order are then closed. A free island keeps
-    its centre of mass, and components in it that impulses L (m, 2) press on each other keep their angular momentum:
-    their velocities at the end rotate by what the displacements have changed of it.
-    """
+def lift_along_joints(
+    A: Scene, J: Joints, interval: Interval, GAPS: FloatArray, D: FloatArray, error: float
+) -> FloatArray:  # fmt: skip
+    """Set D (k, 3) to the displacements at the end of an interval that close the gaps GAPS (m,) of its contacts to
+    `error`, along the joints and along limits that a solution passes, which hold in the next. Returns `raise_gaps`'
+    mu (m,)."""
     isle, groups, ROWS, motion, C, m, n, t, h, _ = interval
-    V, WAY, END = motion.V, motion.WAY, motion.END
-    GAPS, deepest = np.empty(m), 0.0
-    for i in range(m):
-        GAPS[i] = ROWS[i].gap + normal_rate(ROWS[i], WAY)
-        deepest = min(deepest, GAPS[i])
-    size = least_of(isle.EXTENT, n)
-    if deepest >= -left_to_lift(A, t + h) * size or not budget >= 0.0:
-        return 0.0
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
         # The columns of the interval, in which stiff springs resist, so that D hardly strains them; but bounded rows
         # prescribe speeds at its end.
         if s >= 0 and J.COMPONENT[s].bounded_joints > 0:
             fill_at_end(A, J, interval, C, g, ROWS, m)
-    D, MU, error = np.zeros_like(V), np.zeros(m), joints.JOINTED_LIFT_ERROR * -deepest
+    MU = np.zeros(m)
     for _ in range(joints.IMPACT_LIMITS):
         KEEP, D[:] = ROWS[:m].copy(), 0.0
         set_effective_masses(groups, C, KEEP, m)
@@ -154,10 +144,63 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, L: FloatArray, bud
         again = False
         for g in range(len(groups.COMPONENT)):
             s = groups.COMPONENT[g]
-            if s >= 0 and passes_limit(A, J, s, END, D, isle.IM, isle.II, t + h, h, error):
+            if s >= 0 and passes_limit(A, J, s, motion.END, D, isle.IM, isle.II, t + h, h, error):
                 again = fill_at_end(A, J, interval, C, g, ROWS, m) or again
         if not again:
             break
+    return MU
+
+
+@kernel
+def part_within(isle: Island, n: int, D: FloatArray, budget: float, size: float, round_off: float) -> float:
+    """The part of displacements D (k, 3) that is taken. Contacts that contradict one another give displacements without
+    bound. What closing joints costs is known only once it is done, so that there is no
+    `..contacts.correction.part_for`: it has the other half of the budget."""
+    cost, part = -work_of_forces(isle.ACC, isle.IM, isle.II, n, D), admissible(D, isle.EXTENT, n, size)
+    return 0.5 * budget / cost if cost * part > max(0.5 * budget, round_off * part) else part
+
+
+@kernel
+def close_displaced(
+    A: Scene, J: Joints, interval: Interval, D: FloatArray, NEW: FloatArray, STORED: FloatArray
+) -> float:  # fmt: skip
+    """Close the joints of the components that displacements D (k, 3) have moved to poses NEW (k, 3). Returns what
+    springs gain by that, the sum of STORED, its value for each group."""
+    isle, groups, _, motion, _, _, _, t, h, _ = interval
+    gained = 0.0
+    for g in range(len(groups.COMPONENT)):
+        s = groups.COMPONENT[g]
+        moves = 0.0
+        for w in range(groups.FIRST[g], groups.FIRST[g + 1]):
+            for c in range(3):
+                moves = max(moves, abs(D[groups.BODY[w], c]))
+        if s >= 0 and moves > 0.0:
+            STORED[g] = close_at_poses(A, J, s, motion.END, NEW, motion.V, isle.IM, isle.II, t + h, h)
+            gained += STORED[g]
+    return gained
+
+
+@kernel
+def correct_overlaps(A: Scene, J: Joints, interval: Interval, L: FloatArray, budget: float) -> float:
+    """Move the poses at the end of an island's motion out of each other, at a cost of at most `budget`, not at all if
+    that is below 0; returns the cost.
+
+    It is -m a.D for displacements D (`lift_along_joints`), rotations included, and the energy that springs gain; errors
+    of second order are then closed. A free island keeps its centre of mass, and components in it that impulses L (m, 2)
+    press on each other keep their angular momentum: their velocities at the end rotate by what the displacements have
+    changed of it. Of displacements that cost too much JOINTED_CORRECTION_LESS is tried next.
+    """
+    isle, groups, ROWS, motion, _, m, n, t, h, _ = interval
+    V, END = motion.V, motion.END
+    GAPS, deepest = np.empty(m), 0.0
+    for i in range(m):
+        GAPS[i] = ROWS[i].gap + normal_rate(ROWS[i], motion.WAY)
+        deepest = min(deepest, GAPS[i])
+    size = least_of(isle.EXTENT, n)
+    if deepest >= -left_to_lift(A, t + h) * size or not budget >= 0.0:
+        return 0.0
+    D = np.zeros_like(V)
+    MU = lift_along_joints(A, J, interval, GAPS, D, joints.JOINTED_LIFT_ERROR * -deepest)
     free = is_free(isle, groups, n, J)
     # In an island that is not free no body is rotated.
     GROUP, NONE = pressing(interval, L, MU) if free else np.empty(0, np.int64), np.zeros(n)
@@ -166,28 +209,14 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, L: FloatArray, bud
         for g in range(n):
             if mark_group(GROUP, g, ONE):
                 keep_centre(D, isle.IM, ONE)
-    cost, part = -work_of_forces(isle.ACC, isle.IM, isle.II, n, D), admissible(D, isle.EXTENT, n, size)
-    # Contacts that contradict one another give displacements without bound, of which only a part is taken. What closing
-    # joints costs is known only once it is done, so that there is no `..contacts.correction.part_for`: it has the other
-    # half of the budget.
     round_off = CORRECTION_ROUND_OFF * work_of_forces(np.abs(isle.ACC), isle.IM, isle.II, n, np.abs(D))
-    if cost * part > max(0.5 * budget, round_off * part):
-        part = 0.5 * budget / cost
+    part = part_within(isle, n, D, budget, size, round_off)
     if lifts_through(A, isle, END, part * D, n, t + h):
         return 0.0
     STORED = np.zeros(len(groups.COMPONENT))
     for _ in range(joints.JOINTED_CORRECTION_TRIES):
-        spent = 0.0
         NEW = END + part * D
-        for g in range(len(groups.COMPONENT)):
-            s = groups.COMPONENT[g]
-            moves = 0.0
-            for w in range(groups.FIRST[g], groups.FIRST[g + 1]):
-                for c in range(3):
-                    moves = max(moves, abs(D[groups.BODY[w], c]))
-            if s >= 0 and moves > 0.0:
-                STORED[g] = close_at_poses(A, J, s, END, NEW, V, isle.IM, isle.II, t + h, h)
-                spent += STORED[g]
+        spent = close_displaced(A, J, interval, D, NEW, STORED)
         spent -= work_of_forces(isle.ACC, isle.IM, isle.II, n, NEW - END)
         gained, square = unturn_groups(NEW, NEW - END, V, isle.IM, isle.II, GROUP, ONE, NONE, TURN)
         spent += gained + square

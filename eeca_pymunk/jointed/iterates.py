@@ -73,4 +73,4 @@ def gives_up(J: Joints, more: float) -> bool:
 @nonallocating
 def difference(interval: Interval, V: FloatArray) -> float:
     """The largest difference between the motion and velocities V (k, 3), of any point of its bodies."""
-    return farthest_apart(interval.motion.MEAN, V, interval.isle.EXTENT, interval.n)
+    return farthest_apart(interval.motion.EVEN, V, interval.isle.EXTENT, interval.n)

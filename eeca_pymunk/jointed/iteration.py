@@ -117,7 +117,7 @@ def iterate(A: Scene, J: Joints, interval: Interval, X: Iterates, S: Agreement, 
         if outer == 0:
             set_aims(S, h, X.manner.elastic)
             target(ROWS, m, EFFECT, EXPECTED, S.pull, h)
-        copy(X.BEFORE, motion.MEAN)
+        copy(X.BEFORE, motion.EVEN)
         copy(X.USED, X.L)
         for i in range(X.B.USED[0]):
             X.NOW[i] = X.B.ROWS[i].now

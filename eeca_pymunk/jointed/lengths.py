@@ -134,7 +134,7 @@ def excess(A: Scene, interval: Interval, L: FloatArray) -> float:
             far,
             excess_of_body(A, i, motion.WAY[q, 0], motion.WAY[q, 1], turned, motion.V[q], isle.ACC[q], t, h, KEY, m),
         )
-    far = max(far, closes_too_far(A, isle, ROWS, motion.MEAN, m, h), points_part(interval, L))
+    far = max(far, closes_too_far(A, isle, ROWS, motion.EVEN, m, h), points_part(interval, L))
     return max(far, too_deep_on_way(A, interval))
 
 

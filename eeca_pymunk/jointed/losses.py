@@ -52,7 +52,7 @@ def work_error(interval: Interval, L: FloatArray, slow: float, pull: float, know
 def without_contacts(interval: Interval, L: FloatArray, B: Bounded) -> FloatArray:
     """Velocities (k, 3) of the motion without the impulses L of contacts, by the columns; bounded impulses follow by
     sweeps over their rows alone."""
-    V, X = interval.motion.MEAN.copy(), with_bounded(B, np.empty((0, 2)), 0)
+    V, X = interval.motion.EVEN.copy(), with_bounded(B, np.empty((0, 2)), 0)
     push_columns(interval.C, L, interval.m, -1.0, V)
     for _ in range(BOUNDED_SWEEPS if B.USED[0] > 0 else 0):
         if sweep_bounded(B, X, 0, V) <= 0.0:
@@ -65,10 +65,10 @@ def scale_of_loss(interval: Interval, L: FloatArray, B: Bounded, more: float) ->
     """Factor s of impulses L with which contacts lose `more` energy than with s = 1, from the slope p - 2 q of their
     loss there, 0 if that does not grow with less impulses; and by how much velocities then change."""
     FREE = without_contacts(interval, L, B)
-    p, q = loss_of_scaled(interval.ROWS, L, interval.motion.MEAN, FREE, interval.m)
+    p, q = loss_of_scaled(interval.ROWS, L, interval.motion.EVEN, FREE, interval.m)
     slope = p - 2.0 * q
     s = 1.0 + more / slope if slope < 0.0 else 0.0
-    return s, abs(1.0 - s) * farthest_apart(interval.motion.MEAN, FREE, interval.isle.EXTENT, interval.n)
+    return s, abs(1.0 - s) * farthest_apart(interval.motion.EVEN, FREE, interval.isle.EXTENT, interval.n)
 
 
 @kernel

@@ -40,7 +40,7 @@ def solve_gently(
             align(interval)
     fill_unjointed(groups, C, ROWS, isle.IM, isle.II, m)
     set_effective_masses(groups, C, ROWS, m)
-    V = interval.motion.MEAN.copy()
+    V = interval.motion.EVEN.copy()
     push_columns(C, L, m, -1.0, V)
     L[:m] = 0.0
     BOTH = with_bounded(B, L, m)
@@ -98,7 +98,7 @@ def settle(A: Scene, J: Joints, interval: Interval, X: Iterates, S: Agreement) -
     known = joints.LOSS_ROUND_OFF
     if some_give(J, groups) or some_taut(J, groups):
         known = max(known, min(2.0 * S.reached / (S.slow + S.pull * h), joints.LOSS_ROUND_OFF_TAUT))
-    copy(FORESEEN, motion.MEAN)
+    copy(FORESEEN, motion.EVEN)
     error = work_error(interval, L, S.slow, S.pull, known)
     lock_jointed(A, J, interval, L, B, free, X.manner.elastic, S.owed, error)
     J.PROGRESS.tolerance = joints.AGREE * S.scale

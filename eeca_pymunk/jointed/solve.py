@@ -1,64 +1,24 @@
-"""The interval of an island with joints: contacts, penetration correction, projection of velocities, paths."""
+"""The length of an interval of an island with joints: as long as `attempt.py` solves it and its motion allows."""
 
 from __future__ import annotations
 
-import numpy as np
-
-from ..arrays import FloatArray
 from ..compiled import kernel
-from ..contacts.counts import note_unmet, spend
-from ..contacts.geometry import gather_contacts
-from ..contacts.interval import make_contacts, recall, speeds
-from ..contacts.memory import remember_loads, shapes_of
-from ..geometry.widths import depth_limit
+from ..contacts.counts import spend
 from ..islands import local
 from ..islands.candidates import pairs_within
 from ..islands.membership import lossy
-from ..model.contacts import JointedProblem
-from ..model.joint_steps import FINAL, LONG, SHORT
 from ..model.joints import Joints
 from ..model.parameters.events import RESOLUTION
-from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, REACH_ROUND_OFF, UNSOLVED_PART
-from ..model.parameters.joints import COLUMN_CONTACTS, INTERVAL_SHARE, INTERVAL_WORK, SPACING
+from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, UNSOLVED_PART
+from ..model.parameters.joints import INTERVAL_WORK
 from ..model.scene import Scene
-from ..model.step import AGAIN, CONTACTS, DONE, PUSHES_FULL, SPENT
-from ..rows.bounded import room_for_rows
-from ..rows.build import conserves, normal_rate
-from ..rows.columns import breach
-from ..rows.laws import give_slips, take_slips
-from .advance import Interval, advance, motion_at_start
-from .alone import account_turning, begin_alone, is_component, meets_no_other, set_path
-from .columns import make_columns
-from .contact_laws import few_act
-from .correction import keep_angular_momentum, lift_island
-from .fitting import project_velocities
-from .gathered import restore_joints, save_joints, takes_shorter
-from .groups import find_groups
-from .iteration import solve_contacts
-from .ledger import has_work_for, work_left
-from .lengths import excess, forced_deeper, next_length, too_deep_on_way, within_sagitta
-from .losses import slip_of
+from ..model.step import AGAIN, DONE, PUSHES_FULL, SPENT
+from .alone import begin_alone, is_component, meets_no_other
+from .attempt import gather_attempt, note_residual, solve_attempt, take_attempt
+from .gathered import restore_joints
+from .ledger import work_left
+from .lengths import next_length, within_sagitta
 from .rest import rest_if_still
-from .settling import GIVEN_UP, SOLVED
-
-
-@kernel
-def note_residual(A: Scene, interval: Interval, L: FloatArray, solved: bool, tolerance: float) -> None:
-    """Report a contact that joints force deeper, with its velocities, present and allowed; else, if the laws of
-    contacts, with Coulomb's friction alone (`take_slips`), are not `solved`, the velocity by which they are broken, if
-    above `tolerance`. Joints hold in any case."""
-    ROWS, h, z = interval.ROWS, interval.h, forced_deeper(A, interval)
-    if z >= 0:
-        a, b = shapes_of(A, ROWS[z])
-        most = max(ROWS[z].gap + depth_limit(A, a, b), 0.0) / h
-        note_unmet(A, CONTACTS, a, b, -normal_rate(ROWS[z], interval.motion.WAY) / h, most)
-    elif not solved and interval.m > 0:
-        SLIP, free = take_slips(ROWS, interval.m), room_for_rows(0, 0)
-        residual = breach(JointedProblem(ROWS, interval.C, free, interval.m), L, interval.motion.MEAN)
-        give_slips(ROWS, interval.m, SLIP)
-        if not residual <= tolerance:
-            a, b = shapes_of(A, ROWS[0])
-            note_unmet(A, CONTACTS, a, b, residual, tolerance)
 
 
 @kernel
@@ -103,47 +63,17 @@ def begin_jointed(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
 
 
 @kernel
-def excess_length(
-    A: Scene, J: Joints, interval: Interval, L: FloatArray, root: int, effort: float, solved: bool, last: bool
-) -> float:
-    """How many times too long the interval of an island is, whose motion under impulses L of its contacts took so much
-    effort; also sets its `excess_left`. `iteration.solve_contacts` gives a long interval up before there is a motion,
-    for what only its iterations show: components that are not stepped as a whole, or work that is spent.
-
-    Args:
-        solved: whether contacts are.  last: whether no other attempt follows, see `try_jointed`.
-    """
-    far = 0.0
-    for s in interval.groups.JOINTED:
-        if takes_shorter(A, J, s, interval.t, interval.h, effort):
-            far = 2.0
-    if last and solved:
-        A.RESTING[root].excess_left = too_deep_on_way(A, interval)
-        return far
-    long = excess(A, interval, L)
-    A.RESTING[root].excess_left, far = 0.0 if solved else long, max(far, long)
-    if solved:
-        return far
-    # A motion that is no solution does not tell how long the interval may be. Contacts that are not solved in a long
-    # interval may be in a short one, if the step has work for all of these.
-    hard = interval.few and has_work_for(A, J, interval.t, interval.h, UNSOLVED_PART, effort)
-    return UNSOLVED_PART if hard and J.PROGRESS.length == LONG else min(far, UNSOLVED_PART)
-
-
-@kernel
 def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) -> tuple[int, float]:
     """`begin_jointed` for one length h. Returns DONE and the length that the next interval may have; or, with nothing
     done, PUSHES_FULL, or AGAIN and the length to try next, if h is too long and this is not the `last` attempt."""
     single, A.RESTING[root].excess_left = is_component(A, J, root), 0.0
     if single and meets_no_other(A, root):
         return begin_alone(A, J, root, t, h, last)
-    COUNT = A.COUNT
     MINE = local.number_bodies(A, root)
-    n = len(MINE)
     # All pairs within the step, also if the interval is shorter: others would not be searched for impacts.
     found = pairs_within(A, root, t, A.PAR.planned - t, lossy(A, root), MINE)
     p = len(found)
-    spend(A, n, 2 * p, 0.0)  # besides what joints take
+    spend(A, len(MINE), 2 * p, 0.0)  # besides what joints take
     J.PROGRESS.effort += INTERVAL_WORK * (p + 2)
     if p == 0 and single:
         local.clear_places(A, MINE)
@@ -155,69 +85,13 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     if local.needs_memory(A, p):
         local.clear_places(A, MINE)
         return PUSHES_FULL, h
-    isle = local.local_island(A, MINE, found, t)
-    k = len(isle.WHO)
-    groups = find_groups(isle.WHO, isle.IM, J, False)
-    for s in groups.JOINTED:
-        save_joints(J, s)
-    contacts, EXPECTED = make_contacts(p, k), np.zeros(2 * p + 1)
-    ROWS, L = contacts.ROWS, contacts.L
-    motion, REACH = motion_at_start(isle, k), np.empty(k)
-    slow, fast, pull = speeds(isle, n, h, REACH)
-    for q in range(n):
-        slow = max(slow, SPACING * REACH_ROUND_OFF * isle.EXTENT[q] / h)  # tolerances must not underflow
-    fast = max(slow, fast)
-    m = 0
-    if p > 0:
-        m = gather_contacts(A, isle, contacts, REACH, h, k == n)
-    # Many near contacts of which few act are dear: roughly, once the work of the step is spent.
-    few = m <= COLUMN_CONTACTS or (work_left(A, J) >= 0.0 and few_act(ROWS, isle.V, m, h, pull))
-    interval = Interval(isle, groups, ROWS, motion, make_columns(groups, ROWS, m), m, n, t, h, few)
-    outcome, before = SOLVED, J.PROGRESS.effort
-    if not last:  # contacts of a short interval are solved more easily than those of components stepped in parts
-        J.PROGRESS.length = LONG if m > 0 and h * UNSOLVED_PART**2 > A.PAR.dt / RESOLUTION else SHORT
-    part = max(INTERVAL_SHARE, n / (A.BODY.shape[0] - 1)) if J.PROGRESS.length == LONG else INTERVAL_SHARE
-    J.PROGRESS.share = before + part * max(work_left(A, J), 0.0)
-    if m > 0:
-        recall(A, ROWS, m, h, not interval.few, L, EXPECTED)
-        owed = max(-A.RESTING[root].lost, 0.0)
-        outcome = solve_contacts(A, J, interval, L, EXPECTED, slow, fast, pull, owed)
-        if outcome == SOLVED or not interval.few:  # impulses of few contacts that are no solution are a bad guess
-            remember_loads(A, ROWS, L, m, h)
-    if m == 0:
-        advance(A, J, interval, L, room_for_rows(0, 0), False, np.empty((0, 3)))
-    COUNT.solves += 1
-    COUNT.solved += n
-    solved, far = outcome == SOLVED, UNSOLVED_PART
-    if outcome != GIVEN_UP:
-        far = excess_length(A, J, interval, L, root, J.PROGRESS.effort - before, solved, last)
-    J.PROGRESS.length = FINAL
+    tried = gather_attempt(A, J, MINE, found, t, h)
+    solved, far = solve_attempt(A, J, tried, root, last)
     if far > INTERVAL_RETRY and not last:
-        for s in groups.JOINTED:
+        for s in tried.interval.groups.JOINTED:
             restore_joints(J, s)
         local.clear_places(A, MINE)
         return AGAIN, h / far
-    note_residual(A, interval, L, solved, J.PROGRESS.tolerance)
-    for s in groups.JOINTED:
-        J.STEPPED[s].turned_work = J.STEPPED[s].lifted = 0.0
-    for q in range(n):
-        s = groups.COMPONENT[groups.GROUP[q]]
-        if s >= 0:
-            account_turning(A, J, s, MINE[q], motion.END[q, 2], motion.WAY[q, 2])
-    keep_angular_momentum(J, interval, L)
-    # Corrected at the end of the interval: within a short one, paths would be steep.
-    WHERE, HELD = motion.END.copy(), np.zeros(m)
-    if not conserves(ROWS, m):
-        lift_island(A, J, interval, L, root)
-        HELD = project_velocities(A, J, interval, L, slow + pull * h)
-    local.clear_places(A, MINE)
-    first = COUNT.pushes
-    local.open_interval(A, root, isle, contacts, motion.V, m, t, h)
-    for z in range(m):
-        pushed = A.PUSHED[first + z]
-        pushed.un_before = pushed.un_after = normal_rate(ROWS[z], motion.WAY) / h
-        pushed.ut_before = pushed.ut_after = slip_of(ROWS[z], motion.WAY, h) / h
-        pushed.held = HELD[z]
-    for q in range(n):
-        set_path(A, MINE[q], h, WHERE[q], motion.END[q], motion.V[q])
-    return DONE, next_length(h, far if solved or not interval.few else 1.0)
+    note_residual(A, tried.interval, tried.contacts.L, solved, J.PROGRESS.tolerance)
+    take_attempt(A, J, tried, root, MINE)
+    return DONE, next_length(h, far if solved or not tried.interval.few else 1.0)

@@ -68,6 +68,39 @@ def round_off_of_impulses(W: Workspace, h: float, length: float) -> float:
 
 
 @nonallocating
+def is_round_off(worst: float, best: float, last: float, pace: float, floor: float, settled: bool, sure: bool) -> bool:
+    """Whether an error of an iteration is round-off.
+
+    Args:
+        worst: the error.  best, last: the least before, and that of the last iteration, which was `pace` times that of
+            the one before.  floor: below which errors that do not fall are.
+        settled: whether these factors have served two iterations.  sure: whether no rows are redundant, whose impulses
+            leave more round-off.
+    """
+    falls_no_more = settled and 0.5 * best < worst < floor
+    return falls_no_more or (sure and worst < JOINT_ROUND_OFF and last * pace <= JOINT_TOLERANCE)
+
+
+@nonallocating
+def accept(W: Workspace, h: float, fit: bool, system: int) -> None:
+    """End a solve that has converged; its factors are kept if they `fit`."""
+    # A wide matrix is expensive to factor: the parts of a step share one while errors fall with it.
+    W.J.COMPONENT[W.s].factored = 1 if fit and system == CONDENSED else 0
+    W.J.PROGRESS.kept, W.J.TALLY.answers = W.s + 1 if fit else 0, system
+    clamp(W, h)
+    balance_velocities(W, h)
+
+
+@nonallocating
+def epsilon_for(W: Workspace, redundant: bool, give: float, worst: float) -> float:
+    """`epsilon` of an iteration with this error: compliance makes rows independent, and a term beside it would divide
+    errors only by 1 + give/epsilon."""
+    if not redundant or give > 0.0:
+        return 0.0
+    return float(max(REDUNDANT_EPSILON, min(W.J.PROGRESS.most_epsilon, worst)))
+
+
+@nonallocating
 def solve(W: Workspace, h: float, length: float, redundant: bool, give: float) -> bool:
     """Solve the implicit step h of a component of size `length` from the present `lam` and `lead`, for v1 and `lam`.
 
@@ -101,14 +134,13 @@ def solve(W: Workspace, h: float, length: float, redundant: bool, give: float) -
     # since: iteration in which the solve has begun again, with FULL.  renewed: whether the last iteration was NEW.
     # pace: by which factor the last iteration has made the error smaller.
     best, last, pace, stalls, since, renewed = inf, inf, 1.0, 0, 0, False
-    sure = component.dependence != DEPENDENT  # impulses of redundant rows leave more round-off
+    sure = component.dependence != DEPENDENT
     for iteration in range(NEWTON_ITERATIONS + 1):
         built = factors != KEPT
         worst = linearise(W, STEP, h, length, give, False, system, built)
         fit = factors == KEPT and component.factored != OTHERWISE
         floor = JOINT_ROUND_OFF_KEPT if factors != FULL else NEWTON_FLOOR if stalls > 1 else JOINT_ROUND_OFF
-        at_floor = iteration > since + 1 and 0.5 * best < worst < floor
-        at_floor = at_floor or (sure and worst < JOINT_ROUND_OFF and last * pace <= JOINT_TOLERANCE)
+        at_floor = is_round_off(worst, best, last, pace, floor, iteration > since + 1, sure)
         # Next to the solution errors cannot fall by much.
         slow = not worst <= NEWTON_PROGRESS * last and (iteration > 2 or not worst <= JOINT_ROUND_OFF)
         if give > 0.0 and iteration > 1:
@@ -117,11 +149,7 @@ def solve(W: Workspace, h: float, length: float, redundant: bool, give: float) -
                 return False
             at_floor = at_floor or worst <= left
         if iteration > 0 and (worst <= max(JOINT_TOLERANCE, progress.near) or at_floor):
-            # A wide matrix is expensive to factor: the parts of a step share one while errors fall with it.
-            component.factored = 1 if fit and system == CONDENSED else 0
-            progress.kept, W.J.TALLY.answers = W.s + 1 if fit else 0, system
-            clamp(W, h)
-            balance_velocities(W, h)
+            accept(W, h, fit, system)
             return True
         if iteration > since + 3 and not worst < (0.5 * last if worst < NEWTON_FLOOR else best):
             stalls += 1
@@ -141,10 +169,7 @@ def solve(W: Workspace, h: float, length: float, redundant: bool, give: float) -
         if factors != KEPT:
             if not built:
                 linearise(W, STEP, h, length, give, False, system, True)
-            # Compliance makes rows independent; a term beside it would divide errors only by 1 + give/epsilon.
-            added = redundant and not give > 0.0
-            epsilon = max(REDUNDANT_EPSILON, min(progress.most_epsilon, worst)) if added else 0.0
-            system = factorise(W, STEP, h, length, give, system, epsilon)
+            system = factorise(W, STEP, h, length, give, system, epsilon_for(W, redundant, give, worst))
             if system < 0:
                 return False
         elif system == DUAL:
