@@ -55,8 +55,7 @@ def account_contact(A: Scene, c: int, t: float) -> None:
     PAR.restitution += normal
     PAR.frictional += tangential
     PAR.external += f * (pushed.work_unaccelerated + f * (pushed.work - pushed.work_unaccelerated))
-    if f > 0.0:
-        log_contact(A, c, f, f * pushed.length)
+    log_contact(A, c, f, f * pushed.length)
 
 
 @nonallocating

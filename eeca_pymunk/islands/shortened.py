@@ -130,6 +130,7 @@ def scale_impulses(A: Scene, root: int, t: float) -> None:
             pushed.normal, pushed.tangential = part * pushed.normal, part * pushed.tangential
             pushed.work, pushed.work_unaccelerated = part * pushed.work, part * pushed.work_unaccelerated
             pushed.change *= part
+            # Their sum has no losses, by the choice of q; velocities 0 enter none for each.
             pushed.un_before, pushed.un_after, pushed.ut_before, pushed.ut_after = 0.0, 0.0, 0.0, 0.0
     clear_places(A, MINE)
 

@@ -99,7 +99,7 @@ def excess_length(
     # A motion that is no solution does not tell how long the interval may be. Contacts that are not solved in a long
     # interval may be in a short one, if the step has work for all of these.
     hard = interval.few and has_work_for(A, J, interval.t, interval.h, UNSOLVED_PART, effort)
-    return UNSOLVED_PART if hard and J.PROGRESS.length == LONG else min(far, UNSOLVED_PART)
+    return UNSOLVED_PART if hard and J.PROGRESS.attempt == LONG else min(far, UNSOLVED_PART)
 
 
 @kernel
@@ -109,8 +109,8 @@ def solve_attempt(A: Scene, J: Joints, tried: Attempt, root: int, last: bool) ->
     interval, progress, outcome, before = tried.interval, J.PROGRESS, SOLVED, J.PROGRESS.effort
     L, m, n, h = tried.contacts.L, interval.m, interval.n, interval.h
     if not last:  # contacts of a short interval are solved more easily than those of components stepped in parts
-        progress.length = LONG if m > 0 and h * UNSOLVED_PART**2 > A.PAR.dt / RESOLUTION else SHORT
-    part = max(INTERVAL_SHARE, n / (A.BODY.shape[0] - 1)) if progress.length == LONG else INTERVAL_SHARE
+        progress.attempt = LONG if m > 0 and h * UNSOLVED_PART**2 > A.PAR.dt / RESOLUTION else SHORT
+    part = max(INTERVAL_SHARE, n / (A.BODY.shape[0] - 1)) if progress.attempt == LONG else INTERVAL_SHARE
     progress.share = before + part * max(work_left(A, J), 0.0)
     if m > 0:
         EXPECTED = np.zeros(len(L))
@@ -126,7 +126,7 @@ def solve_attempt(A: Scene, J: Joints, tried: Attempt, root: int, last: bool) ->
     solved, far = outcome == SOLVED, UNSOLVED_PART
     if outcome != GIVEN_UP:
         far = excess_length(A, J, interval, L, root, progress.effort - before, solved, last)
-    progress.length = FINAL
+    progress.attempt = FINAL
     return solved, far
 
 

@@ -21,13 +21,13 @@ from .gathered import gather_component, number_of
 
 
 @nonallocating
-def step_in_scratch(J: Joints, s: int, h: float, length: float, whole: bool) -> None:
+def step_in_scratch(J: Joints, s: int, h: float, length: float, untouched: bool) -> None:
     """Step component s by h from the state in its scratch, which then has the end. The status is in STEPPED.
 
-    `whole`: whether order 4 is allowed, as no contact acts in the interval.
+    `untouched`: whether order 4 is allowed, as no contact acts in the interval.
     """
     J.PROGRESS.effort += COMPONENT_WORK + COMPONENT_WORK_BODY * (J.COMPONENT[s].end_body - J.COMPONENT[s].first_body)
-    J.STEPPED[s].status = take_step(workspace(J, s), h, J.TALLY.order if whole else 2, length, J.STEPPED[s])
+    J.STEPPED[s].status = take_step(workspace(J, s), h, J.TALLY.order if untouched else 2, length, J.STEPPED[s])
 
 
 @inlined

@@ -35,6 +35,18 @@ def restore_joints(J: Joints, s: int) -> None:
 
 
 @nonallocating
+def compliance_of(J: Joints, s: int) -> float:
+    """The compliance of the joints of component s, one for all of them."""
+    return float(J.JOINT[J.COUPLING[J.COMPONENT[s].first_joint].joint].compliance)
+
+
+@nonallocating
+def compliance_before(J: Joints, s: int) -> float:
+    """`compliance_of` component s at the start of its interval."""
+    return float(J.KEPT[J.COUPLING[J.COMPONENT[s].first_joint].joint].compliance)
+
+
+@nonallocating
 def gave_way(J: Joints, s: int) -> bool:
     """Whether joints of component s hold worse in the interval that it has just taken than they did at its start:
     elastically, or by linear rows. Not if an earlier step has left some apart: these contradict one another in an
@@ -43,8 +55,7 @@ def gave_way(J: Joints, s: int) -> bool:
     B = J.STEPPED[s]
     if B.status < ELASTIC:
         return False
-    first = J.COUPLING[J.COMPONENT[s].first_joint].joint  # has the compliance of all
-    worse = J.JOINT[first].compliance > J.KEPT[first].compliance and B.gave > max(B.misfit, NEARLY_HELD)
+    worse = compliance_of(J, s) > compliance_before(J, s) and B.gave > max(B.misfit, NEARLY_HELD)
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         touched = J.KEPT[J.COUPLING[k].joint].touched
         if touched == LEFT_APART or (touched == GIVES_WAY and B.status == ELASTIC and not worse):
@@ -60,10 +71,9 @@ def takes_shorter(A: Scene, J: Joints, s: int, t: float, h: float, effort: float
     round-off, would stop the step. Nor below GIVEN_INTERVAL: limits that contradict each other lie ever closer ahead of
     what slows down between them, and intervals that end before would come to no end. Without work it is shorter, too:
     the step then ends early."""
-    first = J.COUPLING[J.COMPONENT[s].first_joint].joint  # has the compliance of all
     if h <= GIVEN_INTERVAL * A.PAR.planned or not gave_way(J, s):
         return False
-    if J.KEPT[first].compliance == 0.0 or J.STEPPED[s].gave > NEARLY_HELD or work_left(A, J) < 0.0:
+    if compliance_before(J, s) == 0.0 or J.STEPPED[s].gave > NEARLY_HELD or work_left(A, J) < 0.0:
         return True
     return has_work_for(A, J, t, h, 2.0, effort)
 
@@ -81,7 +91,7 @@ def some_taut(J: Joints, groups: Groups) -> bool:
 def some_give(J: Joints, groups: Groups) -> bool:
     """Whether joints of a component have given way elastically in its last step."""
     for s in groups.JOINTED:
-        if J.JOINT[J.COUPLING[J.COMPONENT[s].first_joint].joint].compliance > 0.0:
+        if compliance_of(J, s) > 0.0:
             return True
     return False
 

@@ -67,7 +67,7 @@ def begin_agreement(S: Agreement, slow: float, fast: float, pull: float, owed: f
 @nonallocating
 def gives_up(J: Joints, more: float) -> bool:
     """Whether a long interval that is not solved is given up, as it has no work for `more` operations."""
-    return bool(J.PROGRESS.length == LONG and J.PROGRESS.effort + more >= J.PROGRESS.share)
+    return bool(J.PROGRESS.attempt == LONG and J.PROGRESS.effort + more >= J.PROGRESS.share)
 
 
 @nonallocating

@@ -92,13 +92,13 @@ def iterate(A: Scene, J: Joints, interval: Interval, X: Iterates, S: Agreement, 
     for outer in range(X.manner.rounds):
         # Few contacts are solved gently without work, many at least once, but in long intervals.
         taken, before = J.PROGRESS.effort - before, J.PROGRESS.effort
-        if before + taken >= J.PROGRESS.share and (few or outer > 0 or J.PROGRESS.length == LONG):
+        if before + taken >= J.PROGRESS.share and (few or outer > 0 or J.PROGRESS.attempt == LONG):
             return S.converged > 0 or not gives_up(J, taken)
         J.PROGRESS.effort += joints.CONTACT_WORK * (m + 2)
         build = outer % joints.CHORD == 0
         advance(A, J, interval, X.L, X.B, build, X.FORESEEN if outer > 0 else X.UNKNOWN)
         payable = RESOLUTION * (J.PROGRESS.effort - begun) <= J.PROGRESS.budget  # many shorter intervals
-        if J.PROGRESS.length == LONG and (X.manner.exactly or payable) and some_refused(J, groups):
+        if J.PROGRESS.attempt == LONG and (X.manner.exactly or payable) and some_refused(J, groups):
             return False
         S.bent = align(interval) if X.free else 0.0
         if outer > 0 and end_iterations(interval, X, S, outer):
@@ -142,7 +142,7 @@ def solve_contacts(
     Each iteration steps the components under L, and ends if their velocities agree with FORESEEN, those that the
     contacts' laws gave before; else it solves these laws with the columns, for L and FORESEEN. Columns are computed
     again in every CHORD-th iteration, else updated (`broyden`). Solutions are *exact* if contacts are few or elastic
-    (`Manner`). A long interval (PROGRESS.length) is given up where a component gives way or is not stepped as a whole,
+    (`Manner`). A long interval (PROGRESS.attempt) is given up where a component gives way or is not stepped as a whole,
     if solutions are not exact only if the step has work for many shorter intervals; and where contacts have not
     converged when its work is spent, or is for what replaces their impulses. Iterations end in six ways:
 

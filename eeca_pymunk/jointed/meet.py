@@ -57,13 +57,11 @@ def wait_until(A: Scene, J: Joints, root: int, end: float, t: float) -> None:
 
 
 @kernel
-def end_by(A: Scene, J: Joints, root: int, t: float) -> bool:
+def end_by(A: Scene, J: Joints, root: int, t: float) -> None:
     """End the interval of an island at instant t, or where it fits before t (`fitting_end`), from where it waits until
-    t; whether it ends before t."""
+    t."""
     shorten(A, J, root, t)
-    end = fitting_end(A, J, root, t)
-    wait_until(A, J, root, end, t)
-    return bool(end < t)
+    wait_until(A, J, root, fitting_end(A, J, root, t), t)
 
 
 @kernel

@@ -92,7 +92,7 @@ def settle(A: Scene, J: Joints, interval: Interval, X: Iterates, S: Agreement) -
         S.converged, S.bent = 0, np.inf if free else 0.0
     if S.bent > joints.ARM_ERROR:
         S.bent = advance_aligned(A, J, interval, L, B, free)
-        if S.bent > joints.ARM_LEFT and J.PROGRESS.length == LONG:
+        if S.bent > joints.ARM_LEFT and J.PROGRESS.attempt == LONG:
             return GIVEN_UP  # contacts move less in a shorter interval
     # If joints pull hard, velocities, and so works, are only as exact as they agree.
     known = joints.LOSS_ROUND_OFF

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ..compiled import nonallocating
@@ -18,6 +20,15 @@ from .lock import lock_energy, restore_momenta
 from .start import closing_share, compute_rows, springs_of
 
 
+class Apart(NamedTuple):
+    """How the joints of a component stand at the start of a step."""
+
+    edited: bool  # whether any was EDITED since the last step
+    unknown: bool  # whether any is TAKEN_OVER
+    closes: bool  # whether any is to be closed
+    own: bool  # whether none is apart by an edit, and no body was edited
+
+
 @nonallocating
 def error_of(W: Workspace, k: int) -> float:
     """|g| of joint k, of its rows that act. Rows must be those of the present poses."""
@@ -29,17 +40,13 @@ def error_of(W: Workspace, k: int) -> float:
 
 
 @nonallocating
-def set_targets(W: Workspace, h: float) -> tuple[bool, bool, bool, bool]:
+def set_targets(W: Workspace, h: float) -> Apart:
     """Before joints are closed: set the targets of those that are apart to the part of their error that remains after
     this step, and set or release limits that are passed or left.
 
     Rows must be those of the present poses. Joints that will still be apart are marked APART, or LEFT_APART if a step
     has left them so; they keep the rest of their error over the step, so that it does no work. Elastic joints
     (GIVES_WAY) stay as they are.
-
-    Returns:
-        edited: whether any joint was EDITED since the last step.  unknown: whether any is TAKEN_OVER.
-        apart: whether any is to be closed.  own: whether no joint is apart by an edit, and no body was edited.
     """
     joint, hinge, link = W.J.JOINT, W.J.HINGE, W.link
     edited, unknown, apart, own = False, False, False, True
@@ -66,7 +73,7 @@ def set_targets(W: Workspace, h: float) -> tuple[bool, bool, bool, bool]:
                 hinge[k].target[r] = hinge[k].value[r] * left if acts(link, k, r) else 0.0
             joint[j].touched = 0 if not left > 0.0 else LEFT_APART if was == LEFT_APART else APART
             own = own and was == LEFT_APART
-    return edited, unknown, apart, own and not (edited or unknown)
+    return Apart(edited, unknown, apart, own and not (edited or unknown))
 
 
 @nonallocating
@@ -122,10 +129,10 @@ def keep_closed(W: Workspace) -> None:
 @nonallocating
 def close_joints(W: Workspace, h: float, ledger: JointLedger) -> bool:
     """Close joints that are apart by the share of one step, and make velocities fit them after an edit. The costs enter
-    the ledger of the step. Returns `own`, see `set_targets`."""
+    the ledger of the step. Returns `Apart.own`."""
     stored = springs_of(W)
-    edited, unknown, apart, own = set_targets(W, h)
-    if apart:
+    edited, unknown, closes, own = set_targets(W, h)
+    if closes:
         before, supports, carried = farthest(W), ledger.supports, ledger.frame_work
         project(W, POSES)
         taken = springs_of(W) - stored

@@ -9,7 +9,7 @@ themselves give, and from the third on become ten times softer from rung to rung
 
 Joints that contradict one another (`contradicts`) become elastic at once: all rungs before would fail alike. Where a
 shorter interval is tried instead, exact joints take the step as a whole or not at all if the interval is long
-(PROGRESS.length), or if the budget does not pay RESOLUTION times for what the rungs before have taken. The work of all
+(PROGRESS.attempt), or if the budget does not pay RESOLUTION times for what the rungs before have taken. The work of all
 rungs together is bounded; without work for more than LEAST_SOLUTIONS the order is 2. Elastic joints keep at least the
 same compliance in later steps until they are closed.
 """
@@ -201,8 +201,8 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
         forget_parts(W)
     progress.most_epsilon, begun = joints.REDUNDANT_MOST, progress.effort
     while rung < RUNGS and not progress.effort > progress.limit:
-        dear = progress.length > FINAL and RESOLUTION * (progress.effort - begun) > progress.budget
-        if (progress.length == LONG or dear) and WHOLE_STEP < rung < ELASTIC_RUNG:
+        dear = progress.attempt > FINAL and RESOLUTION * (progress.effort - begun) > progress.budget
+        if (progress.attempt == LONG or dear) and WHOLE_STEP < rung < ELASTIC_RUNG:
             break
         compliance = compliance_on(rung, h, yields, first.compliance)
         clear_ledger(W.J.PART_LEDGER)

@@ -95,7 +95,7 @@ class Progress(Record):
     share: float  # of `effort`, at which an interval gives up
     limit: float  # of `effort`, at which the step of a component gives up what its ladder has before linear rows
     most_epsilon: float  # largest term on the diagonal of redundant rows (`..newton.solve`)
-    length: int  # of an interval with contacts: FINAL, SHORT or LONG
+    attempt: int  # at an interval with contacts: FINAL, SHORT or LONG
     kept: int  # 1 + number of the component of whose last motion in this interval the scratch has factors; or 0
 
 
@@ -171,6 +171,6 @@ class JointLedger(Record):
 # NEARLY_HELD; joints gave way elastically in some part; rows of the start held at mid-velocity in some part (energy
 # conserved, joints to O(h^2)), or all bodies moved as one (`..joints.lock.move_rigidly`).
 EXACT, HALVED, ELASTIC, LINEAR = 0, 1, 2, 3
-# Length of an interval with contacts: no other attempt follows; a shorter one may, also for a LONG one, in which no
-# component is stepped in parts.
+# Attempts at an interval with contacts: no other follows; a shorter one may, also for a LONG one, in which no component
+# is stepped in parts.
 FINAL, SHORT, LONG = 0, 1, 2

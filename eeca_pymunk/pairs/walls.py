@@ -62,12 +62,8 @@ def seek_walls(A: Scene, s: int) -> bool:
         for w in range(BOX.shape[0]):
             room = room and try_wall(A, s, w)
         return room
-    # `cells_of` the box around the circle, but for round-off, by which another cell might be the first: then lists and
-    # contacts would have another order, and solves other bits.
     x, y, radius = A.MARK[s].x, A.MARK[s].y, A.MARK[s].reach
-    length, left, bottom = GRID.wall_cell, x - GRID.left, y - GRID.bottom
-    west, east = cell_of(left - radius, length, columns), cell_of(left + radius, length, columns)
-    south, north = cell_of(bottom - radius, length, rows), cell_of(bottom + radius, length, rows)
+    west, east, south, north = cells_of(GRID, x - radius, y - radius, x + radius, y + radius)
     for row in range(south, north + 1):
         for column in range(west, east + 1):
             c = row * columns + column
