@@ -15,7 +15,6 @@ from .model.contacts import Impulse
 from .model.values import DYNAMIC, KINEMATIC
 
 ROUND = 1e-14  # round-off, relative to coordinates and to the largest speed
-_LESS = 1e-9  # margin of the reach of a body, relative to its coordinates
 
 
 @kernel
@@ -101,36 +100,38 @@ def touches_sleeper(LOG: Rows[Impulse], OWNER: IntArray, ASLEEP: IntArray, STILL
 
 @kernel
 def approaches(
-    STATES: FloatArray, MOVES: IntArray, SIZE: FloatArray, INVERSE: FloatArray, BOXES: FloatArray, NEAR: IntArray,
-    dt: float, pull: float,
+    STATES: FloatArray, MOVES: IntArray, FREE: IntArray, SIZE: FloatArray, INVERSE: FloatArray, BOXES: FloatArray,
+    MET: IntArray, dt: float, pull: float,
 ) -> int:  # fmt: skip
-    """Find the bodies that may come to the box of a sleeping shape within dt: those that move freely reach no farther
-    than
+    """Find the boxes of sleeping shapes to which bodies may come within dt: those that move freely come no farther than
 
         SIZE + dt (|v| + dt (|g| + |f| / m)).
 
-    Some that do not reach one may be among them.
-
     Args:
-        MOVES (m,): bodies that may.  SIZE (N,): length from the origin of a body to its farthest point.
+        MOVES (m,): bodies that may.  FREE (N,): 1 for dynamic ones; others move by their velocities only.
+        SIZE (N,): length from the origin of a body to its farthest point, 0 if it has no shape.
         INVERSE (N,): 1/mass.  BOXES (w, 4): left, bottom, right and top of sleeping shapes.
-        NEAR (m,): out.  pull: |g|.
+        MET (w,): out, the numbers of those boxes.  pull: |g|.
 
     Returns:
-        the number of entries of NEAR.
+        the number of entries of MET. Bodies whose states are not finite meet none: the step raises.
     """
-    now, count = STATES[READ], 0
-    for k in range(MOVES.shape[0]):
+    now, m = STATES[READ], MOVES.shape[0]
+    REACH, count = np.full(m, -math.inf), 0
+    for k in range(m):
         i = MOVES[k]
-        x, y, vx, vy, fx, fy = now[i, 0], now[i, 1], now[i, 3], now[i, 4], now[i, 6], now[i, 7]
-        force = math.sqrt(fx * fx + fy * fy) * INVERSE[i]
-        reach = SIZE[i] + dt * (math.sqrt(vx * vx + vy * vy) + dt * (pull + force))
-        reach += _LESS * (reach + abs(x) + abs(y))
-        for w in range(BOXES.shape[0]):
-            # Written so that nan is near.
-            apart = BOXES[w, 0] > x + reach or BOXES[w, 2] < x - reach
-            if not (apart or BOXES[w, 1] > y + reach or BOXES[w, 3] < y - reach):
-                NEAR[count] = i
+        speed = math.sqrt(now[i, 3] * now[i, 3] + now[i, 4] * now[i, 4])
+        force = math.sqrt(now[i, 6] * now[i, 6] + now[i, 7] * now[i, 7]) * INVERSE[i]
+        reach = SIZE[i] + dt * (speed + dt * (pull + force))
+        moves = FREE[i] == 1 or speed > 0.0 or now[i, 5] != 0.0
+        if SIZE[i] > 0.0 and moves and reach < math.inf:
+            REACH[k] = reach
+    for w in range(BOXES.shape[0]):
+        for k in range(m):
+            x, y, reach = now[MOVES[k], 0], now[MOVES[k], 1], REACH[k]
+            beside = BOXES[w, 0] <= x + reach and BOXES[w, 2] >= x - reach
+            if beside and BOXES[w, 1] <= y + reach and BOXES[w, 3] >= y - reach:
+                MET[count] = w
                 count += 1
                 break
     return count

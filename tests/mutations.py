@@ -35,6 +35,8 @@ class Mutation:
 
 MUTATIONS = (
     # Sleeping.
+    Mutation("sleeping: boxes of sleepers that nothing reaches", "sleepers.py", "if SIZE[i] > 0.0 and moves and",
+             "if SIZE[i] > 0.0 and", "space/test_sleeping.py", "boxes_that_may"),
     Mutation("sleeping: what a kinematic body carries", "sleepers.py", "            awake[PAIRS[p, 1]] = 1",
              "            awake[PAIRS[p, 0]] = 1", "space/test_sleeping.py", "groups_sleep"),
     # What no contact of an interval tells.

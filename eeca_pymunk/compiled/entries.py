@@ -72,7 +72,7 @@ ENTRIES = {
     "rehearsing:accept_rounding": "{Reading}",
     "rehearsing:alter_end": "{Reading} i8",
     "sleepers:rests": "f8[3] i8[2] i8[1] f8[1] f8[1] i8[1] f8 f8 f8",
-    "sleepers:approaches": "f8[3] i8[1] f8[1] f8[1] f8[2] i8[1] f8 f8",
+    "sleepers:approaches": "f8[3] i8[1] i8[1] f8[1] f8[1] f8[2] i8[1] f8 f8",
     "sleepers:connect": "i8[2] i8[1] i8[1] i8[1]",
     "sleepers:touches_sleeper": "Impulse[1] i8[1] i8[1] i8[1] i8",
     "world_rows:write_rows": "{Reading}",

@@ -123,11 +123,9 @@ class Sleep:
     def wake_ahead(self, dt: float) -> bool:
         """Wake the sleeping bodies that a kinematic body may meet in the step that begins with the states read; unless
         the world is plain, all that may be met, since steps that call functions are not repeated. Whether any woke."""
-        world, found = self.world, False
-        for i in self._near(dt) if len(self._moves[world.plain]) else ():
-            if (box := self._reached(i, dt)) is not None:
-                found |= self._wake_within(box)
-        return found
+        met = self._met(dt) if len(self._moves[self.world.plain]) else []
+        self.wake({self._boxes[0][w] for w in met} if met else ())
+        return len(met) > 0
 
     def _reached(self, i: int, dt: float) -> pymunk.BB | None:
         """A box that contains all shapes of body i within dt; None if the body does not move or is not finite."""
@@ -153,21 +151,23 @@ class Sleep:
                 return groups
             groups = remaining
 
-    def _near(self, dt: float) -> list[int]:
-        """Those of `_moves` (rows) that may reach the box of a sleeping shape within dt, see `sleepers.approaches`."""
+    def _met(self, dt: float) -> list[int]:
+        """The boxes that `_moves` may reach within dt, see `sleepers.approaches`."""
         plain, world = self.world.plain, self.world
         if plain not in self._nears:
-            near = np.zeros(len(self._moves[plain]), np.int64)
-            of = world.STATES, self._moves[plain], self._far, world.bodies.inverse_mass.copy(), self._boxes
-            self._nears[plain] = near, approaches.bind(*of, near)
-        near, call = self._nears[plain]
-        return near[: call(dt, math.hypot(*world.gravity))].tolist()  # type: ignore[no-any-return]
+            far, boxes = np.where(self._size > 0.0, self._far, 0.0), self._boxes[1]
+            met, free = np.zeros(len(boxes), np.int64), world.bodies.dynamic.astype(np.int64)
+            of = world.STATES, self._moves[plain], free, far, world.bodies.inverse_mass.copy(), boxes
+            self._nears[plain] = met, approaches.bind(*of, met)
+        met, call = self._nears[plain]
+        return met[: call(dt, math.hypot(*world.gravity))].tolist()  # type: ignore[no-any-return]
 
     @cached_property
-    def _boxes(self) -> FloatArray:
-        """(w, 4) left, bottom, right and top of the shapes of sleeping bodies, in world coordinates."""
-        boxes = [(b.left, b.bottom, b.right, b.top) for body in self._sleepers for b in (s.bb for s in body.shapes)]
-        return np.array(boxes, float).reshape(-1, 4)
+    def _boxes(self) -> tuple[list[pymunk.Body], FloatArray]:
+        """The sleeping body of each of w shapes, and (w, 4) their left, bottom, right and top in world coordinates."""
+        shapes = [(body, shape.bb) for body in self._sleepers for shape in body.shapes]
+        boxes = [(box.left, box.bottom, box.right, box.top) for _, box in shapes]
+        return [body for body, _ in shapes], np.array(boxes, float).reshape(-1, 4)
 
     def rested(self, bodies: Sequence[pymunk.Body]) -> FloatArray:
         """(N,) the times for which these bodies have been at rest, 0 for those that are not in the world."""

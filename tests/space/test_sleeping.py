@@ -582,14 +582,23 @@ def test_the_copy_of_a_stepper_sleeps_and_wakes_as_its_original(
     assert slept[0][40] == [False] * 3 + [True, True, False]
 
 
-@pytest.mark.parametrize(("start", "near"), [(-3.0, True), (-3.2, False), (math.nan, True)])
-def test_movers_that_may_come_to_a_box(start: float, near: bool) -> None:
-    """v dt + (|g| + |f| / m) dt^2 = 2 * .5 + (4 + 6 / 2) * .25 = 2.75, and a size of .25: 3 to a box at 0."""
-    STATES, NEAR = np.zeros((2, 2, 9)), np.zeros(1, np.int64)
-    STATES[0, 1, [0, 3, 7]] = start, -2.0, 6.0
-    SIZE, INVERSE, BOXES = np.array([9.0, 0.25]), np.array([1.0, 0.5]), np.array([[0.0, -1.0, 1.0, 1.0]])
-    assert approaches(STATES, np.array([1]), SIZE, INVERSE, BOXES, NEAR, 0.5, 4.0) == near
-    assert not near or NEAR[0] == 1
+@pytest.mark.parametrize(
+    ("start", "speed", "size", "free", "met"),
+    [
+        (-3.0, -2.0, 0.25, 1, [1]), (-3.2, -2.0, 0.25, 1, []), (math.nan, -2.0, 0.25, 1, []),
+        (-3.0, math.inf, 0.25, 1, []), (-2.0, 0.0, 0.25, 1, [1]), (-2.0, 0.0, 0.25, 0, []), (-2.0, 0.1, 0.25, 0, [1]),
+        (-3.0, -2.0, 0.0, 1, []),
+    ],
+)  # fmt: skip
+def test_boxes_that_may_be_reached(start: float, speed: float, size: float, free: int, met: list[int]) -> None:
+    """v dt + (|g| + |f| / m) dt^2 = 2 * .5 + (4 + 6 / 2) * .25 = 2.75, and a size of .25: 3 to the second box, at 0.
+    Kinematic bodies at rest and bodies without shapes meet none."""
+    STATES, MET = np.zeros((2, 2, 9)), np.full(2, -1)
+    STATES[0, 1, [0, 3, 7]] = start, speed, 6.0
+    FREE, SIZE, INVERSE = np.array([1, free]), np.array([9.0, size]), np.array([1.0, 0.5])
+    BOXES = np.array([[0.0, 1.0e3, 1.0, 1.1e3], [0.0, -1.0, 1.0, 1.0]])
+    count = approaches(STATES, np.array([1]), FREE, SIZE, INVERSE, BOXES, MET, 0.5, 4.0)
+    assert MET[:count].tolist() == met
 
 
 @pytest.mark.parametrize("turned", [False, True])
