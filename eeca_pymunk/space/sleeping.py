@@ -20,6 +20,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
+from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -42,6 +43,13 @@ if TYPE_CHECKING:
     from .world import World
 
 AT_FIRST: IntArray = np.array([0, SLEEP_PATIENCE])  # `timers` of a new Sleep
+
+
+def boxes_of(bodies: Iterable[pymunk.Body]) -> tuple[list[pymunk.Body], FloatArray]:
+    """The body of each of w shapes, and (w, 4) their left, bottom, right and top in world coordinates."""
+    shapes = [(body, shape.bb) for body in bodies for shape in body.shapes]
+    boxes = [(box.left, box.bottom, box.right, box.top) for _, box in shapes]
+    return [body for body, _ in shapes], np.array(boxes, float).reshape(-1, 4)
 
 
 class Sleep:
@@ -77,7 +85,6 @@ class Sleep:
         self._ready: IntArray = np.zeros(len(bodies), np.int64)
         row = world.IDS[BODY_ROW]
         self._size: FloatArray = np.where(row >= 0, world.BODY["extent"][row], 0.0)
-        self._far: FloatArray = self._size + np.hypot(*bodies.center_of_gravity.T)  # from the body's origin
         moved: IntArray = bodies.dynamic.astype(np.int64)
         self._rests = rests.bind(world.STATES, world.IDS, moved, self._size, self._rested, self._ready)
         self._still = bodies.asleep.astype(np.int64), bodies.static.astype(np.int64)
@@ -85,7 +92,7 @@ class Sleep:
         # Bodies that may wake others before the step, see `wake_ahead`; the index is `world.plain`.
         movers: tuple[BoolArray, BoolArray] = ~bodies.static, ~bodies.static & ~bodies.dynamic
         self._moves: list[IntArray] = [np.flatnonzero(moves) for moves in movers]
-        self._nears: dict[bool, tuple[IntArray, Callable[[float, float], int]]] = {}
+        self._nears: dict[bool, tuple[list[pymunk.Body], IntArray, Callable[[float, float], int]]] = {}
 
     def changed(self) -> bool:
         """Read the states, unless all bodies sleep; returns whether other bodies may sleep now than when this was made,
@@ -123,51 +130,41 @@ class Sleep:
     def wake_ahead(self, dt: float) -> bool:
         """Wake the sleeping bodies that a kinematic body may meet in the step that begins with the states read; unless
         the world is plain, all that may be met, since steps that call functions are not repeated. Whether any woke."""
-        met = self._met(dt) if len(self._moves[self.world.plain]) else []
-        self.wake({self._boxes[0][w] for w in met} if met else ())
-        return len(met) > 0
-
-    def _reached(self, i: int, dt: float) -> pymunk.BB | None:
-        """A box that contains all shapes of body i within dt; None if the body does not move or is not finite."""
-        world, bodies = self.world, self.world.bodies
-        x, y, _, vx, vy, spin, fx, fy, _ = world.state[i].tolist()
-        if self._size[i] == 0.0 or (not bodies.dynamic[i] and vx == vy == spin == 0.0):
-            return None
-        pull = math.hypot(*world.gravity) + math.hypot(fx, fy) * bodies.inverse_mass[i]
-        reach = float(self._far[i]) + dt * (math.hypot(vx, vy) + dt * pull)
-        # If it is not finite, the step raises.
-        return pymunk.BB(x - reach, y - reach, x + reach, y + reach) if math.isfinite(x + y + reach) else None
+        plain, world = self.world.plain, self.world
+        if len(self._moves[plain]) == 0:
+            return False
+        if plain not in self._nears:
+            of, boxes = boxes_of(self._sleepers)
+            met = np.zeros(len(of), np.int64)
+            self._nears[plain] = of, met, approaches.bind(world.STATES, self._moves[plain], *self._reach, boxes, met)
+        of, met, call = self._nears[plain]
+        # In a fixed order, unlike a set: pymunk lists woken bodies in that in which they are woken.
+        reached = dict.fromkeys([of[w] for w in met[: call(dt, math.hypot(*world.gravity))].tolist()])
+        self.wake(reached)
+        return len(reached) > 0
 
     def _left_alone(self, groups: list[list[pymunk.Body]], dt: float) -> list[list[pymunk.Body]]:
         """Those of the groups that `wake_ahead` would not wake in the next step, if all other bodies may move in it."""
         row, moves = self.world.bodies.row, self._moves[self.world.plain].tolist()
         self.world.gather()
+        of, boxes = boxes_of(chain.from_iterable(groups))
+        met = np.zeros(len(of), np.int64)
         while True:
             sleepers = {row[body] for group in groups for body in group}
-            boxes = [box for i in moves if i not in sleepers and (box := self._reached(i, dt)) is not None]
-            met = {shape.body for box in boxes for shape in self.space.bb_query(box, pymunk.ShapeFilter())}
-            remaining = [group for group in groups if met.isdisjoint(group)]
+            others = np.array([i for i in moves if i not in sleepers], np.int64)
+            count = approaches(self.world.STATES, others, *self._reach, boxes, met, dt, math.hypot(*self.world.gravity))
+            reached = {of[w] for w in met[:count].tolist()}
+            remaining = [group for group in groups if reached.isdisjoint(group)]
             if len(remaining) == len(groups):
                 return groups
             groups = remaining
 
-    def _met(self, dt: float) -> list[int]:
-        """The boxes that `_moves` may reach within dt, see `sleepers.approaches`."""
-        plain, world = self.world.plain, self.world
-        if plain not in self._nears:
-            far, boxes = np.where(self._size > 0.0, self._far, 0.0), self._boxes[1]
-            met, free = np.zeros(len(boxes), np.int64), world.bodies.dynamic.astype(np.int64)
-            of = world.STATES, self._moves[plain], free, far, world.bodies.inverse_mass.copy(), boxes
-            self._nears[plain] = met, approaches.bind(*of, met)
-        met, call = self._nears[plain]
-        return met[: call(dt, math.hypot(*world.gravity))].tolist()  # type: ignore[no-any-return]
-
     @cached_property
-    def _boxes(self) -> tuple[list[pymunk.Body], FloatArray]:
-        """The sleeping body of each of w shapes, and (w, 4) their left, bottom, right and top in world coordinates."""
-        shapes = [(body, shape.bb) for body in self._sleepers for shape in body.shapes]
-        boxes = [(box.left, box.bottom, box.right, box.top) for _, box in shapes]
-        return [body for body, _ in shapes], np.array(boxes, float).reshape(-1, 4)
+    def _reach(self) -> tuple[IntArray, FloatArray, FloatArray]:
+        """FREE, SIZE and INVERSE of `sleepers.approaches`."""
+        bodies = self.world.bodies
+        far = np.where(self._size > 0.0, self._size + np.hypot(*bodies.center_of_gravity.T), 0.0)
+        return bodies.dynamic.astype(np.int64), far, bodies.inverse_mass.copy()
 
     def rested(self, bodies: Sequence[pymunk.Body]) -> FloatArray:
         """(N,) the times for which these bodies have been at rest, 0 for those that are not in the world."""
@@ -193,15 +190,11 @@ class Sleep:
             if self.world.records[shape] is not None:
                 left, bottom, right, top = shape.bb
                 room = 1e-3 * (right - left + top - bottom)
-                self._wake_within(pymunk.BB(left - room, bottom - room, right + room, top + room))
+                box = pymunk.BB(left - room, bottom - room, right + room, top + room)
+                near = [shape.body for shape in self.space.bb_query(box, pymunk.ShapeFilter())]
+                self.wake(dict.fromkeys([body for body in near if body is not None and body.is_sleeping]))
         if self.world.static_moved_since() or self.world.edited():
             self.wake()
-
-    def _wake_within(self, box: pymunk.BB) -> bool:
-        shapes = self.space.bb_query(box, pymunk.ShapeFilter())
-        woken = {body for shape in shapes if (body := shape.body) is not None and body.is_sleeping}
-        self.wake(woken)
-        return bool(woken)
 
     def is_touched(self, log: memoryview, count: int) -> bool:
         """Whether a moving body has touched a sleeping one in the first `count` impulses of the log (`Impulse`)."""
