@@ -186,8 +186,9 @@ class Sleep:
         fallen asleep at the end of the last step, of which this does not know."""
         if not private_sleep.asleep(self.space):
             return
-        for shape in self.world.records.keys() - set(self.space.shapes):
-            if self.world.records[shape] is not None:
+        present = set(self.space.shapes)
+        for shape, record in self.world.records.items():
+            if record is not None and shape not in present:
                 left, bottom, right, top = shape.bb
                 room = 1e-3 * (right - left + top - bottom)
                 box = pymunk.BB(left - room, bottom - room, right + room, top + room)
