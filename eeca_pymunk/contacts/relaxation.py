@@ -2,7 +2,8 @@
 
 Sweeps pass a stack's weight to its floor slowly; a direct solve does it at once, as soon as sweeps have found the
 active contacts. In disordered moving piles these change with every step, and sweeps alone cost less. Where neither
-converges, as with light bodies wedged between heavy ones, few contacts are solved by homotopies (`..rows.laws`).
+converges, as with light bodies wedged between heavy ones, few contacts are solved by homotopies (`..rows.laws`), and
+direct solves are left out for some steps.
 
 The state of an island lasts across steps (`Rest.augmentation`, `wait`, `backoff`): log10 of the augmentation R, solves
 without direct ones before the next that has some, and their number after its next failure.
@@ -37,14 +38,16 @@ def relax(
         fine: change of velocity in a sweep at which the solve ends.
         coarse: that with which a moving island is content, or one near rest after a direct solve.
         STATE: of the island, changed.
-        most: largest number of sweeps of an island that moves, or waits for its next direct solve.
+        most: largest number of sweeps of a large island that moves, or waits for its next direct solve.
         out: numbers of sweeps and direct solves, and operations of homotopies, are added.
 
     Returns:
         The change of velocity in the last sweep.
     """
-    if rounds == 0 or STATE.wait > 0.0:
+    few, waits = solved_exactly(problem.n, problem.m), STATE.wait > 0.0
+    if rounds == 0 or waits:
         STATE.wait = max(STATE.wait - 1.0, 0.0)
+    if rounds == 0 or (waits and not few):
         sweeps, worst = sweep_conjugate(problem, L, V, max(fine, coarse), most)
         out.sweeps += sweeps
         return worst
@@ -55,8 +58,8 @@ def relax(
     out.sweeps += sweeps
     if worst <= fine:
         return worst
-    fails, done, last, few = 0, 0, worst, solved_exactly(problem.n, problem.m)
-    while done < rounds:
+    fails, done, last = 0, 0, worst
+    while done < rounds and not waits:
         passes = REFINEMENTS_INTERVAL if STATE.augmentation > REFINED_AUGMENTATION else 1
         STATE.augmentation, worst, taken = refine_and_sweep(
             problem, L, V, FREE, STATE.augmentation, passes, fine, worst, intervals.SWEEPS_AFTER
@@ -70,12 +73,11 @@ def relax(
         last = worst
         if fails >= (intervals.FAILED_DIRECT_AGAIN if few or STATE.backoff > 0.0 else intervals.FAILED_DIRECT):
             break
-    if few and worst > max(fine, coarse):
-        worst = solve_few(problem, L, V, max(fine, coarse), out)
     out.direct += done
-    if worst > max(fine, coarse) and problem.m > intervals.BACKOFF_CONTACTS:
-        STATE.backoff = min(2.0 * STATE.backoff + 2.0, intervals.LONGEST_BACKOFF)
+    failed = worst > max(fine, coarse)
+    if failed and few:
+        worst = solve_few(problem, L, V, max(fine, coarse), out)
+    if not waits:
+        STATE.backoff = min(2.0 * STATE.backoff + 2.0, intervals.LONGEST_BACKOFF) if failed else 0.0
         STATE.wait = STATE.backoff
-    else:
-        STATE.backoff = 0.0
     return worst

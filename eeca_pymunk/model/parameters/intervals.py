@@ -66,8 +66,6 @@ DIRECT_MOVING = work(6, "direct solutions",
     "Direct solutions of a moving island of few bodies, or of a hit on a pile, at most.")
 FIRST_SWEEPS = work(4, "sweeps", "Sweeps of an island before its first direct solution.")
 SWEEPS_AFTER = work(4, "sweeps", "Sweeps of an island after each direct solution.")
-BACKOFF_CONTACTS = work(40, "contacts",
-    "Number beyond which direct solutions that did not converge are suspended for some steps.")
 DIRECT_PROGRESS = work(0.2, "ratio of residuals",
     "Progress of a direct solution and the sweeps after it above which it has failed.")
 FAILED_DIRECT = work(8, "direct solutions", "Direct solutions without progress after which the solve ends.")
