@@ -20,7 +20,7 @@ from ..model.scene import Scene
 from ..newton.response import prepare_response
 from ..rows.build import push_contact
 from ..rows.inplace import copy
-from .bounded_rows import fill_rows, let_slip, list_rows, note_rows
+from .bounded_rows import fill_rows, list_rows, note_rows, prescribe_bounded
 from .columns import WITH_TANGENTS, fill_group
 from .component import step_in_scratch
 from .gathered import find_places, gather_component, lead_component, number_of, rewind_joints
@@ -136,7 +136,7 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
             note_rows(A, J, B, s, h, motion.EVEN)
         elif HIT[g] > 0:
             size = find_places(A, J, s, INDEX)
-            let_slip(J, s, True, few)
+            prescribe_bounded(J, s, True, few)
             first = list_rows(A, J, B, s, h, motion.EVEN)
             if prepare_response(workspace(J, s), STEP, h):
                 PUSH = np.empty((size, 3))
@@ -144,7 +144,7 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
                 fill_rows(J, groups, B, g, first, INDEX, PUSH)
             else:
                 B.USED[0] = first
-            let_slip(J, s, False, True)
+            prescribe_bounded(J, s, False, True)
     for q in range(k):
         if groups.GROUP[q] >= 0 and groups.COMPONENT[groups.GROUP[q]] >= 0:
             continue

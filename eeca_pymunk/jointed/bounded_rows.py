@@ -30,15 +30,15 @@ def is_exact_limit(J: Joints, k: int) -> bool:
 
 
 @nonallocating
-def let_slip(J: Joints, s: int, slips: bool, limits: bool) -> None:
-    """Count bounded impulses as given in responses, or (`slips` False) no longer: those of joints with a max_force that
-    are solved with contacts, and, if `limits`, those of limits that act."""
+def prescribe_bounded(J: Joints, s: int, given: bool, limits: bool) -> None:
+    """Count bounded impulses as `given` in responses, or no longer: those of joints with a max_force that are solved
+    with contacts, and, if `limits`, those of limits that act."""
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         link = J.COUPLING[k]
         if link.bounded != 0 and J.JOINT[link.joint].bounded != 0 and J.COMPONENT[s].bounded > 0:
-            link.bounded = PRESCRIBED if slips else BOUNDED
+            link.bounded = PRESCRIBED if given else BOUNDED
         elif limits and is_exact_limit(J, k):
-            link.bounded = PRESCRIBED if slips and link.side != 0 else 0
+            link.bounded = PRESCRIBED if given and link.side != 0 else 0
 
 
 @kernel
@@ -97,7 +97,7 @@ def note_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float, V: FloatArray) 
 
 @nonallocating
 def list_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float, V: FloatArray) -> int:
-    """Append to B the rows of component s whose impulses count as given (`let_slip`); the first of them."""
+    """Append to B the rows of component s whose impulses count as given (`prescribe_bounded`); the first of them."""
     first = B.USED[0]
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         rows = acting_rows(J.COUPLING, k) if J.COUPLING[k].bounded == PRESCRIBED else 0

@@ -13,7 +13,7 @@ from eeca_pymunk.arrays import FloatArray
 from eeca_pymunk.compiled.records import Rows, columns, rows
 from eeca_pymunk.impacts.scene import EventLoop
 from eeca_pymunk.jointed import advance
-from eeca_pymunk.jointed.bounded_rows import let_slip
+from eeca_pymunk.jointed.bounded_rows import prescribe_bounded
 from eeca_pymunk.joints.step import is_taut
 from eeca_pymunk.joints.workspace import JointMemory, Linkage, workspace
 from eeca_pymunk.model.bodies import Body
@@ -234,7 +234,7 @@ def test_what_a_joint_answers_that_pushes_a_body_is_positive(
     J.TALLY.order = 2
     light.force, heavy.force = (-force, 0.0), (force, 0.0)
     stepper.step(0.1)
-    let_slip(J, 0, limit, limit)
+    prescribe_bounded(J, 0, limit, limit)
     assert least_answer(J, 0.1) >= -1e-12
 
 

@@ -202,8 +202,11 @@ class Composition:
         return any(self.leaves(row) for row in state)
 
     def leaves(self, row: tuple[float, ...]) -> bool:
-        """Whether a body's velocity changes its pose in a step, by more than is rounded away."""
-        return any(place + self.dt * speed != place for place, speed in zip(row[:3], row[3:], strict=True))
+        """Whether a body's velocity changes its pose in a step, by more than is rounded away, of places or of what
+        gravity changes of velocities."""
+        slow, sizes = ROUND_OFF * abs(self.space.gravity[1]) * self.dt, (1.0, 1.0, self.length)
+        moves = zip(row[:3], row[3:], sizes, strict=True)
+        return any(at + self.dt * speed != at and abs(speed) * size > slow for at, speed, size in moves)
 
     def drive(self, k: int) -> None:
         """Shake and turn the container."""
