@@ -22,7 +22,7 @@ from ..model.scene import Scene, scene_of
 from ..pairs.rules import far_apart, mark_pair
 from ..rows.energy import offset_gain
 from .at_rest import log_contact, set_awake, wake_supported
-from .loads import renew_loads
+from .loads import presses_on, renew_loads
 from .local import contact_range
 from .membership import unite
 from .shortened import losses, repay
@@ -65,6 +65,11 @@ def wake(A: Scene, root: int, t: float) -> int:
     Returns its root."""
     MEMBER, one = A.MEMBER, root
     if t > 0.0:
+        # The forces of what rests on it, whose intervals end here, too, are final before they are its loads.
+        for c in range(A.COUNT.pushes):
+            other = A.PUSHED_BY[c].root
+            if other >= 0 and MEMBER[other].rest != AT_REST and presses_on(A, c, root):
+                repay(A, other, t)
         renew_loads(A, t)
     MEMBER[root].rest = CHANGED
     wake_supported(A)

@@ -126,6 +126,14 @@ def remember_forces(A: Scene, c: int) -> None:
 
 
 @nonallocating
+def presses_on(A: Scene, c: int, root: int) -> bool:
+    """Whether contact c is between an island and a body of another one, of root `root`."""
+    i, j = A.LINK[A.PUSHED_BY[c].a].owner, A.LINK[A.PUSHED_BY[c].b].owner
+    one = A.BODY[i].inv_mass > 0.0 and A.STATE[i].island == root
+    return A.PUSHED_BY[c].root != root and (one or (A.BODY[j].inv_mass > 0.0 and A.STATE[j].island == root))
+
+
+@nonallocating
 def mark_loaded(A: Scene, c: int) -> bool:
     """Mark the islands at rest on which contact c of another one presses; returns whether there are any."""
     found = False
@@ -139,12 +147,14 @@ def mark_loaded(A: Scene, c: int) -> bool:
 
 @nonallocating
 def mark_under_moving(A: Scene, since: float) -> bool:
-    """`mark_loaded` by the contacts of moving islands whose intervals have ended, or have begun after instant `since`;
-    returns whether there are any."""
+    """`mark_loaded` by the contacts of moving islands whose intervals have ended or do not last until the end of the
+    step, as those that were solved again for a part of it, or have begun after instant `since`; returns whether there
+    are any."""
     found = False
     for c in range(A.COUNT.pushes):
-        root = A.PUSHED_BY[c].root
-        if root < 0 or (A.PUSHED[c].start > since and A.MEMBER[root].rest != AT_REST):
+        root, pushed = A.PUSHED_BY[c].root, A.PUSHED[c]
+        part = pushed.start > since or pushed.start + pushed.length < A.PAR.dt
+        if root < 0 or (part and A.MEMBER[root].rest != AT_REST):
             found = mark_loaded(A, c) or found
     return found
 
@@ -154,7 +164,9 @@ def renew_loads(A: Scene, t: float) -> None:
     """Islands at rest whose loads have changed within the step, as intervals of what moves on them have ended early,
     get the impulses that balance the momenta of all loads up to instant t; those of their contacts were for the loads
     at its start. Where there are no such impulses these stay, and `unmet` says so."""
-    more, rounds = A.COUNT.may_support > 0 and mark_under_moving(A, 0.0), 0
+    # Impacts at the start of the step begin intervals there anew.
+    since, rounds = -1.0 if A.COUNT.met + A.COUNT.meets > 0 else 0.0, 0
+    more = A.COUNT.may_support > 0 and mark_under_moving(A, since)
     while more and rounds < SUPPORT_ROUNDS:
         more = False
         for i in range(A.BODY.shape[0] - 1):

@@ -19,6 +19,17 @@ def test_what_rests_under_many_impacts_has_forces() -> None:
     assert all(one.name != "contacts" for one in report.unmet)
 
 
+def test_what_is_hit_bears_what_rests_on_it_whose_interval_the_hit_cuts() -> None:
+    """A body 200 times heavier rocks on it: the forces of its interval, solved again up to the hit, were not those that
+    the support bore; .08 of its impulses."""
+    Varied(64062511).play(24)
+
+
+def test_what_rests_bears_what_a_hit_at_the_start_of_the_step_presses_on_it() -> None:
+    """.04 of its impulses: the interval that began anew at instant 0 counted as one that had been tested."""
+    Varied(64065136).play(66)
+
+
 def test_contacts_report_the_rotation_that_keeps_an_angular_momentum() -> None:
     """.02 of the impulses of a pair in flight."""
     Varied(64010078).play(45)
