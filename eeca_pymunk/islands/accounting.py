@@ -64,7 +64,7 @@ def wake(A: Scene, root: int, t: float) -> int:
     intervals of all end at t, and from then on they are one island. Their forces are those of their loads up to t.
     Returns its root."""
     MEMBER, one = A.MEMBER, root
-    if t > 0.0:
+    if t > 0.0 and A.COUNT.may_support > 0:
         # The forces of what rests on it, whose intervals end here, too, are final before they are its loads.
         for c in range(A.COUNT.pushes):
             other = A.PUSHED_BY[c].root
