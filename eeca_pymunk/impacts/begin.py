@@ -96,10 +96,12 @@ def begin(A: Scene, IDS: IntArray) -> None:
             even = False
             continue
         if BODY[i].inv_mass == 0.0:
-            A.MEMBER[i].rest = CHANGED if moves(BODY[i]) or not unchanged(A, i) else AWAKE
             fixed += 1
             if moves(BODY[i]):
                 COUNT.closing = 1
+                A.MEMBER[i].rest = CHANGED
+            else:
+                A.MEMBER[i].rest = AWAKE if unchanged(A, i) else CHANGED
         ax, ay = BODY[i].ax, BODY[i].ay
         A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2] = ax, ay, BODY[i].angular
         pulled = max(pulled, ax * ax + ay * ay)

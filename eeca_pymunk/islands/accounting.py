@@ -66,10 +66,12 @@ def wake(A: Scene, root: int, t: float) -> int:
     MEMBER, one = A.MEMBER, root
     if t > 0.0 and A.COUNT.may_support > 0:
         # The forces of what rests on it, whose intervals end here, too, are final before they are its loads.
+        last = -1  # contacts of an island are next to each other, and each is looked at once
         for c in range(A.COUNT.pushes):
             other = A.PUSHED_BY[c].root
-            if other >= 0 and MEMBER[other].rest != AT_REST and presses_on(A, c, root):
+            if other >= 0 and other != last and MEMBER[other].rest != AT_REST and presses_on(A, c, root):
                 repay(A, other, t)
+                last = other
         renew_loads(A, t)
     MEMBER[root].rest = CHANGED
     wake_supported(A)

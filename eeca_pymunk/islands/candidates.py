@@ -74,8 +74,8 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                         if not busy:
                             way = max(-u, 0.0) * h + max(A.PAR.pulled, closing) * h * h
                             reach = intervals.TRAVEL_MARGIN * way + intervals.TOUCH * small
-                        # Within an interval bodies move no farther than INTERVAL_WAY, with as much again for what
-                        # is known of its motion; other pairs meet at their times of impact.
+                        # Present velocities lead no farther than INTERVAL_WAY, and a motion that is taken no farther
+                        # than INTERVAL_RETRY times that; other pairs meet at their times of impact.
                         reach = min(reach, 2.0 * intervals.INTERVAL_WAY * small)
                     if g > reach:
                         continue
