@@ -41,8 +41,8 @@ TABLES = {
     "Joints": """
         JOINT:Joint[1] PARTNER:Body[1] STILL:i8[1] PINNED:Pinned[1] ROOM:i8[1] COMPONENT:Component[1]
         JOINED:ComponentBody[1] COUPLING:Coupling[1] HINGE:JointStep[1] LOCAL:BodyStep[1] MATRIX:f8[1] RIGHT:f8[1]
-        MORE:f8[1] STIFF:f8[2] PROGRESS:Progress PARTS:Parts AGREEMENT:Agreement PART_LEDGER:JointLedger PIVOTS:i8[1]
-        OF:i8[1] KEPT:Joint[1] STEPPED:JointLedger[1] TALLY:Tally
+        MORE:f8[1] STIFF:f8[2] PROGRESS:Progress NEWTON:Newton PARTS:Parts AGREEMENT:Agreement PART_LEDGER:JointLedger
+        PIVOTS:i8[1] OF:i8[1] KEPT:Joint[1] STEPPED:JointLedger[1] TALLY:Tally
     """,
     "Island": """
         WHO:i8[1] POSE:f8[2] V:f8[2] ACC:f8[2] IM:f8[1] II:f8[1] EXTENT:f8[1] LEVER:f8[1] PAIRS:i8[2]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, nonallocating
+from ..compiled import inlined, kernel, nonallocating
 from ..compiled.records import Rows
 from ..contacts.memory import shapes_of
 from ..contacts.targets import hardly_bounces
@@ -18,6 +18,12 @@ from ..model.scene import Scene
 from ..pairs.rules import barred, far_apart, law
 from ..rows.build import tangent_rate
 from .membership import approach, fixed_support, persists, remembered_force
+
+
+@inlined
+def shortest_interval(A: Scene) -> float:
+    """Length below which intervals are not shortened for accuracy: the step over RESOLUTION."""
+    return float(A.PAR.dt / RESOLUTION)
 
 
 @nonallocating
@@ -143,7 +149,7 @@ def interval_length(A: Scene, found: IntArray, t: float) -> float:
             rate = max(rate, speed / max(A.SHAPE[a].rounding + A.SHAPE[b].rounding, 1e-300))
     if rate * h <= intervals.NORMAL_TURN:
         return h
-    return min(max(intervals.NORMAL_TURN / rate, A.PAR.dt / RESOLUTION), h)
+    return min(max(intervals.NORMAL_TURN / rate, shortest_interval(A)), h)
 
 
 @nonallocating

@@ -13,7 +13,6 @@ from ..contacts.counts import count_solve, note_lock, note_unmet
 from ..contacts.interval import make_contacts, step_island
 from ..model.contacts import Problem
 from ..model.islands import Island, IslandContacts
-from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES
 from ..model.scene import Scene
 from ..model.step import AGAIN, CONTACTS, DONE, PUSHES_FULL
@@ -158,7 +157,6 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
     rest_speed = 0.0 if placed else rest_threshold(A, root, MINE, with_supports, may_lose, t)
     payable = 0.0 if placed else math.inf
     owed = max(-A.RESTING[root].lost, 0.0)
-    shortest = A.PAR.dt / RESOLUTION
     if p > 0 and h > 0.0:
         m = step_island(A, isle, contacts, n, h, sweeps, least_reach, owed, rest_speed)
         # Where slip turns round, intervals of elastic islands end; of lossy ones only a first of one contact.
@@ -168,7 +166,7 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
             stuck = candidates.slip_time(contacts.ROWS, contacts.L, isle.V + h * isle.ACC, VN, m, h, turns, sticks)
         if stuck < h:
             # The interval ends where slip ends, as the law of friction changes there.
-            h = min(max(stuck, shortest), h)
+            h = min(max(stuck, candidates.shortest_interval(A)), h)
             count_solve(A, n, p, m, OUT)
             m = step_island(A, isle, contacts, n, h, sweeps, least_reach, owed, 0.0)
         far = 0.0

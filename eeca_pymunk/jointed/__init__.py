@@ -11,7 +11,7 @@ Open first `attempt.py`, the interval of an island, with `solve.py` and `lengths
 `ledger.py` accounts for joints, `welds.py` for those that hold bodies still, `losses.py` for what contacts lose.
 `component.py` steps one component (`gathered.py`). Its responses to impulses (`..newton.response`) are the columns of
 contacts (`columns.py`) over groups of bodies (`groups.py`), which `broyden.py` updates; `..rows.laws` solves with them.
-`fitting.py` projects velocities onto joints after an interval, `correction.py` corrects penetration, `rest.py` puts
+`projection.py` projects velocities onto joints after an interval, `correction.py` corrects penetration, `rest.py` puts
 islands to rest. `..model.joints` names the arrays. A *free* island has no contact or joint with a body that impulses do
 not move. A scene without joints calls nothing of this room.
 """

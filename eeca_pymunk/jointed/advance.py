@@ -111,7 +111,7 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
         push_contact(ROWS[i], isle.IM, isle.II, L[i, 0] / h, L[i, 1] / h, ACC)
     INDEX, HIT = np.full(k, -1, np.int64), find_hit(groups, ROWS, m if fill else 0)
     if fill:
-        B.USED[0] = 0
+        B.NUMBER[0] = 0
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
         if s < 0 or (not fill and stays(J, groups, g, motion.PUSHED, ACC)):
@@ -119,8 +119,8 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
         rewind_joints(J, s)
         if len(GUESS) > 0:
             lead_component(A, J, s, isle.V, ACC, GUESS, h)
-        length = gather_component(A, J, s, isle.POSE, isle.V, ACC, isle.IM, isle.II, t, h)
-        step_in_scratch(J, s, h, length, m == 0)
+        extent = gather_component(A, J, s, isle.POSE, isle.V, ACC, isle.IM, isle.II, t, h)
+        step_in_scratch(J, s, h, extent, m == 0)
         for i in range(J.COMPONENT[s].end_body - J.COMPONENT[s].first_body):
             q, local = number_of(A, J, s, i), J.LOCAL[i]
             for c in range(3 if q >= 0 else 0):
@@ -143,7 +143,7 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
                 fill_group(J, groups, C, g, INDEX, ROWS, m, PUSH, WITH_TANGENTS)
                 fill_rows(J, groups, B, g, first, INDEX, PUSH)
             else:
-                B.USED[0] = first
+                B.NUMBER[0] = first
             prescribe_bounded(J, s, False, True)
     for q in range(k):
         if groups.GROUP[q] >= 0 and groups.COMPONENT[groups.GROUP[q]] >= 0:
@@ -218,8 +218,8 @@ def farthest_apart(V: FloatArray, W: FloatArray, EXTENT: FloatArray, n: int) -> 
 
 @kernel
 def advance_aligned(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, free: bool) -> float:
-    """`advance`; in a `free` island repeated until the arms of contacts with an impulse fit the motion (`align`), which
-    keeps angular momentum. Returns the error of the arms that is left.
+    """`advance`; in a `free` island repeated until the arms of contacts with an impulse are those of the motion
+    (`align`), which keeps angular momentum. Returns the error of the arms that is left.
 
     Each motion has errors r of the arms. They change by w r, with w by Aitken's method for vectors:
     w+ = -w r.(r+ - r)/|r+ - r|^2, from 1 on. So they converge where arms turn bodies as much as these move them.

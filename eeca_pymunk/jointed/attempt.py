@@ -15,11 +15,11 @@ from ..contacts.interval import make_contacts, recall, speeds
 from ..contacts.memory import remember_loads, shapes_of
 from ..geometry.widths import depth_limit
 from ..islands import local
+from ..islands.candidates import shortest_interval
 from ..model.contacts import JointedProblem
 from ..model.islands import IslandContacts
 from ..model.joint_steps import FINAL, LONG, SHORT
 from ..model.joints import Joints
-from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import REACH_ROUND_OFF, UNSOLVED_PART
 from ..model.parameters.joints import COLUMN_CONTACTS, INTERVAL_SHARE, SPACING
 from ..model.scene import Scene
@@ -33,13 +33,13 @@ from .alone import account_turning, set_path
 from .columns import make_columns
 from .contact_laws import few_act
 from .correction import keep_angular_momentum, lift_island
-from .fitting import project_velocities
 from .gathered import save_joints, takes_shorter
 from .groups import find_groups
 from .iteration import solve_contacts
 from .ledger import has_work_for, work_left
 from .lengths import excess, forced_deeper, too_deep_on_way
 from .losses import slip_of
+from .projection import project_velocities
 from .settling import GIVEN_UP, SOLVED
 
 
@@ -108,8 +108,10 @@ def solve_attempt(A: Scene, J: Joints, tried: Attempt, root: int, last: bool) ->
     too long (`excess_length`). last: see `solve.try_jointed`."""
     interval, progress, outcome, before = tried.interval, J.PROGRESS, SOLVED, J.PROGRESS.effort
     L, m, n, h = tried.contacts.L, interval.m, interval.n, interval.h
-    if not last:  # contacts of a short interval are solved more easily than those of components stepped in parts
-        progress.attempt = LONG if m > 0 and h * UNSOLVED_PART**2 > A.PAR.dt / RESOLUTION else SHORT
+    if not last:
+        # Contacts of a short interval, which could not be shortened twice, are solved more easily than those of
+        # components stepped in parts.
+        progress.attempt = LONG if m > 0 and h * UNSOLVED_PART**2 > shortest_interval(A) else SHORT
     part = max(INTERVAL_SHARE, n / (A.BODY.shape[0] - 1)) if progress.attempt == LONG else INTERVAL_SHARE
     progress.share = before + part * max(work_left(A, J), 0.0)
     if m > 0:
@@ -151,8 +153,8 @@ def note_residual(A: Scene, interval: Interval, L: FloatArray, solved: bool, tol
 
 @kernel
 def take_attempt(A: Scene, J: Joints, tried: Attempt, root: int, MINE: IntArray) -> None:
-    """Let the bodies MINE go along an attempt that was solved: account spins, correct penetration, fit velocities to
-    joints, and open the interval."""
+    """Let the bodies MINE go along an attempt that was solved: account spins, correct penetration, project velocities
+    onto joints, and open the interval."""
     interval, contacts, first = tried.interval, tried.contacts, A.COUNT.pushes
     isle, groups, ROWS, motion, _, m, n, t, h, _ = interval
     for s in groups.JOINTED:

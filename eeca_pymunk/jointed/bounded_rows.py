@@ -90,7 +90,7 @@ def note_row(A: Scene, J: Joints, B: Bounded, s: int, i: int, h: float, V: Float
 @nonallocating
 def note_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float, V: FloatArray) -> None:
     """`note_row` for the rows of component s that B has, after another step of it."""
-    for i in range(B.USED[0]):
+    for i in range(B.NUMBER[0]):
         if J.COMPONENT[s].first_joint <= B.OF[i, 0] < J.COMPONENT[s].end_joint:
             note_row(A, J, B, s, i, h, V)
 
@@ -98,15 +98,15 @@ def note_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float, V: FloatArray) 
 @nonallocating
 def list_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float, V: FloatArray) -> int:
     """Append to B the rows of component s whose impulses count as given (`prescribe_bounded`); the first of them."""
-    first = B.USED[0]
+    first = B.NUMBER[0]
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         rows = acting_rows(J.COUPLING, k) if J.COUPLING[k].bounded == PRESCRIBED else 0
         for r in range(rows):
-            i = B.USED[0]
+            i = B.NUMBER[0]
             B.OF[i, 0], B.OF[i, 1] = k, r
             B.ROWS[i].part = SINGLE if rows == 1 else FIRST_OF_DISC if r == 0 else SECOND_OF_DISC
             note_row(A, J, B, s, i, h, V)
-            B.USED[0] = i + 1
+            B.NUMBER[0] = i + 1
     return int(first)
 
 
@@ -115,7 +115,7 @@ def fill_rows(J: Joints, groups: Groups, B: Bounded, g: int, first: int, INDEX: 
     """Compute the columns of the rows of B from `first` on, which are those of group g, whose component is prepared
     (`..newton.response`)."""
     s = groups.COMPONENT[g]
-    for i in range(first, B.USED[0]):
+    for i in range(first, B.NUMBER[0]):
         PUSH[:] = 0.0
         for end in range(2):
             if B.END[i, end] >= 0:
@@ -137,9 +137,9 @@ def with_bounded(B: Bounded, L: FloatArray, m: int) -> FloatArray:
     """(m + rows, 2) the impulses L of m contacts, then those of the bounded rows in the last motion, which get their
     effective masses."""
     weigh_rows(B)
-    BOTH = np.zeros((m + B.USED[0], 2))
+    BOTH = np.zeros((m + B.NUMBER[0], 2))
     for i in range(m):
         BOTH[i, 0], BOTH[i, 1] = L[i, 0], L[i, 1]
-    for i in range(B.USED[0]):
+    for i in range(B.NUMBER[0]):
         BOTH[m + i, 0] = B.ROWS[i].now
     return BOTH

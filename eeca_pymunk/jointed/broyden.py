@@ -16,7 +16,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..model.contacts import Bounded
-from ..model.parameters.joints import FIT_ROUND_OFF
+from ..model.parameters.joints import UPDATE_ROUND_OFF
 from ..rows.bounded import push_row
 from ..rows.columns import push_columns
 from .advance import Interval
@@ -29,21 +29,21 @@ def clear_round_off(interval: Interval, ERROR: FloatArray) -> None:
     small changes of impulses would otherwise seem to cause it."""
     for q in range(len(ERROR)):
         extent = interval.isle.EXTENT[q]
-        least = FIT_ROUND_OFF * extent / interval.h
+        least = UPDATE_ROUND_OFF * extent / interval.h
         for c in range(3):
             if abs(ERROR[q, c]) * (extent if c == 2 else 1.0) <= least:
                 ERROR[q, c] = 0.0
 
 
 @kernel
-def fit_columns(
+def update_columns(
     interval: Interval, B: Bounded, L: FloatArray, BEFORE: FloatArray, NOW: FloatArray, V: FloatArray
 ) -> bool:
     """Update the columns of contacts and of bounded rows by the last two motions. BEFORE (m, 2), NOW (rows,) and V (k,
     3) are impulses of contacts, of bounded rows, and velocities of the one before; L (m, 2) the present impulses. False
     if a contact that its own impulse moved no longer is: the columns are then invalid."""
     groups, ROWS, motion, C, m = interval.groups, interval.ROWS, interval.motion, interval.C, interval.m
-    ERROR, D, n = motion.EVEN - V, L[:m] - BEFORE[:m], B.USED[0]
+    ERROR, D, n = motion.EVEN - V, L[:m] - BEFORE[:m], B.NUMBER[0]
     push_columns(C, D, m, -1.0, ERROR)
     SQUARE = np.zeros(len(groups.COMPONENT) + 1)  # d.d of each group; one more, for GROUP -1
     for i in range(m):

@@ -112,15 +112,15 @@ def fill_group(
             PUSH[:] = 0.0
             push_group(groups, g, INDEX, ROWS[i], 1.0 - tangent, float(tangent), PUSH)
             respond(workspace(J, s), PUSH)
-            D = C.N if tangent == 0 else C.T
+            ANSWER = C.N if tangent == 0 else C.T
             for w in range(C.AT[i], C.AT[i + 1]):
                 if groups.GROUP[C.BODY[w]] == g:
                     for c in range(3):
-                        D[w, c] = PUSH[INDEX[C.BODY[w]], c]
+                        ANSWER[w, c] = PUSH[INDEX[C.BODY[w]], c]
 
 
 @nonallocating
-def column_rate(C: Columns, ROWS: Rows[Row], i: int, D: FloatArray, tangent: bool) -> float:
+def column_rate(C: Columns, ROWS: Rows[Row], i: int, ANSWER: FloatArray, tangent: bool) -> float:
     """Change of contact i's normal (or tangential) velocity by its own column D, 1/mass."""
     x, y = (-ROWS[i].ny, ROWS[i].nx) if tangent else (ROWS[i].nx, ROWS[i].ny)
     arm_a = ROWS[i].arm_ta if tangent else ROWS[i].arm_na
@@ -128,9 +128,9 @@ def column_rate(C: Columns, ROWS: Rows[Row], i: int, D: FloatArray, tangent: boo
     total = 0.0
     for w in range(C.AT[i], C.AT[i + 1]):
         if C.BODY[w] == ROWS[i].a:
-            total -= x * D[w, 0] + y * D[w, 1] + arm_a * D[w, 2]
+            total -= x * ANSWER[w, 0] + y * ANSWER[w, 1] + arm_a * ANSWER[w, 2]
         if C.BODY[w] == ROWS[i].b:
-            total += x * D[w, 0] + y * D[w, 1] + arm_b * D[w, 2]
+            total += x * ANSWER[w, 0] + y * ANSWER[w, 1] + arm_b * ANSWER[w, 2]
     return total
 
 

@@ -21,28 +21,28 @@ from .gathered import gather_component, number_of
 
 
 @nonallocating
-def step_in_scratch(J: Joints, s: int, h: float, length: float, untouched: bool) -> None:
+def step_in_scratch(J: Joints, s: int, h: float, extent: float, untouched: bool) -> None:
     """Step component s by h from the state in its scratch, which then has the end. The status is in STEPPED.
 
     `untouched`: whether order 4 is allowed, as no contact acts in the interval.
     """
     J.PROGRESS.effort += COMPONENT_WORK + COMPONENT_WORK_BODY * (J.COMPONENT[s].end_body - J.COMPONENT[s].first_body)
-    J.STEPPED[s].status = take_step(workspace(J, s), h, J.TALLY.order if untouched else 2, length, J.STEPPED[s])
+    J.STEPPED[s].status = take_step(workspace(J, s), h, J.TALLY.order if untouched else 2, extent, J.STEPPED[s])
 
 
 @inlined
-def size_joints(W: Workspace, length: float) -> None:
-    """Units of the joints' functions in a component of size `length`."""
+def size_joints(W: Workspace, extent: float) -> None:
+    """Units of the joints' functions in a component of size `extent`."""
     for k in range(W.joints):
-        W.J.HINGE[k].size = unit_of(W.J.JOINT[W.link[k].joint], length)
+        W.J.HINGE[k].size = unit_of(W.J.JOINT[W.link[k].joint], extent)
 
 
 @nonallocating
-def project_speeds(J: Joints, s: int, length: float) -> None:
+def project_speeds(J: Joints, s: int, extent: float) -> None:
     """Project the velocities that `gather_component` has put into the scratch onto the joints and closed limits: an
     impact without bounce. The caller accounts for the loss."""
     W = workspace(J, s)
-    size_joints(W, length)
+    size_joints(W, extent)
     project(W, SPEEDS)
 
 
@@ -63,8 +63,8 @@ def close_at_poses(
     """Close the joints of component s at the poses NEW (k, 3) of an island, along M^-1 G^T. Returns by how much more
     energy its springs store there than at OLD; infinity if joints do not close or limits are passed."""
     W = workspace(J, s)
-    length = gather_component(A, J, s, OLD, V, V, IM, II, t, h)
-    size_joints(W, length)
+    extent = gather_component(A, J, s, OLD, V, V, IM, II, t, h)
+    size_joints(W, extent)
     stored = springs_of(W)
     keep_apart(W)
     gather_component(A, J, s, NEW, V, V, IM, II, t, h)
@@ -95,11 +95,11 @@ def passes_limit(
     """Let limits of component s act that displacements D (k, 3) from the poses POSE (k, 3) pass by more than the length
     `least`. Returns whether there are any."""
     W = workspace(J, s)
-    length = gather_component(A, J, s, POSE, D, D, IM, II, t, h)
-    size_joints(W, length)
+    extent = gather_component(A, J, s, POSE, D, D, IM, II, t, h)
+    size_joints(W, extent)
     for i in range(W.bodies):
         if number_of(A, J, s, i) < 0:  # partners stay where they are
             for c in range(3):
                 J.LOCAL[i].v0[c] = 0.0
     compute_rows(W)
-    return hold_passed_by(W, least / length)
+    return hold_passed_by(W, least / extent)

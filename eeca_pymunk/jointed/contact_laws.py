@@ -92,12 +92,12 @@ def begin_laws(interval: Interval, problem: JointedProblem, L: FloatArray, FORES
         if interval.C.LEFT_OUT[i] != 0:
             push_column(interval.C, i, -L[i, 0], -L[i, 1], FORESEEN)
             L[i, 0] = L[i, 1] = 0.0
-    return with_bounded(problem.D, L, interval.m)
+    return with_bounded(problem.B, L, interval.m)
 
 
 @kernel
 def solve_laws(
-    A: Scene, J: Joints, interval: Interval, D: Bounded, manner: Manner, L: FloatArray, FORESEEN: FloatArray,
+    A: Scene, J: Joints, interval: Interval, B: Bounded, manner: Manner, L: FloatArray, FORESEEN: FloatArray,
     S: Agreement, sweeps: int, first: bool,
 ) -> None:  # fmt: skip
     """Solve the laws of the contacts with the columns, from impulses L, which are replaced. FORESEEN: out, the
@@ -106,10 +106,10 @@ def solve_laws(
     and `rough`: whether the solution is by sweeps, as the exact one of the `first` motion has excessive impulses.
 
     Args:
-        D: bounded rows.  sweeps: of few contacts before the first homotopy.
+        B: bounded rows.  sweeps: of few contacts before the first homotopy.
         first: whether this is the first solution of the interval.
     """
-    m, C, USED, problem = interval.m, interval.C, L.copy(), JointedProblem(interval.ROWS, interval.C, D, interval.m)
+    m, C, USED, problem = interval.m, interval.C, L.copy(), JointedProblem(interval.ROWS, interval.C, B, interval.m)
     BOTH = begin_laws(interval, problem, L, FORESEEN)
     work = J.PROGRESS.share - J.PROGRESS.effort
     if interval.few:

@@ -38,7 +38,7 @@ from .losses import lost
 @kernel
 def raise_gaps(problem: JointedProblem, n: int, GAPS: FloatArray, D: FloatArray, tolerance: float) -> FloatArray:
     """Displacements D (k, 3) = Y mu with 0 <= mu _|_ g + G D >= 0, for contacts that are not left out; GAPS (m,) of
-    those that are become infinite. Returns mu (m,). `fitting.stop_closing` has velocities in the place of gaps."""
+    those that are become infinite. Returns mu (m,). `projection.stop_closing` has velocities in the place of gaps."""
     for i in range(problem.m):
         if problem.C.LEFT_OUT[i] != 0:
             GAPS[i] = np.inf
@@ -76,7 +76,7 @@ def lift_island(A: Scene, J: Joints, interval: Interval, L: FloatArray, root: in
 @nonallocating
 def keep_centre(D: FloatArray, IM: FloatArray, ONE: FlagArray) -> None:
     """Add a common displacement to D (k, 3) of the bodies with flags ONE (n,), with which their centre of mass stays:
-    columns that were fitted to motions (`broyden.fit_columns`) do not conserve momentum exactly."""
+    columns that were updated by motions (`broyden.update_columns`) do not conserve momentum exactly."""
     mass = x = y = 0.0
     for i in range(len(ONE)):
         if ONE[i] != 0:

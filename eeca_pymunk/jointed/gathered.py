@@ -52,13 +52,13 @@ def gave_way(J: Joints, s: int) -> bool:
     elastically, or by linear rows. Not if an earlier step has left some apart: these contradict one another in an
     interval of any length. Joints that were elastic before hold worse only if they are softer, and more than twice as
     far apart."""
-    B = J.STEPPED[s]
-    if B.status < ELASTIC:
+    stepped = J.STEPPED[s]
+    if stepped.status < ELASTIC:
         return False
-    worse = compliance_of(J, s) > compliance_before(J, s) and B.gave > max(B.misfit, NEARLY_HELD)
+    worse = compliance_of(J, s) > compliance_before(J, s) and stepped.gave > max(stepped.misfit, NEARLY_HELD)
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         touched = J.KEPT[J.COUPLING[k].joint].touched
-        if touched == LEFT_APART or (touched == GIVES_WAY and B.status == ELASTIC and not worse):
+        if touched == LEFT_APART or (touched == GIVES_WAY and stepped.status == ELASTIC and not worse):
             return False
     return True
 
@@ -149,10 +149,10 @@ def gather_component(
     Bodies that joints move have the rows A.PLACE in the arrays of the island; others are read at instant t. ACC:
     accelerations without joints, any array where velocities or poses are projected, which does not depend on them.
     """
-    C = J.COMPONENT[s]
-    for i in range(C.end_body - C.first_body):
+    component = J.COMPONENT[s]
+    for i in range(component.end_body - component.first_body):
         if not gather_fixed(A, J, s, i, t):
-            local, q = J.LOCAL[i], A.PLACE[J.JOINED[C.first_body + i].body]
+            local, q = J.LOCAL[i], A.PLACE[J.JOINED[component.first_body + i].body]
             for c in range(3):
                 local.pose[c], local.v0[c], local.acceleration[c] = POSE_OF[q, c], V[q, c], ACC[q, c]
                 local.mobility[c] = IM[q] if c < 2 else II[q]
@@ -162,10 +162,10 @@ def gather_component(
 @nonallocating
 def gather_alone(A: Scene, J: Joints, s: int, t: float, h: float) -> float:
     """`gather_component` for a component that is an island of its own, whose bodies are at instant t."""
-    C = J.COMPONENT[s]
-    for i in range(C.end_body - C.first_body):
+    component = J.COMPONENT[s]
+    for i in range(component.end_body - component.first_body):
         if not gather_fixed(A, J, s, i, t):
-            local, row = J.LOCAL[i], int(J.JOINED[C.first_body + i].body)
+            local, row = J.LOCAL[i], int(J.JOINED[component.first_body + i].body)
             body = A.BODY[row]
             local.pose[0], local.pose[1], local.pose[2] = body.x, body.y, body.angle
             local.v0[0], local.v0[1], local.v0[2] = body.vx, body.vy, body.spin

@@ -20,13 +20,13 @@ from ..model.contacts import Bounded
 from ..model.joint_steps import LONG, Agreement
 from ..model.joints import Joints
 from ..model.parameters import joints
-from ..model.parameters.events import RESOLUTION
 from ..model.scene import Scene
+from ..newton.effort import pays_for_many
 from ..rows.build import rates
 from ..rows.inplace import copy
 from ..rows.laws import give_slips
 from .advance import Interval, advance, align, farthest_apart
-from .broyden import fit_columns
+from .broyden import update_columns
 from .columns import fill_unjointed, set_effective_masses
 from .contact_laws import set_aims, solve_laws
 from .gathered import some_refused
@@ -97,13 +97,13 @@ def iterate(A: Scene, J: Joints, interval: Interval, X: Iterates, S: Agreement, 
         J.PROGRESS.effort += joints.CONTACT_WORK * (m + 2)
         build = outer % joints.CHORD == 0
         advance(A, J, interval, X.L, X.B, build, X.FORESEEN if outer > 0 else X.UNKNOWN)
-        payable = RESOLUTION * (J.PROGRESS.effort - begun) <= J.PROGRESS.budget  # many shorter intervals
-        if J.PROGRESS.attempt == LONG and (X.manner.exactly or payable) and some_refused(J, groups):
+        shortens = X.manner.exactly or pays_for_many(J.PROGRESS, begun)
+        if J.PROGRESS.attempt == LONG and shortens and some_refused(J, groups):
             return False
         S.bent = align(interval) if X.free else 0.0
         if outer > 0 and end_iterations(interval, X, S, outer):
             return True
-        if not build and not fit_columns(interval, X.B, X.L, X.USED, X.NOW, X.BEFORE):
+        if not build and not update_columns(interval, X.B, X.L, X.USED, X.NOW, X.BEFORE):
             advance(A, J, interval, X.L, X.B, True, X.FORESEEN)
             build = True
         if build and X.free:
@@ -119,7 +119,7 @@ def iterate(A: Scene, J: Joints, interval: Interval, X: Iterates, S: Agreement, 
             target(ROWS, m, EFFECT, EXPECTED, S.pull, h)
         copy(X.BEFORE, motion.EVEN)
         copy(X.USED, X.L)
-        for i in range(X.B.USED[0]):
+        for i in range(X.B.NUMBER[0]):
             X.NOW[i] = X.B.ROWS[i].now
         sweeps = joints.COLUMN_SWEEPS if build else 0
         solve_laws(A, J, interval, X.B, X.manner, X.L, X.FORESEEN, S, sweeps, outer == 0)

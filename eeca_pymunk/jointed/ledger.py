@@ -113,15 +113,15 @@ def account_component(A: Scene, J: Joints, s: int) -> None:
     If a limit stops bodies within a short time h, a joint that holds exactly works by its impulse times round-off of
     its place over h, and the loss of the limit is smaller by as much: only the difference of both is real (`passed`).
     """
-    PAR, B = A.PAR, J.STEPPED[s]
-    passed = min(max(B.closed, 0.0), max(B.limited, 0.0))
-    PAR.external += B.motors + B.supports + (B.closed - passed) + B.turned_work
-    PAR.damped += B.damped
-    PAR.restitution += (B.limited - passed) + B.projected - B.lifted
-    PAR.frictional += B.clamped
-    PAR.stored += B.stored
-    J.TALLY.worst = max(J.TALLY.worst, B.status)
-    clear_interval(B)
+    PAR, stepped = A.PAR, J.STEPPED[s]
+    passed = min(max(stepped.closed, 0.0), max(stepped.limited, 0.0))
+    PAR.external += stepped.motors + stepped.supports + (stepped.closed - passed) + stepped.turned_work
+    PAR.damped += stepped.damped
+    PAR.restitution += (stepped.limited - passed) + stepped.projected - stepped.lifted
+    PAR.frictional += stepped.clamped
+    PAR.stored += stepped.stored
+    J.TALLY.worst = max(J.TALLY.worst, stepped.status)
+    clear_interval(stepped)
 
 
 @nonallocating

@@ -18,9 +18,9 @@ from ..contacts.memory import shapes_of
 from ..geometry.flight import fastest, norm
 from ..geometry.sides import pair_of
 from ..geometry.widths import depth_limit, smaller
+from ..islands.candidates import shortest_interval
 from ..islands.depths import closes_too_far, too_deep_at_end
 from ..model.joints import Joints
-from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import INTERVAL_GROWTH, INTERVAL_RETRY, INTERVAL_WAY, SAGITTA
 from ..model.scene import Scene
 from ..pairs.rules import barred, far_apart
@@ -93,8 +93,8 @@ def excess_alone(A: Scene, J: Joints, s: int, t: float, h: float) -> float:
 def within_sagitta(A: Scene, found: IntArray, t: float) -> float:
     """Length of an interval from instant t: to the end of the step, or until the points of a rotating wall leave their
     chord by SAGITTA times the size of a body that touches it, R (w h)^2 / 8 at a distance R from the wall's centre.
-    Bodies that friction and joints hold on such a wall creep by as much. At least dt/RESOLUTION. `found` (p, 2): pairs
-    of shapes."""
+    Bodies that friction and joints hold on such a wall creep by as much. At least `shortest_interval`. `found` (p, 2):
+    pairs of shapes."""
     most = 0.0
     for c in range(found.shape[0]):
         small = smaller(A, found[c, 0], found[c, 1])
@@ -103,7 +103,7 @@ def within_sagitta(A: Scene, found: IntArray, t: float) -> float:
             if wall.inv_mass == 0.0 and A.LINK[s].vertices > 1:
                 most = max(most, wall.spin * wall.spin * wall.extent / (8.0 * SAGITTA * small))
     h = A.PAR.dt - t
-    return h if most * h * h <= 1.0 else max(1.0 / math.sqrt(most), A.PAR.dt / RESOLUTION)
+    return h if most * h * h <= 1.0 else max(1.0 / math.sqrt(most), shortest_interval(A))
 
 
 @nonallocating

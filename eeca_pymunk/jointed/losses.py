@@ -54,7 +54,7 @@ def without_contacts(interval: Interval, L: FloatArray, B: Bounded) -> FloatArra
     sweeps over their rows alone."""
     V, X = interval.motion.EVEN.copy(), with_bounded(B, np.empty((0, 2)), 0)
     push_columns(interval.C, L, interval.m, -1.0, V)
-    for _ in range(BOUNDED_SWEEPS if B.USED[0] > 0 else 0):
+    for _ in range(BOUNDED_SWEEPS if B.NUMBER[0] > 0 else 0):
         if sweep_bounded(B, X, 0, V) <= 0.0:
             break
     return V
@@ -74,10 +74,11 @@ def scale_of_loss(interval: Interval, L: FloatArray, B: Bounded, more: float) ->
 @kernel
 def lock_jointed(
     A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, free: bool, elastic: bool, owed: float,
-    error: float,
-) -> None:  # fmt: skip
+    error: float, bent: float,
+) -> float:  # fmt: skip
     """Scale the impulses L of contacts by s until these lose at least `owed`, or if `elastic` exactly that, up to
-    `error`. s follows from the slope p - 2 q at s = 1, again for each new motion; without work it does so once.
+    `error`. s follows from the slope p - 2 q at s = 1, again for each new motion; without work it does so once. Returns
+    the error of the arms (`advance_aligned`), which was `bent`.
 
     The loss of s L is p s - q s^2, so that a step of Newton's method from s = 1 is of use near 1. Beyond 0.1 < s < 2
     the impulses are halved, if they have to lose no more than nothing: for small s the loss has the sign of p. Else,
@@ -96,6 +97,7 @@ def lock_jointed(
         for i in range(m):
             L[i, 0] = s * L[i, 0] if s > 0.0 else 0.0
             L[i, 1] = s * L[i, 1] if s > 0.0 else 0.0
-        advance_aligned(A, J, interval, L, B, free)
+        bent = advance_aligned(A, J, interval, L, B, free)
         if s == 0.0:
             break
+    return bent

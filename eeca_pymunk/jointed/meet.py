@@ -17,7 +17,9 @@ from ..model.parameters.intervals import TOUCH
 from ..model.parameters.joints import (
     CLOSES,
     COLUMN_CONTACTS,
+    END_HALVINGS,
     MEET,
+    MEET_DEEP,
     MEET_DOUBLINGS,
     MEET_HALVINGS,
     MEET_LOADED,
@@ -32,15 +34,15 @@ from .paths import crossing_of_paths, gap_and_rate, instants_between, passes_thr
 
 
 @kernel
-def fitting_end(A: Scene, J: Joints, root: int, t: float) -> float:
+def valid_end(A: Scene, J: Joints, root: int, t: float) -> float:
     """The end of the interval of an island, shortened to instant t: its length is halved while joints do not hold at
     its end or it has passed through other shapes, at last to nothing, and at once if the work of the step is spent."""
     began, end = A.BODY[root].since, t
-    for tries in range(MEET_SECANTS):
+    for tries in range(END_HALVINGS):
         if not (left_apart(A, J, root) or passes_through(A, root, end) < math.inf):
             break
         J.TALLY.worst = LINEAR
-        hopeless = tries + 1 == MEET_SECANTS or work_left(A, J) < 0.0
+        hopeless = tries + 1 == END_HALVINGS or work_left(A, J) < 0.0
         end = began if hopeless else 0.5 * (began + end)
         shorten(A, J, root, end)
     return end
@@ -58,10 +60,10 @@ def wait_until(A: Scene, J: Joints, root: int, end: float, t: float) -> None:
 
 @kernel
 def end_by(A: Scene, J: Joints, root: int, t: float) -> None:
-    """End the interval of an island at instant t, or where it fits before t (`fitting_end`), from where it waits until
-    t."""
+    """End the interval of an island at instant t, or at a valid instant before t (`valid_end`), from where it waits
+    until t."""
     shorten(A, J, root, t)
-    wait_until(A, J, root, fitting_end(A, J, root, t), t)
+    wait_until(A, J, root, valid_end(A, J, root, t), t)
 
 
 @kernel
@@ -123,7 +125,7 @@ def find_contact(A: Scene, J: Joints, S: Meeting) -> None:
         if S.gap + S.level > S.touch:
             through, crosses = crossing_of_paths(A, S.a, S.b, t)
         # Depths add up from impact to impact.
-        deep = not spent and S.gap < -MEET_MANY * S.small
+        deep = not spent and S.gap < -MEET_DEEP * S.small
         if (S.loaded > 0 and tries + 1 >= most and not deep) or spent or abs(S.gap) <= S.touch:
             break
         secant = before >= 0.0 and t != before
@@ -151,7 +153,7 @@ def find_contact(A: Scene, J: Joints, S: Meeting) -> None:
             break
         S.t = then
     # Joints may bring the shapes together before the first secant.
-    S.crosses = int(crosses or (S.loaded == 0 and S.rate >= 0.0 and S.gap < -MEET_MANY * S.small))
+    S.crosses = int(crosses or (S.loaded == 0 and S.rate >= 0.0 and S.gap < -MEET_DEEP * S.small))
 
 
 @kernel
@@ -185,18 +187,18 @@ def find_later(A: Scene, J: Joints, S: Meeting) -> bool:
     i, j = A.LINK[S.a].owner, A.LINK[S.b].owner
     met = min(max(A.STATE[i].events, A.STATE[j].events), MEET_DOUBLINGS)
     end_both(A, J, S, min(S.least + 2.0 ** (met + 1) * A.PAR.instant, S.latest))
-    fits = too_late(A, J, S) == math.inf
-    while not fits and S.t - S.least > A.PAR.instant and work_left(A, J) >= 0.0:
+    valid = too_late(A, J, S) == math.inf
+    while not valid and S.t - S.least > A.PAR.instant and work_left(A, J) >= 0.0:
         end_both(A, J, S, 0.5 * (S.least + S.t))
-        fits = too_late(A, J, S) == math.inf
-    return fits
+        valid = too_late(A, J, S) == math.inf
+    return valid
 
 
 @kernel
-def end_meeting(A: Scene, J: Joints, SEARCH: Rows[Meeting], fits: bool) -> tuple[float, bool]:
-    """End the intervals of both islands at the instant found, or where they fit before it unless both are known to
-    (`fits`). Returns the instant, and whether the shapes are apart there: shapes that close within PAR.instant, which
-    is no interval, meet now."""
+def end_meeting(A: Scene, J: Joints, SEARCH: Rows[Meeting], valid: bool) -> tuple[float, bool]:
+    """End the intervals of both islands at the instant found, or at a valid instant before it unless that is known to
+    be (`valid`). Returns the instant, and whether the shapes are apart there: shapes that close within PAR.instant,
+    which is no interval, meet now."""
     S = SEARCH[0]
     g, crossed = S.gap, S.crossed > 0
     for side in range(2):
@@ -204,7 +206,7 @@ def end_meeting(A: Scene, J: Joints, SEARCH: Rows[Meeting], fits: bool) -> tuple
         if not under_way(A, root):
             continue
         spent = work_left(A, J) < 0.0  # then the step ends where the island does
-        end = S.t if fits else fitting_end(A, J, root, S.t)
+        end = S.t if valid else valid_end(A, J, root, S.t)
         wait_until(A, J, root, end, end if spent else S.t)
         if end < S.t:
             g, crossed = math.inf if work_left(A, J) < 0.0 else gap(A, S.a, S.b, S.t)[0] - S.level, True
@@ -221,11 +223,11 @@ def locate_impact(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float,
     | search | where | instants | until |
     |---|---|---|---|
     | `find_contact` | always | by secants on the gap, MEET_SECANTS, fewer where contacts push | shapes touch |
-    | `find_apart_before` | no interval ends so | halved, MEET_HALVINGS, to where they are apart | both fit |
-    | `find_later` | that is the start | after it, later with each impact, halved | both fit |
-    | `fitting_end` | not known to fit | of each island by itself: halved, MEET_SECANTS, last to the start | it fits |
+    | `find_apart_before` | no interval ends so | halved, MEET_HALVINGS, to where they are apart | valid |
+    | `find_later` | that is the start | after it, later with each impact, halved | valid |
+    | `valid_end` | not known to be valid | of each island by itself: halved, END_HALVINGS, then the start | valid |
 
-    where an island fits at an instant if it is not `too_late`. One that never does stays where it is until then.
+    where an instant is valid if it is not `too_late`. An island for which none is stays where it is until then.
     """
     i, j = A.LINK[a].owner, A.LINK[b].owner
     if not (under_way(A, A.STATE[i].island) or (A.BODY[j].inv_mass > 0.0 and under_way(A, A.STATE[j].island))):
@@ -235,7 +237,7 @@ def locate_impact(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float,
     begin_meeting(A, J, a, b, t, SEARCH)
     S = SEARCH[0]
     find_contact(A, J, S)
-    fits = find_apart_before(A, J, S)
+    valid = find_apart_before(A, J, S)
     if S.rate >= 0.0 and S.t - S.least <= A.PAR.instant:
-        fits = find_later(A, J, S)
-    return end_meeting(A, J, SEARCH, fits)  # the array itself: S is only valid as long as it is used
+        valid = find_later(A, J, S)
+    return end_meeting(A, J, SEARCH, valid)  # the array itself: S is only valid as long as it is used

@@ -15,7 +15,7 @@ from ..joints.workspace import workspace
 from ..model.joints import Joints
 from ..model.parameters.events import ENTRY_LOOKS
 from ..model.parameters.intervals import INTERVAL_DEPTH
-from ..model.parameters.joints import MEET_MANY
+from ..model.parameters.joints import MEET_DEEP
 from ..model.scene import Scene
 from ..pairs.rules import barred, far_apart
 from ..prediction.impact_times import time_of_impact
@@ -36,9 +36,9 @@ def allowed_velocity(A: Scene, J: Joints, i: int, t: float) -> tuple[float, floa
     s = J.OF[i]
     if s >= 0 and A.BODY[i].since == t:
         W, first = workspace(J, s), J.COMPONENT[s].first_body
-        length = gather_alone(A, J, s, t, 0.0)
+        extent = gather_alone(A, J, s, t, 0.0)
         release_limits(W)
-        project_speeds(J, s, length)
+        project_speeds(J, s, extent)
         for w in range(W.bodies):
             if J.JOINED[first + w].body == i:
                 return J.LOCAL[w].v0[0], J.LOCAL[w].v0[1], J.LOCAL[w].v0[2]
@@ -103,7 +103,7 @@ def passes_through(A: Scene, root: int, t: float) -> float:
                 small = smaller(A, s, o)
                 # Thin shapes that are deeper remember their sides.
                 deep = INTERVAL_DEPTH * small if remembers(A, s, o) else depth_limit(A, s, o)
-                if g < -deep and g < gap(A, s, o, began)[0] - MEET_MANY * small:
+                if g < -deep and g < gap(A, s, o, began)[0] - MEET_DEEP * small:
                     return t
         i = A.MEMBER[i].following
     return math.inf

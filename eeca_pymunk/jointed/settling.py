@@ -63,7 +63,7 @@ def settle(A: Scene, J: Joints, interval: Interval, X: Iterates, S: Agreement) -
        joints were only near (PROGRESS.near); under BEST if L agrees no better. Only what agrees counts as converged.
     2. A long interval that has not converged and has no work left is given up.
     3. Impulses that are excessive, and those of few contacts that have not converged, are replaced.
-    4. The arms of contacts of a free island are made to fit the motion. After another motion their error `bent` is not
+    4. The arms of contacts of a free island become those of the motion. After another motion their error `bent` is not
        known: infinite.
     5. The energy lock scales the impulses.
     """
@@ -100,7 +100,7 @@ def settle(A: Scene, J: Joints, interval: Interval, X: Iterates, S: Agreement) -
         known = max(known, min(2.0 * S.reached / (S.slow + S.pull * h), joints.LOSS_ROUND_OFF_TAUT))
     copy(FORESEEN, motion.EVEN)
     error = work_error(interval, L, S.slow, S.pull, known)
-    lock_jointed(A, J, interval, L, B, free, X.manner.elastic, S.owed, error)
+    S.bent = lock_jointed(A, J, interval, L, B, free, X.manner.elastic, S.owed, error, S.bent)
     J.PROGRESS.tolerance = joints.AGREE * S.scale
     agreed = difference(interval, FORESEEN) <= joints.LOCK_SHIFT * S.scale
     return SOLVED if S.converged > 0 and agreed and S.bent <= joints.ARM_LEFT else UNSOLVED

@@ -14,7 +14,7 @@ from ..newton.entries import acts
 from ..newton.motion import go_back, save
 from ..newton.rows import joint_rows, shared_part, shares_point
 from .bounds import hold_passed, limit_gap, passed_side
-from .correct import CHANGE, KEPT, NOW, fitting_loss, kinetic_of, project, restore_speeds, speeds_fit
+from .correct import CHANGE, KEPT, NOW, kinetic_of, loss_of_projection, project, restore_speeds, speeds_fit
 from .frame import move_apart, work_of_shift
 from .lock import lock_energy, restore_momenta
 from .start import closing_share, compute_rows, springs_of
@@ -153,7 +153,7 @@ def close_joints(W: Workspace, h: float, ledger: JointLedger) -> bool:
         ledger.stored += taken
         save(W)
     if (edited or unknown) and fit_speeds(W, 0.0 if edited else TAKEN_OVER_LEFT):
-        ledger.projected += fitting_loss(W, ledger)
+        ledger.projected += loss_of_projection(W, ledger)
         save(W)
     return own
 

@@ -78,7 +78,7 @@ def kinetic_of(W: Workspace, which: int) -> float:
 
 
 @nonallocating
-def fitting_loss(W: Workspace, ledger: JointLedger) -> float:
+def loss_of_projection(W: Workspace, ledger: JointLedger) -> float:
     """The energy lost by the projection of velocities from `v_kept` to `v0`.
 
     It is (1/2) dv.M dv, as the projection is orthogonal. The rest of the change of kinetic energy is the work of

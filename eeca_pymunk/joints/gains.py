@@ -36,11 +36,11 @@ def gain_of_rows(W: Workspace, own: bool) -> float:
 
 
 @nonallocating
-def clear_errors(W: Workspace, h: float, length: float) -> None:
+def clear_errors(W: Workspace, h: float, extent: float) -> None:
     """Restore the momenta of a step, and close its ledger where it is open by more than round-off of the energy and of
-    the work of forces over the size `length`: impulses that are large change both by their round-off, and their works
+    the work of forces over the size `extent`: impulses that are large change both by their round-off, and their works
     cancel only up to that."""
-    part, load = W.J.PART_LEDGER, load_of(W, h, length)
+    part, load = W.J.PART_LEDGER, load_of(W, h, extent)
     least = JOINT_GAIN * (kinetic_of(W, SAVED) + kinetic_of(W, NOW) + load)
     part.closed += restore_momenta(W, h, False)
     apart = unexplained(W) - (part.supports + part.closed - part.limited)
@@ -49,7 +49,7 @@ def clear_errors(W: Workspace, h: float, length: float) -> None:
 
 
 @nonallocating
-def repaid(W: Workspace, h: float, length: float, own: bool) -> bool:
+def repaid(W: Workspace, h: float, extent: float, own: bool) -> bool:
     """Whether exact rows have given no energy, or little, which is then taken from the motion.
 
     Joints that an earlier step left apart (`own`) close at once; if that gives much energy beside what was there, the
@@ -59,7 +59,7 @@ def repaid(W: Workspace, h: float, length: float, own: bool) -> bool:
     """
     part, before = W.J.PART_LEDGER, kinetic_of(W, SAVED)
     for turn in range(2):
-        clear_errors(W, h, length)
+        clear_errors(W, h, extent)
         gain = gain_of_rows(W, own)
         if not gain > 0.0 or move_apart(W):
             break
@@ -74,9 +74,9 @@ def repaid(W: Workspace, h: float, length: float, own: bool) -> bool:
 
 
 @nonallocating
-def gain_unpaid(W: Workspace, h: float, length: float, own: bool) -> bool:
+def gain_unpaid(W: Workspace, h: float, extent: float, own: bool) -> bool:
     """Whether exact rows have given energy that the motion could not pay: more than GAIN_KEPT of what bodies had and of
-    the work of forces over the size `length` of the component, and more than that of the velocities which round-off of
+    the work of forces over the size `extent` of the component, and more than that of the velocities which round-off of
     places is over h. Not where joints need not be exact yet (PROGRESS.near)."""
     if W.J.PROGRESS.near > 0.0:
         return False
@@ -85,8 +85,8 @@ def gain_unpaid(W: Workspace, h: float, length: float, own: bool) -> bool:
         return False
     for i in range(W.bodies):
         mass += 1.0 / W.J.LOCAL[i].mobility[0] if W.J.LOCAL[i].mobility[0] > 0.0 else 0.0
-    noise = mass * (JOINT_TOLERANCE * length / h) ** 2
-    had = kinetic_of(W, SAVED) + load_of(W, h, length)
+    noise = mass * (JOINT_TOLERANCE * extent / h) ** 2
+    had = kinetic_of(W, SAVED) + load_of(W, h, extent)
     return bool(gain > noise + GAIN_KEPT * had)
 
 
@@ -101,27 +101,27 @@ def passes_limits(W: Workspace) -> bool:
 
 
 @nonallocating
-def gain_taken(W: Workspace, h: float, length: float) -> bool:
+def gain_taken(W: Workspace, h: float, extent: float) -> bool:
     """Close the ledger of a step whose joints did not hold exactly, and take its gain from the motion; returns whether
     what is left of it is round-off of the kinetic energies before and after, and of the work of forces over the size
-    `length`: what hangs at rest cannot pay for that.
+    `extent`: what hangs at rest cannot pay for that.
 
     Joints that close within a short h make bodies fast, and the lock then takes most of this, and leaves its round-off,
     of momenta too: both are put right once more.
     """
     part = W.J.PART_LEDGER
     for _ in range(2):
-        clear_errors(W, h, length)
+        clear_errors(W, h, extent)
         close_ledger(W)
         if part.closed > 0.0:
             lock_energy(W, part.closed, part)
             close_ledger(W)
-    least = JOINT_GAIN * (kinetic_of(W, SAVED) + kinetic_of(W, NOW) + load_of(W, h, length))
+    least = JOINT_GAIN * (kinetic_of(W, SAVED) + kinetic_of(W, NOW) + load_of(W, h, extent))
     return not part.closed > least
 
 
 @nonallocating
-def take_gain(W: Workspace, h: float, length: float, status: int, own: bool, before: float) -> int:
+def take_gain(W: Workspace, h: float, extent: float, status: int, own: bool, before: float) -> int:
     """Take from the motion what joints have given in a step of this status, if `repaid` has not; returns the status.
 
     If the motion cannot pay, or linear rows leave joints farther apart than `before` by more than LINEAR_APART, or pass
@@ -129,11 +129,11 @@ def take_gain(W: Workspace, h: float, length: float, status: int, own: bool, bef
     `repaid`.
     """
     if fit_led(W):
-        clear_errors(W, h, length)
+        clear_errors(W, h, extent)
     if status < ELASTIC:
-        fails = gain_unpaid(W, h, length, own)
+        fails = gain_unpaid(W, h, extent, own)
     else:
-        fails = not gain_taken(W, h, length)
+        fails = not gain_taken(W, h, extent)
         if status == LINEAR and not fails:
             fails = not farthest(W) <= before + LINEAR_APART or passes_limits(W)
         fails = fails and not move_apart(W)

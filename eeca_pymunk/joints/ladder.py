@@ -25,9 +25,8 @@ from ..compiled import nonallocating
 from ..model.joint_steps import ELASTIC, EXACT, FINAL, HALVED, LINEAR, LONG
 from ..model.joints import DEPENDENT, GIVES_WAY, INDEPENDENT, ROTARY_SPRING, SPRING, Workspace
 from ..model.parameters import joints
-from ..model.parameters.events import RESOLUTION
 from ..model.parameters.joints import BALANCED, JOINT_APART
-from ..newton.effort import work_of_iteration
+from ..newton.effort import pays_for_many, work_of_iteration
 from ..newton.entries import acting_rows
 from ..newton.motion import move
 from ..newton.rows import joint_rows
@@ -144,12 +143,12 @@ def compliance_on(rung: int, h: float, yields: bool, before: float) -> float:
 
 
 @nonallocating
-def take_parts(W: Workspace, h: float, length: float, rung: int, compliance: float, cold: bool) -> int:
+def take_parts(W: Workspace, h: float, extent: float, rung: int, compliance: float, cold: bool) -> int:
     """Take the step h in the parts of a rung: TAKEN, FAILED if one of them fails, or CONTRADICTED if exact joints
     contradict one another at its start. Energies are added to PART_LEDGER.
 
     Args:
-        length: size of the component.  compliance: of joints, time².
+        extent: size of the component.  compliance: of joints, time².
         cold: rows are redundant, and those without bounds begin without impulse.
     """
     parts, before = int(PARTS_ON[rung]), h
@@ -167,7 +166,7 @@ def take_parts(W: Workspace, h: float, length: float, rung: int, compliance: flo
         before = piece
         if rung == ORDER_4 and recalls(W):
             predict_part(W, p, piece, cold)
-        if not step_with_limits(W, False, piece, length, cold, give, rung == ORDER_4):
+        if not step_with_limits(W, False, piece, extent, cold, give, rung == ORDER_4):
             redundant = standing(W) or W.J.COMPONENT[W.s].dependence == DEPENDENT
             exact = p == 0 and rung < ELASTIC_RUNG
             return CONTRADICTED if exact and redundant and contradicts(W, piece) else FAILED
@@ -177,7 +176,7 @@ def take_parts(W: Workspace, h: float, length: float, rung: int, compliance: flo
 
 
 @nonallocating
-def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own: bool) -> int:
+def climb(W: Workspace, h: float, order: int, extent: float, touched: bool, own: bool) -> int:
     """Take the step h by the first rung of the ladder that succeeds: EXACT, HALVED or ELASTIC; LINEAR if none does,
     with everything as at the start. PART_LEDGER has the energies.
 
@@ -201,13 +200,13 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
         forget_parts(W)
     progress.most_epsilon, begun = joints.REDUNDANT_MOST, progress.effort
     while rung < RUNGS and not progress.effort > progress.limit:
-        dear = progress.attempt > FINAL and RESOLUTION * (progress.effort - begun) > progress.budget
+        dear = progress.attempt > FINAL and not pays_for_many(progress, begun)
         if (progress.attempt == LONG or dear) and WHOLE_STEP < rung < ELASTIC_RUNG:
             break
         compliance = compliance_on(rung, h, yields, first.compliance)
         clear_ledger(W.J.PART_LEDGER)
-        outcome = take_parts(W, h, length, rung, compliance, cold)
-        if outcome == TAKEN and (rung >= ELASTIC_RUNG or repaid(W, h, length, own)):
+        outcome = take_parts(W, h, extent, rung, compliance, cold)
+        if outcome == TAKEN and (rung >= ELASTIC_RUNG or repaid(W, h, extent, own)):
             first.compliance = compliance
             return EXACT if rung <= WHOLE_STEP else HALVED if rung < ELASTIC_RUNG else ELASTIC
         sure = component.dependence == INDEPENDENT

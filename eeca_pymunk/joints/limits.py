@@ -34,7 +34,7 @@ from ..model.parameters import joints
 from ..newton.motion import accept_part
 from ..newton.solve import drop_impulses, solve, solve_linearly
 from . import bounds
-from .correct import fitting_loss, project, release
+from .correct import loss_of_projection, project, release
 from .ledger import account_part
 from .parts import begin_as_before, begin_next, meets_limit, note_part
 
@@ -58,7 +58,7 @@ def stop_at(W: Workspace, k: int, side: int, at_once: bool, stays: bool) -> None
     bounds.begin_part(W)
     if at_once:
         bounds.stand(W, k, side)  # a velocity that released it is round-off: forces press it to its bound at once
-    W.J.PART_LEDGER.limited += fitting_loss(W, W.J.PART_LEDGER)
+    W.J.PART_LEDGER.limited += loss_of_projection(W, W.J.PART_LEDGER)
     drop_impulses(W)
 
 
@@ -206,11 +206,11 @@ def is_solved(S: Parts, h: float) -> bool:
 
 
 @nonallocating
-def step_with_limits(W: Workspace, linear: bool, h: float, length: float, cold: bool, give: float, whole: bool) -> bool:
+def step_with_limits(W: Workspace, linear: bool, h: float, extent: float, cold: bool, give: float, whole: bool) -> bool:
     """Take the step h in parts between instants at which limits are met; False if a solve fails.
 
     Args:
-        linear: whether by linear systems, which pass limits.  length: size of the component.
+        linear: whether by linear systems, which pass limits.  extent: size of the component.
         cold: whether rows are redundant and begin without impulses.  give: compliance over h², see `..newton.systems`.
         whole: whether the step must not meet any limit: False if it would.
     """
@@ -227,7 +227,7 @@ def step_with_limits(W: Workspace, linear: bool, h: float, length: float, cold: 
             redundant = cold or bounds.standing(W)
             if S.solved != 0.0 and not linear:
                 begin_as_before(W, S.solved, S.when)
-            if not (solve_linearly(W, S.when, length) if linear else solve(W, S.when, length, redundant, give)):
+            if not (solve_linearly(W, S.when, extent) if linear else solve(W, S.when, extent, redundant, give)):
                 return False
             S.solves, S.solved = S.solves + 1, S.when
             verdict = at_limit(W, S) if S.limit >= 0 else at_end(W, S, linear, h, whole)

@@ -99,13 +99,13 @@ def find_turning(bodies: Rows[Body], joint: Rows[Joint]) -> tuple[IntArray, IntA
 @kernel
 def mark_actions(J: Joints, s: int) -> None:
     """Mark the bodies of component s that its joints push, and those on which they exert torques."""
-    link, C = J.COUPLING, J.COMPONENT[s]
-    for i in range(C.first_body, C.end_body):
+    link, component = J.COUPLING, J.COMPONENT[s]
+    for i in range(component.first_body, component.end_body):
         J.JOINED[i].acted = 0
-    for k in range(C.first_joint, C.end_joint):
+    for k in range(component.first_joint, component.end_joint):
         joint, kind = J.JOINT[link[k].joint], link[k].kind
         for end in range(2):
-            one = J.JOINED[C.first_body + link[k].body[end]]
+            one = J.JOINED[component.first_body + link[k].body[end]]
             anchor = joint.anchor_a if end == 0 else joint.anchor_b
             off = anchor[0] != 0.0 or anchor[1] != 0.0 or (kind == GROOVE and end == 0)
             one.acted |= model.FORCES_ON if kind < GEAR else 0
@@ -190,14 +190,14 @@ def cycles(bodies: Rows[Body], J: Joints, s: int, bounded: bool) -> int:
     angles; all bodies that nothing moves, or nothing turns, are one node. Without cycles rows are independent,
     including limits: those of points by their effect on places, those of angles on angles. bounded: whether
     bounded rows count."""
-    link, C, count = J.COUPLING, J.COMPONENT[s], 0
-    n = C.end_body - C.first_body
+    link, component, count = J.COUPLING, J.COMPONENT[s], 0
+    n = component.end_body - component.first_body
     parent, ends = np.arange(2 * (n + 1)), np.empty(2, np.int64)
-    for k in range(C.first_joint, C.end_joint):
+    for k in range(component.first_joint, component.end_joint):
         if link[k].rows == 0 or (link[k].bounded != 0 and not bounded):
             continue
         for end in range(2):
-            body = bodies[J.JOINED[C.first_body + link[k].body[end]].body]
+            body = bodies[J.JOINED[component.first_body + link[k].body[end]].body]
             if link[k].kind >= GEAR:
                 ends[end] = n + 1 + (link[k].body[end] if body.inv_inertia > 0.0 else n)
             else:

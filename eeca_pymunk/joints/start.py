@@ -25,37 +25,37 @@ def release_limits(W: Workspace) -> None:
 
 
 @nonallocating
-def spring_torque(W: Workspace, k: int, length: float) -> float:
-    """The scale of the torque of joint k, a spring, with arms of the size `length` of the component."""
+def spring_torque(W: Workspace, k: int, extent: float) -> float:
+    """The scale of the torque of joint k, a spring, with arms of the size `extent` of the component."""
     joint, link = W.J.JOINT[W.link[k].joint], W.link[k]
     if link.kind == SPRING:
-        return float(length * (abs(joint.push) + joint.stiffness * length))
+        return float(extent * (abs(joint.push) + joint.stiffness * extent))
     turned = W.J.LOCAL[link.body[0]].pose[2] - W.J.LOCAL[link.body[1]].pose[2] - joint.rest
     return float(abs(joint.push) + joint.stiffness * abs(turned))
 
 
 @nonallocating
-def load_of(W: Workspace, h: float, length: float) -> float:
-    """The scale of the work of forces on a component over its size `length`, and of torques: of accelerations, springs,
+def load_of(W: Workspace, h: float, extent: float) -> float:
+    """The scale of the work of forces on a component over its size `extent`, and of torques: of accelerations, springs,
     and bounded joints in a step h."""
     total = 0.0
     for i in range(W.bodies):
         for c in range(3):
             if W.J.LOCAL[i].mobility[c] > 0.0:
-                arm = 1.0 if c == 2 else length
+                arm = 1.0 if c == 2 else extent
                 total += arm * abs(W.J.LOCAL[i].acceleration[c]) / W.J.LOCAL[i].mobility[c]
     for k in range(W.joints):
         if W.link[k].kind in (SPRING, ROTARY_SPRING):
-            total += spring_torque(W, k, length)
+            total += spring_torque(W, k, extent)
         elif W.link[k].bounded != 0:
-            arm = 1.0 if W.link[k].kind >= GEAR else length
+            arm = 1.0 if W.link[k].kind >= GEAR else extent
             total += arm * (abs(W.J.HINGE[k].total[0]) + abs(W.J.HINGE[k].total[1])) / h
     return total
 
 
 @nonallocating
-def most_impulse(W: Workspace, h: float, length: float) -> float:
-    """The scale of angular momentum in a component over a step h, with arms of its size `length`: the sum of the
+def most_impulse(W: Workspace, h: float, extent: float) -> float:
+    """The scale of angular momentum in a component over a step h, with arms of its size `extent`: the sum of the
     magnitudes of momenta, of those by accelerations, springs and bounded joints, and of what motors, or partners with
     their velocities, would transfer; times the ratios of all gears."""
     total, geared, mass, moment, speed, spin = 0.0, 1.0, 0.0, 0.0, 0.0, 0.0
@@ -63,7 +63,7 @@ def most_impulse(W: Workspace, h: float, length: float) -> float:
         local = W.J.LOCAL[i]
         for c in range(3):
             if local.mobility[c] > 0.0:
-                arm = 1.0 if c == 2 else length
+                arm = 1.0 if c == 2 else extent
                 total += arm * (abs(local.v0[c]) + abs(h * local.acceleration[c])) / local.mobility[c]
             elif c == 2:
                 spin = max(spin, abs(local.v0[c]))
@@ -71,14 +71,14 @@ def most_impulse(W: Workspace, h: float, length: float) -> float:
                 speed = max(speed, abs(local.v0[c]))
         mass += 1.0 / local.mobility[0] if local.mobility[0] > 0.0 else 0.0
         moment += 1.0 / local.mobility[2] if local.mobility[2] > 0.0 else 0.0
-    total += length * mass * (speed + spin * length) + moment * spin
+    total += extent * mass * (speed + spin * extent) + moment * spin
     for k in range(W.joints):
         joint, kind, turning = W.J.JOINT[W.link[k].joint], W.link[k].kind, 0.0
         a, b = W.J.LOCAL[W.link[k].body[0]], W.J.LOCAL[W.link[k].body[1]]
         if kind in (SPRING, ROTARY_SPRING):
-            turning = abs(h) * spring_torque(W, k, length)
+            turning = abs(h) * spring_torque(W, k, extent)
         elif joint.bounded != 0:
-            turning = abs(h) * joint.max_force * (1.0 if kind >= GEAR else length)
+            turning = abs(h) * joint.max_force * (1.0 if kind >= GEAR else extent)
         elif kind == MOTOR and a.mobility[2] + b.mobility[2] > 0.0:
             turning = abs(joint.rate) / (a.mobility[2] + b.mobility[2])
         elif kind == GEAR:
@@ -88,18 +88,18 @@ def most_impulse(W: Workspace, h: float, length: float) -> float:
 
 
 @nonallocating
-def bound_motors(W: Workspace, h: float, length: float) -> None:
+def bound_motors(W: Workspace, h: float, extent: float) -> None:
     """Bound the torque of motors of unlimited force by STALLED times `most_impulse`: if a motor drives against a limit,
     no finite impulse satisfies both."""
     most = -1.0
     for k in range(W.joints):
         if W.link[k].kind == MOTOR and not W.J.HINGE[k].bound < np.inf:
-            most = STALLED * most_impulse(W, h, length) / abs(h) if most < 0.0 else most
+            most = STALLED * most_impulse(W, h, extent) / abs(h) if most < 0.0 else most
             W.J.HINGE[k].bound = most
 
 
 @nonallocating
-def read_joints(W: Workspace, h: float, length: float) -> tuple[bool, bool]:
+def read_joints(W: Workspace, h: float, extent: float) -> tuple[bool, bool]:
     """Read what joints keep from the last step: impulses, scaled to the length h of this one, `lead`, the limits on
     which they stand. Returns whether a joint was `touched`, and whether there is a bounded joint other than a motor,
     whose target `bounded_targets` sets."""
@@ -113,7 +113,7 @@ def read_joints(W: Workspace, h: float, length: float) -> tuple[bool, bool]:
         hinge[k].total[0] = hinge[k].total[1] = 0.0
         hinge[k].target[0] = hinge[k].target[1] = hinge[k].scale[0] = hinge[k].scale[1] = 0.0
         hinge[k].bound = joint[j].max_force
-        hinge[k].size = unit_of(joint[j], length)
+        hinge[k].size = unit_of(joint[j], extent)
         for end in range(2):
             for c in range(3):
                 W.J.LOCAL[link[k].body[end]].lead[c] = joint[j].led[end, c]
@@ -121,7 +121,7 @@ def read_joints(W: Workspace, h: float, length: float) -> tuple[bool, bool]:
             hinge[k].target[0] = -joint[j].rate
         bounded = bounded or (link[k].bounded != 0 and kind != MOTOR)
         touched = touched or joint[j].touched != 0
-    bound_motors(W, h, length)
+    bound_motors(W, h, extent)
     return touched, bounded
 
 

@@ -35,7 +35,7 @@ from ..newton.solve import drop_impulses
 from ..newton.systems import assemble, first_iterate
 from .bounds import closes_on_limit, standing
 from .closing import close_joints, farthest
-from .correct import fitting_loss, project
+from .correct import loss_of_projection, project
 from .gains import take_gain
 from .ladder import climb, limit_work
 from .ledger import add_part, clear_ledger
@@ -114,19 +114,19 @@ def write_joints(W: Workspace, h: float, loose: int) -> None:
 
 
 @nonallocating
-def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLedger) -> int:
+def take_step(W: Workspace, h: float, order: int, extent: float, ledger: JointLedger) -> int:
     """Step one component by h; its status: EXACT, HALVED, ELASTIC or LINEAR.
 
     LOCAL holds poses, velocities, accelerations and mobilities at the start and, on return, poses and velocities (v0)
     at the end.
 
     Args:
-        order: 4 or 2, as of `ladder`.  length: size of the component (`..newton.motion.size_up`).
+        order: 4 or 2, as of `ladder`.  extent: size of the component (`..newton.motion.size_up`).
         ledger: out, that of the step.
     """
     local, component = W.J.LOCAL, W.J.COMPONENT[W.s]
     clear_ledger(ledger)
-    touched, bounded = read_joints(W, h, length)
+    touched, bounded = read_joints(W, h, extent)
     enough = limit_work(W)
     # Redundant rows begin without impulses, unless their pull holds bodies; others, too, if there is no work to try.
     component.taut = 1 if component.loops > 0 and is_taut(W, h) else 0
@@ -148,15 +148,15 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
     if stands and closes_on_limit(W, h):
         # An impact has left velocities into a bound on which a joint stands: it is met at once.
         project(W, SPEEDS)
-        ledger.limited += fitting_loss(W, ledger)
+        ledger.limited += loss_of_projection(W, ledger)
         save(W)
     for k in range(W.joints):
         W.J.JOINT[W.link[k].joint].side = W.link[k].side  # to which the ladder returns
     order = order if enough else 2
     ledger.misfit = farthest(W)
-    status = climb(W, h, order, length, touched, own)
-    before = step_linearly(W, h, length) if status == LINEAR else 0.0
-    status = take_gain(W, h, length, status, own, before)
+    status = climb(W, h, order, extent, touched, own)
+    before = step_linearly(W, h, extent) if status == LINEAR else 0.0
+    status = take_gain(W, h, extent, status, own, before)
     if status >= ELASTIC:
         compute_rows(W)  # they were those before the last correction
     ledger.gave = max(farthest(W) - ledger.misfit, 0.0) if status >= ELASTIC else 0.0

@@ -36,13 +36,13 @@ def restore_start(W: Workspace) -> None:
 
 
 @nonallocating
-def step_linearly(W: Workspace, h: float, length: float) -> float:
+def step_linearly(W: Workspace, h: float, extent: float) -> float:
     """Take the step h by linear systems, one for each limit that is released, or in free flight if they have no
     solution. Returns `farthest` at its start. PART_LEDGER has the energy that springs have stored."""
     local, part = W.J.LOCAL, W.J.PART_LEDGER
     stored, apart, carried = springs_of(W), farthest(W), 0.0
     drop_impulses(W)
-    if step_with_limits(W, True, h, length, True, 0.0, False):
+    if step_with_limits(W, True, h, extent, True, 0.0, False):
         W.J.JOINT[W.link[0].joint].compliance, carried = 0.0, part.frame_work
     else:
         restore_start(W)

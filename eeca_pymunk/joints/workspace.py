@@ -22,9 +22,13 @@ from .plan import make_plan, together
 @inlined
 def workspace(J: Joints, s: int) -> Workspace:
     """The workspace of component s."""
-    C = J.COMPONENT[s]
+    component = J.COMPONENT[s]
     return Workspace(
-        J, s, J.COUPLING[C.first_joint : C.end_joint], C.end_joint - C.first_joint, C.end_body - C.first_body
+        J,
+        s,
+        J.COUPLING[component.first_joint : component.end_joint],
+        component.end_joint - component.first_joint,
+        component.end_body - component.first_body,
     )
 
 
@@ -36,14 +40,14 @@ def measure_plan(J: Joints) -> bool:
     for k in range(6):
         ROOM[k] = 1
     for s in range(J.TALLY.components):
-        C = J.COMPONENT[s]
-        whole, dual = C.unknowns * (3 * C.band + 1), C.dual_size * (2 * C.dual_band + 1)
-        ROOM[0] = max(ROOM[0], C.end_body - C.first_body)
-        ROOM[1] = max(ROOM[1], C.end_joint - C.first_joint)
-        ROOM[2] = max(ROOM[2], 2 * C.unknowns, C.dual_size)
-        ROOM[3] = max(ROOM[3], whole, dual if C.dual_for != NOTHING or C.loops > 0 else 0)
-        ROOM[4] = max(ROOM[4], 2 * (C.unknowns + C.impulses))
-        ROOM[5] = max(ROOM[5], C.dual_size)
+        component = J.COMPONENT[s]
+        whole, dual = component.unknowns * (3 * component.band + 1), component.dual_size * (2 * component.dual_band + 1)
+        ROOM[0] = max(ROOM[0], component.end_body - component.first_body)
+        ROOM[1] = max(ROOM[1], component.end_joint - component.first_joint)
+        ROOM[2] = max(ROOM[2], 2 * component.unknowns, component.dual_size)
+        ROOM[3] = max(ROOM[3], whole, dual if component.dual_for != NOTHING or component.loops > 0 else 0)
+        ROOM[4] = max(ROOM[4], 2 * (component.unknowns + component.impulses))
+        ROOM[5] = max(ROOM[5], component.dual_size)
     ROOM[4] = max(ROOM[4], 2)
     small = J.LOCAL.shape[0] < ROOM[0] or J.HINGE.shape[0] < ROOM[1] or J.PIVOTS.shape[0] < ROOM[2]
     return bool(
@@ -91,7 +95,7 @@ def plan_components(table: Table, joints: Table) -> int:
     return J.TALLY.pinned
 
 
-_ONE = "TALLY", "PROGRESS", "PARTS", "AGREEMENT", "PART_LEDGER"
+_ONE = "TALLY", "PROGRESS", "NEWTON", "PARTS", "AGREEMENT", "PART_LEDGER"
 _PLAN = *_ONE, "STIFF", "COMPONENT", "JOINED", "COUPLING", "KEPT", "STEPPED", "OF"
 _OF_ONE = "LOCAL", "HINGE", "PIVOTS", "MATRIX", "RIGHT", "MORE"  # scratch of one component, in the order of ROOM
 

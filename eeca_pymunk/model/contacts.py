@@ -57,8 +57,8 @@ class Pushed(Record):
     ut_after: float
     work: float  # energy that kinematic bodies and moving surfaces give over the interval
     work_unaccelerated: float  # the same if these kept their velocities of its start
-    # Normal impulse at the end of the interval by which velocities fitted to joints do not close the contact; its loss
-    # is in the ledger.
+    # Normal impulse at the end of the interval by which velocities projected onto joints do not close the contact; its
+    # loss is in the ledger.
     held: float
     start: float  # instant at which the interval begins
     length: float  # of the interval: time
@@ -153,13 +153,13 @@ BOUNDED_ROW = kind_of(BoundedRow)
 
 
 class Bounded(NamedTuple):
-    """Bounded rows; of row i < USED[0]:
+    """Bounded rows; of row i < NUMBER[0]:
 
     AT[i] : AT[i + 1] the entries BODY and N (., 3) of its column, AT[0] = 0; END (n, 2) its bodies in the island, -1
     for what does not move; ROW (n, 6) the row; ROWS (n,): its bounds; OF (n, 2): joint (of LINK), row.
     """
 
-    USED: IntArray
+    NUMBER: IntArray
     AT: IntArray
     BODY: IntArray
     N: FloatArray
@@ -171,11 +171,11 @@ class Bounded(NamedTuple):
 
 class JointedProblem(NamedTuple):
     """A contact problem of bodies that joints hold: m rows ROWS, columns C that say how the bodies answer, and bounded
-    rows D of joints, whose impulses stand behind those of the contacts."""
+    rows B of joints, whose impulses stand behind those of the contacts."""
 
     ROWS: Rows[Row]
     C: Columns
-    D: Bounded
+    B: Bounded
     m: int
 
 

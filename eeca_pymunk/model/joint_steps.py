@@ -99,6 +99,21 @@ class Progress(Record):
     kept: int  # 1 + number of the component of whose last motion in this interval the scratch has factors; or 0
 
 
+class Newton(Record):
+    """A solve of a component by Newton's method (`..newton.solve`). Errors are parts of the size of the component."""
+
+    error: float  # of the present iterate
+    least: float  # the least before, infinite at first
+    last: float  # that of the iteration before
+    pace: float  # how many times as large as the one before it
+    iteration: int
+    since: int  # the iteration in which it has begun again, with factors FULL
+    stalls: int  # iterations without progress
+    factors: int  # KEPT, NEW or FULL
+    renewed: int  # 1 if those of the iteration before were NEW
+    system: int  # the linear system in use
+
+
 class Agreement(Record):
     """How far the contacts and the components of an interval agree (`..jointed.iteration`). Differences, tolerances
     and residuals are velocities."""

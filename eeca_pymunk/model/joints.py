@@ -12,7 +12,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import Opener
 from ..compiled.records import Record, Rows
 from .bodies import Body
-from .joint_steps import Agreement, BodyStep, JointLedger, JointStep, Parts, Progress
+from .joint_steps import Agreement, BodyStep, JointLedger, JointStep, Newton, Parts, Progress
 
 
 class Joint(Record):
@@ -178,9 +178,9 @@ class Joints(NamedTuple):
     hold where they are, sorted. The plan: COMPONENT (components,), with the bodies of each in JOINED and its joints in
     COUPLING; ROOM (6,): see `measure_plan`. Scratch for the largest component: HINGE, LOCAL, of its joints and bodies;
     MATRIX, banded; RIGHT, right sides; PIVOTS; MORE, of linear systems and bounded rows; STIFF (6, 6), derivative of a
-    joint's impulse by the ways of its bodies; PROGRESS; PARTS; AGREEMENT; PART_LEDGER, of a part of the step. OF (n,):
-    the component of a body, -1 for none. KEPT (j,): the joints at the start of an interval. STEPPED (components,):
-    their ledgers in their intervals.
+    joint's impulse by the ways of its bodies; PROGRESS; NEWTON; PARTS; AGREEMENT; PART_LEDGER, of a part of the step.
+    OF (n,): the component of a body, -1 for none. KEPT (j,): the joints at the start of an interval. STEPPED
+    (components,): their ledgers in their intervals.
     """
 
     JOINT: Rows[Joint]
@@ -198,6 +198,7 @@ class Joints(NamedTuple):
     MORE: FloatArray
     STIFF: FloatArray
     PROGRESS: Progress
+    NEWTON: Newton
     PARTS: Parts
     AGREEMENT: Agreement
     PART_LEDGER: JointLedger

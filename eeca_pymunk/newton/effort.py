@@ -4,7 +4,9 @@ computed (`systems`)."""
 from __future__ import annotations
 
 from ..compiled import inlined
+from ..model.joint_steps import Progress
 from ..model.joints import CONDENSED, DUAL, WHOLE, Component
+from ..model.parameters.events import RESOLUTION
 from ..model.parameters.joints import BACK_WORK, FACTOR_BAND, FACTOR_WORK, REFINEMENT_WORK, ROW_WORK
 
 
@@ -43,3 +45,9 @@ def work_of_iteration(system: int, passes: int, joints: int, component: Componen
     """Operations of an iteration with new factors."""
     solution = work_of_solution(system, passes, joints, component)
     return work_of_rows(joints) + work_of_factors(system, component) + solution
+
+
+@inlined
+def pays_for_many(progress: Progress, begun: float) -> bool:
+    """Whether the budget of a step pays for RESOLUTION times the work since `begun`: for many shorter intervals."""
+    return RESOLUTION * (progress.effort - begun) <= progress.budget

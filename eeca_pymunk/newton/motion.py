@@ -23,20 +23,20 @@ def size_up(J: Joints, s: int, h: float) -> float:
     """Complete the scratch of the bodies of component s, whose pose, velocity and mobility are there: roots of
     mobilities, cosine and sine of the angle. Returns the component's size, the length by which errors of its joints are
     measured: its largest coordinate, way in h, anchor or radius of gyration, as round-off is relative to these."""
-    C, local, length = J.COMPONENT[s], J.LOCAL, 0.0
-    for i in range(C.end_body - C.first_body):
+    component, local, extent = J.COMPONENT[s], J.LOCAL, 0.0
+    for i in range(component.end_body - component.first_body):
         for c in range(3):
             root = np.sqrt(local[i].mobility[c])
             local[i].root[c], local[i].unroot[c] = root, 1.0 / root if root > 0.0 else 0.0
         local[i].cos, local[i].sin = np.cos(local[i].pose[2]), np.sin(local[i].pose[2])
         for c in range(2):
-            length = max(length, abs(local[i].pose[c]), abs(h * local[i].v0[c]))
-        length = max(length, local[i].root[0] * local[i].unroot[2])
-    for k in range(C.first_joint, C.end_joint):
+            extent = max(extent, abs(local[i].pose[c]), abs(h * local[i].v0[c]))
+        extent = max(extent, local[i].root[0] * local[i].unroot[2])
+    for k in range(component.first_joint, component.end_joint):
         joint = J.JOINT[J.COUPLING[k].joint]
         for c in range(2):
-            length = max(length, abs(joint.anchor_a[c]), abs(joint.anchor_b[c]))
-    return length if length > 0.0 else 1.0
+            extent = max(extent, abs(joint.anchor_a[c]), abs(joint.anchor_b[c]))
+    return extent if extent > 0.0 else 1.0
 
 
 @inlined

@@ -118,12 +118,12 @@ def start_joint(W: Workspace, k: int, what: int, h: float) -> None:
 
 
 @nonallocating
-def unit_of(joint: Joint, length: float) -> float:
-    """Unit of g of a joint in a component of size `length`: g over it is the error by the joint's own formula, over
+def unit_of(joint: Joint, extent: float) -> float:
+    """Unit of g of a joint in a component of size `extent`: g over it is the error by the joint's own formula, over
     that size or in rad. A gear's is angle_b ratio - angle_a - phase = ratio g."""
     if joint.kind == GEAR:
         return float(1.0 / abs(joint.ratio))
-    return 1.0 if joint.kind > GEAR else length
+    return 1.0 if joint.kind > GEAR else extent
 
 
 @nonallocating

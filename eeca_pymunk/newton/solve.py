@@ -9,7 +9,7 @@ from __future__ import annotations
 from math import inf
 
 from ..compiled import nonallocating
-from ..model.joint_steps import LINEAR_STEP, STEP
+from ..model.joint_steps import LINEAR_STEP, STEP, Newton
 from ..model.joints import CONDENSED, DEPENDENT, DUAL, OTHERWISE, Workspace
 from ..model.parameters.joints import (
     BOUNDED_SOLVES,
@@ -49,7 +49,7 @@ def iterate(W: Workspace, what: int, system: int, passes: int, h: float) -> None
 
 
 @nonallocating
-def round_off_of_impulses(W: Workspace, h: float, length: float) -> float:
+def round_off_of_impulses(W: Workspace, h: float, extent: float) -> float:
     """The round-off that the impulses of all joints leave in the balance of momentum, as `systems.balance` measures it:
     the way in h that the sum of their magnitudes would move a body, times the spacing of numbers; the largest one."""
     local, hinge, link, worst = W.J.LOCAL, W.J.HINGE, W.link, 0.0
@@ -63,30 +63,26 @@ def round_off_of_impulses(W: Workspace, h: float, length: float) -> float:
                     total += abs(hinge[k].lam[r] * hinge[k].rows[r, 3 * end + c])
                 one = link[k].following[end]
             way = total * local[i].mobility[c] * abs(h)
-            worst = max(worst, way / length if c < 2 else way)
+            worst = max(worst, way / extent if c < 2 else way)
     return SPACING * worst
 
 
 @nonallocating
-def is_round_off(worst: float, best: float, last: float, pace: float, floor: float, settled: bool, sure: bool) -> bool:
-    """Whether an error of an iteration is round-off.
-
-    Args:
-        worst: the error.  best, last: the least before, and that of the last iteration, which was `pace` times that of
-            the one before.  floor: below which errors that do not fall are.
-        settled: whether these factors have served two iterations.  sure: whether no rows are redundant, whose impulses
-            leave more round-off.
-    """
-    falls_no_more = settled and 0.5 * best < worst < floor
-    return falls_no_more or (sure and worst < JOINT_ROUND_OFF and last * pace <= JOINT_TOLERANCE)
+def is_round_off(N: Newton, sure: bool) -> bool:
+    """Whether the error of a solve is round-off. sure: whether no rows are redundant, whose impulses leave more."""
+    floor = JOINT_ROUND_OFF_KEPT if N.factors != FULL else NEWTON_FLOOR if N.stalls > 1 else JOINT_ROUND_OFF
+    served_twice = N.iteration > N.since + 1
+    falls_no_more = served_twice and 0.5 * N.least < N.error < floor
+    return falls_no_more or (sure and N.error < JOINT_ROUND_OFF and N.last * N.pace <= JOINT_TOLERANCE)
 
 
 @nonallocating
-def accept(W: Workspace, h: float, fit: bool, system: int) -> None:
-    """End a solve that has converged; its factors are kept if they `fit`."""
+def accept(W: Workspace, h: float, current: bool) -> None:
+    """End a solve that has converged; its factors are kept if they are `current`."""
+    system = W.J.NEWTON.system
     # A wide matrix is expensive to factor: the parts of a step share one while errors fall with it.
-    W.J.COMPONENT[W.s].factored = 1 if fit and system == CONDENSED else 0
-    W.J.PROGRESS.kept, W.J.TALLY.answers = W.s + 1 if fit else 0, system
+    W.J.COMPONENT[W.s].factored = 1 if current and system == CONDENSED else 0
+    W.J.PROGRESS.kept, W.J.TALLY.answers = W.s + 1 if current else 0, system
     clamp(W, h)
     balance_velocities(W, h)
 
@@ -101,8 +97,43 @@ def epsilon_for(W: Workspace, redundant: bool, give: float, worst: float) -> flo
 
 
 @nonallocating
-def solve(W: Workspace, h: float, length: float, redundant: bool, give: float) -> bool:
-    """Solve the implicit step h of a component of size `length` from the present `lam` and `lead`, for v1 and `lam`.
+def begin_solve(W: Workspace) -> None:
+    """The record of a solve before its first iteration, with the factors that the component has."""
+    N, component = W.J.NEWTON, W.J.COMPONENT[W.s]
+    N.factors = KEPT if component.factored > 0 else NEW
+    N.system = W.J.TALLY.answers if N.factors == KEPT else first_system(component, STEP)
+    component.factored = W.J.PROGRESS.kept = 0
+    N.least = N.last = inf
+    N.pace, N.stalls, N.since, N.renewed = 1.0, 0, 0, 0
+
+
+@nonallocating
+def note_error(N: Newton) -> None:
+    """Note an error that is not the last one: whether it is a stall, and by which factor it has changed."""
+    if N.iteration > N.since + 3 and not N.error < (0.5 * N.last if N.error < NEWTON_FLOOR else N.least):
+        N.stalls += 1
+    N.least, N.pace = min(N.least, N.error), N.error / N.last if N.iteration > N.since else 1.0
+    N.last = N.error
+
+
+@nonallocating
+def choose_factors(W: Workspace, h: float, slow: bool, current: bool, redundant: bool) -> None:
+    """The factors of an iteration by the table of `solve`."""
+    N = W.J.NEWTON
+    if N.factors != KEPT or not (slow or not current):
+        return
+    N.factors = FULL if N.renewed > 0 and current else NEW
+    if N.factors == FULL:  # only nearly singular or long steps come here
+        N.system, N.since, N.stalls, N.least, N.pace = W.J.COMPONENT[W.s].system, N.iteration, 0, N.error, 1.0
+        if redundant:
+            drop_impulses(W)
+            first_iterate(W, STEP, h)
+            N.least = inf
+
+
+@nonallocating
+def solve(W: Workspace, h: float, extent: float, redundant: bool, give: float) -> bool:
+    """Solve the implicit step h of a component of size `extent` from the present `lam` and `lead`, for v1 and `lam`.
 
     At convergence g is within JOINT_TOLERANCE of that size (or at round-off) of its targets, or within PROGRESS.near if
     that is more, and the balance of momentum holds to round-off. False without convergence after NEWTON_ITERATIONS, at
@@ -113,12 +144,12 @@ def solve(W: Workspace, h: float, length: float, redundant: bool, give: float) -
 
     | `factors` | are | of the next iteration |
     |---|---|---|
-    | KEPT | those of an earlier iteration, or part of the step | KEPT; NEW if these are `slow` or do not `fit` |
+    | KEPT | those of an earlier iteration, or part of the step | KEPT; NEW if these are `slow` or not `current` |
     | NEW | computed now | KEPT; FULL if these are `slow` |
     | FULL | computed now, of `component.system` | FULL |
 
-    It begins KEPT if the component has factors, else NEW. They `fit` while no bounded impulse reaches or leaves its
-    bound, or slides along that of a disc. Entering FULL, redundant rows begin again without impulses.
+    It begins KEPT if the component has factors, else NEW. They are `current` while no bounded impulse reaches or leaves
+    its bound, or slides along that of a disc. Entering FULL, redundant rows begin again without impulses.
 
     Impulses of elastic joints that contradict one another are as large as they are stiff, and cancel but for round-off:
     at this error the solve ends, and it fails if that is more than ELASTIC_ROUND_OFF, as joints have to be softer.
@@ -126,70 +157,51 @@ def solve(W: Workspace, h: float, length: float, redundant: bool, give: float) -
     Args:
         redundant: whether rows may be, and begin without impulses.  give: compliance over h², see `systems`.
     """
-    component, progress = W.J.COMPONENT[W.s], W.J.PROGRESS
+    N, component, progress = W.J.NEWTON, W.J.COMPONENT[W.s], W.J.PROGRESS
     first_iterate(W, STEP, h)
-    factors = KEPT if component.factored > 0 else NEW
-    system = W.J.TALLY.answers if factors == KEPT else first_system(component, STEP)
-    component.factored = progress.kept = 0
-    # since: iteration in which the solve has begun again, with FULL.  renewed: whether the last iteration was NEW.
-    # pace: by which factor the last iteration has made the error smaller.
-    best, last, pace, stalls, since, renewed = inf, inf, 1.0, 0, 0, False
+    begin_solve(W)
     sure = component.dependence != DEPENDENT
     for iteration in range(NEWTON_ITERATIONS + 1):
-        built = factors != KEPT
-        worst = linearise(W, STEP, h, length, give, False, system, built)
-        fit = factors == KEPT and component.factored != OTHERWISE
-        floor = JOINT_ROUND_OFF_KEPT if factors != FULL else NEWTON_FLOOR if stalls > 1 else JOINT_ROUND_OFF
-        at_floor = is_round_off(worst, best, last, pace, floor, iteration > since + 1, sure)
-        # Next to the solution errors cannot fall by much.
-        slow = not worst <= NEWTON_PROGRESS * last and (iteration > 2 or not worst <= JOINT_ROUND_OFF)
-        if give > 0.0 and iteration > 1:
-            left = round_off_of_impulses(W, h, length)
-            if worst <= left and left > ELASTIC_ROUND_OFF:
-                return False
-            at_floor = at_floor or worst <= left
-        if iteration > 0 and (worst <= max(JOINT_TOLERANCE, progress.near) or at_floor):
-            accept(W, h, fit, system)
-            return True
-        if iteration > since + 3 and not worst < (0.5 * last if worst < NEWTON_FLOOR else best):
-            stalls += 1
-        best = min(best, worst)
-        if not worst < 1e100 or stalls > 6 or iteration == NEWTON_ITERATIONS or progress.effort > progress.limit:
+        built = N.factors != KEPT
+        N.iteration, N.error = iteration, linearise(W, STEP, h, extent, give, False, N.system, built)
+        current = N.factors == KEPT and component.factored != OTHERWISE
+        left = round_off_of_impulses(W, h, extent) if give > 0.0 and iteration > 1 else 0.0
+        if N.error <= left and left > ELASTIC_ROUND_OFF:
             return False
-        last, pace = worst, worst / last if iteration > since else 1.0
-        if factors == KEPT and (slow or not fit):
-            factors = FULL if renewed and fit else NEW
-            if factors == FULL:  # only nearly singular or long steps come here
-                system, since, stalls, best, pace = component.system, iteration, 0, worst, 1.0
-                if redundant:
-                    drop_impulses(W)
-                    first_iterate(W, STEP, h)
-                    best = inf
+        if iteration > 0 and (N.error <= max(JOINT_TOLERANCE, progress.near, left) or is_round_off(N, sure)):
+            accept(W, h, current)
+            return True
+        # Next to the solution errors cannot fall by much.
+        slow = not N.error <= NEWTON_PROGRESS * N.last and (iteration > 2 or not N.error <= JOINT_ROUND_OFF)
+        note_error(N)
+        if not N.error < 1e100 or N.stalls > 6 or iteration == NEWTON_ITERATIONS or progress.effort > progress.limit:
+            return False
+        choose_factors(W, h, slow, current, redundant)
         component.factored = 0
-        if factors != KEPT:
+        if N.factors != KEPT:
             if not built:
-                linearise(W, STEP, h, length, give, False, system, True)
-            system = factorise(W, STEP, h, length, give, system, epsilon_for(W, redundant, give, worst))
-            if system < 0:
+                linearise(W, STEP, h, extent, give, False, N.system, True)
+            N.system = factorise(W, STEP, h, extent, give, N.system, epsilon_for(W, redundant, give, N.error))
+            if N.system < 0:
                 return False
-        elif system == DUAL:
+        elif N.system == DUAL:
             refresh(W)
-        passes = CONDENSED_PASSES if factors == FULL and not give > 0.0 else 1
-        iterate(W, STEP, system, passes, h)
-        renewed, factors = factors == NEW, FULL if factors == FULL else KEPT
+        passes = CONDENSED_PASSES if N.factors == FULL and not give > 0.0 else 1
+        iterate(W, STEP, N.system, passes, h)
+        N.renewed, N.factors = int(N.factors == NEW), FULL if N.factors == FULL else KEPT
     return False
 
 
 @nonallocating
-def solve_linearly(W: Workspace, h: float, length: float) -> bool:
+def solve_linearly(W: Workspace, h: float, extent: float) -> bool:
     """Solve the step h by one linear system, for v1, `lam` and `force`: the rows of the start hold for the mean
     velocity, J x = 0, and springs are linearised about the start. False if the system has no solution."""
     hinge, link, local, component = W.J.HINGE, W.link, W.J.LOCAL, W.J.COMPONENT[W.s]
     for _ in range(BOUNDED_SOLVES):  # bounded rows hold; then those that were beyond a bound are at it
         first_iterate(W, LINEAR_STEP, h)
         system = first_system(component, LINEAR_STEP)
-        linearise(W, LINEAR_STEP, h, length, 0.0, True, system, True)
-        system = factorise(W, LINEAR_STEP, h, length, 0.0, system, REDUNDANT_EPSILON)
+        linearise(W, LINEAR_STEP, h, extent, 0.0, True, system, True)
+        system = factorise(W, LINEAR_STEP, h, extent, 0.0, system, REDUNDANT_EPSILON)
         if system < 0:
             return False
         iterate(W, LINEAR_STEP, system, CONDENSED_PASSES, h)

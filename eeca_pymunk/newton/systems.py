@@ -144,11 +144,11 @@ def assemble(W: Workspace, what: int, h: float, give: float, first: bool, system
 
 
 @inlined
-def balance(W: Workspace, h: float, length: float) -> float:
-    """Write the residuals of the balance of momentum, scaled, to RIGHT; the worst one as a way, over `length` or as an
+def balance(W: Workspace, h: float, extent: float) -> float:
+    """Write the residuals of the balance of momentum, scaled, to RIGHT; the worst one as a way, over `extent` or as an
     angle."""
     local = W.J.LOCAL
-    worst, over = 0.0, 1.0 / length
+    worst, over = 0.0, 1.0 / extent
     for i in range(W.bodies):
         for c in range(local[i].freedoms):
             mobility = local[i].mobility[c]
@@ -161,16 +161,16 @@ def balance(W: Workspace, h: float, length: float) -> float:
 
 @inlined
 def linearise(
-    W: Workspace, what: int, h: float, length: float, give: float, first: bool, system: int, build: bool
+    W: Workspace, what: int, h: float, extent: float, give: float, first: bool, system: int, build: bool
 ) -> float:
     """Build the right side, and the matrix if `build`; returns the largest error, over the size of the component.
-    length: that size, for the balance of momentum, which POSES and SPEEDS do not have."""
+    extent: that size, for the balance of momentum, which POSES and SPEEDS do not have."""
     for i in range(W.J.COMPONENT[W.s].unknowns + W.J.COMPONENT[W.s].impulses):
         W.J.RIGHT[i] = 0.0
     worst = assemble(W, what, h, give, first, system, build)
     if what in (POSES, SPEEDS):
         return worst
-    error = balance(W, h, length)
+    error = balance(W, h, extent)
     return worst if error <= worst else error
 
 
@@ -193,14 +193,14 @@ def decompose(W: Workspace, what: int, system: int, epsilon: float, give: float)
 
 
 @inlined
-def factorise(W: Workspace, what: int, h: float, length: float, give: float, system: int, epsilon: float) -> int:
+def factorise(W: Workspace, what: int, h: float, extent: float, give: float, system: int, epsilon: float) -> int:
     """Factor what `linearise` has built; if that fails for a dual system, build and factor the component's other
     system. Returns the system that is factored, -1 for none."""
     if decompose(W, what, system, epsilon, give):
         return system
     if system == DUAL:
         system = W.J.COMPONENT[W.s].system
-        linearise(W, what, h, length, give, False, system, True)
+        linearise(W, what, h, extent, give, False, system, True)
         if decompose(W, what, system, epsilon, give):
             return system
     return -1

@@ -117,7 +117,7 @@ def per_impulse(B: Bounded, i: int, j: int) -> float:
 @nonallocating
 def inside_discs(B: Bounded, L: FloatArray, m: int) -> bool:
     """Whether all impulses L[m:, 0] of discs are inside these, so that all their rows have their target velocities."""
-    for i in range(B.USED[0]):
+    for i in range(B.NUMBER[0]):
         if B.ROWS[i].part == FIRST_OF_DISC:
             x, y, bound = L[m + i, 0], L[m + i + 1, 0], B.ROWS[i].high
             if not (x * x + y * y < bound * bound and B.ROWS[i + 1].low < y < B.ROWS[i + 1].high):
@@ -128,7 +128,7 @@ def inside_discs(B: Bounded, L: FloatArray, m: int) -> bool:
 @nonallocating
 def weigh_rows(B: Bounded) -> None:
     """Set what unit impulses of the rows change along them: `give` and `cross`."""
-    for i in range(B.USED[0]):
+    for i in range(B.NUMBER[0]):
         B.ROWS[i].give = per_impulse(B, i, i)
         if B.ROWS[i].part == FIRST_OF_DISC:
             B.ROWS[i].cross = 0.5 * (per_impulse(B, i, i + 1) + per_impulse(B, i + 1, i))
@@ -148,7 +148,7 @@ def sweep_bounded(B: Bounded, L: FloatArray, m: int, V: FloatArray) -> float:
     """One sweep over the bounded rows, whose impulses are L[m:, 0]; updates L and V, and returns the largest change of
     a velocity along a row."""
     worst = 0.0
-    for i in range(B.USED[0]):
+    for i in range(B.NUMBER[0]):
         part, low, high = B.ROWS[i].part, B.ROWS[i].low, B.ROWS[i].high
         if part == SECOND_OF_DISC:
             continue

@@ -68,8 +68,8 @@ def push_columns(C: Columns, L: FloatArray, m: int, factor: float, V: FloatArray
 def push_jointed(problem: JointedProblem, L: FloatArray, factor: float, V: FloatArray) -> None:
     """Add factor Y L to V (k, 3), bounded rows included."""
     push_columns(problem.C, L, problem.m, factor, V)
-    for i in range(problem.D.USED[0]):
-        push_row(problem.D, i, factor * L[problem.m + i, 0], V)
+    for i in range(problem.B.NUMBER[0]):
+        push_row(problem.B, i, factor * L[problem.m + i, 0], V)
 
 
 @nonallocating
@@ -78,8 +78,8 @@ def breach(problem: JointedProblem, L: FloatArray, V: FloatArray) -> float:
     impulses are on the rim of a disc. Inactive contacts break theirs beyond the velocity that activates them. The
     change of velocity in a sweep is no such measure: where an impulse of friction could open its contact,
     a_nn < mu |a_nt|, a contact by itself has several solutions, among which a sweep may change."""
-    ROWS, C, D, m = problem
-    worst = 0.0 if inside_discs(D, L, m) else np.inf
+    ROWS, C, B, m = problem
+    worst = 0.0 if inside_discs(B, L, m) else np.inf
     for i in range(m):
         if C.LEFT_OUT[i] != 0:
             continue
@@ -92,10 +92,10 @@ def breach(problem: JointedProblem, L: FloatArray, V: FloatArray) -> float:
         if state == STICK or sign != 0.0:
             off = tangent_rate(ROWS[i], V) - limited_slip(ROWS[i], L[i, 0], L[i, 1])
             worst = max(worst, abs(off) if state == STICK else sign * off)
-    for i in range(D.USED[0]):
-        row, x = D.ROWS[i], L[m + i, 0]
+    for i in range(B.NUMBER[0]):
+        row, x = B.ROWS[i], L[m + i, 0]
         if row.give > 0.0:
-            u = row.speed + bounded_rate(D, i, V)
+            u = row.speed + bounded_rate(B, i, V)
             worst = max(worst, abs(u) if row.low < x < row.high else u if x >= row.high else -u)
     return worst
 
@@ -105,10 +105,10 @@ def sweep_jointed(problem: JointedProblem, L: FloatArray, V: FloatArray) -> floa
     """One sweep over the contacts as `sweeps.sweep_unjointed`, but that a contact which sticks stays closed where
     friction alone could open it; and over the bounded rows, whose impulses are L[m:, 0]. Returns the largest change of
     a velocity."""
-    ROWS, C, D, m = problem
-    work = SWEEP_WORK * (m + D.USED[0]) + SWEEP_ENTRY_WORK * (C.AT[m] + D.AT[D.USED[0]])
-    for i in range(D.USED[0]):
-        work += DISC_WORK if D.ROWS[i].part == FIRST_OF_DISC else 0.0
+    ROWS, C, B, m = problem
+    work = SWEEP_WORK * (m + B.NUMBER[0]) + SWEEP_ENTRY_WORK * (C.AT[m] + B.AT[B.NUMBER[0]])
+    for i in range(B.NUMBER[0]):
+        work += DISC_WORK if B.ROWS[i].part == FIRST_OF_DISC else 0.0
     C.WORK[0] += work
     worst = 0.0
     for i in range(m):
@@ -122,4 +122,4 @@ def sweep_jointed(problem: JointedProblem, L: FloatArray, V: FloatArray) -> floa
         L[i, 0], L[i, 1] = lam, beta
         push_column(C, i, dn, dt, V)
         worst = max(worst, abs(dn) * ROWS[i].a_nn, abs(dt) * ROWS[i].a_tt)
-    return max(worst, sweep_bounded(D, L, m, V))
+    return max(worst, sweep_bounded(B, L, m, V))

@@ -101,27 +101,27 @@ def matrix_jointed(
     problem: JointedProblem, slope: FloatArray, at: IntArray, kind: IntArray, N: int, W: FloatArray
 ) -> None:
     """As `matrix_unjointed`, with response columns; unknowns of kind 2 are bounded rows."""
-    ROWS, C, D, _ = problem
+    ROWS, C, B, _ = problem
     C.WORK[0] += MATRIX_WORK * N * N
     bodies = 0
     for i in range(N):
         if kind[i] == 2:
-            bodies = max(bodies, D.END[at[i], 0] + 1, D.END[at[i], 1] + 1)
+            bodies = max(bodies, B.END[at[i], 0] + 1, B.END[at[i], 1] + 1)
         else:
             bodies = max(bodies, ROWS[at[i]].a + 1, ROWS[at[i]].b + 1)
     for w in range(len(C.BODY)):
         bodies = max(bodies, C.BODY[w] + 1)
-    for w in range(D.AT[D.USED[0]]):
-        bodies = max(bodies, D.BODY[w] + 1)
+    for w in range(B.AT[B.NUMBER[0]]):
+        bodies = max(bodies, B.BODY[w] + 1)
     V, MOVED = np.zeros((bodies, 3)), np.full(bodies, -1, np.int64)  # the last column that moves each body
     for j in range(N):
         c = at[j]
-        BODY, first, last = (D.BODY, D.AT[c], D.AT[c + 1]) if kind[j] == 2 else (C.BODY, C.AT[c], C.AT[c + 1])
+        BODY, first, last = (B.BODY, B.AT[c], B.AT[c + 1]) if kind[j] == 2 else (C.BODY, C.AT[c], C.AT[c + 1])
         for w in range(first, last):
             q = BODY[w]
             for k in range(3):
                 if kind[j] == 2:
-                    V[q, k] = D.N[w, k]
+                    V[q, k] = B.N[w, k]
                 else:
                     V[q, k] = C.T[w, k] if kind[j] == 1 else C.N[w, k] + slope[c] * C.T[w, k]
             if V[q, 0] != 0.0 or V[q, 1] != 0.0 or V[q, 2] != 0.0:
@@ -129,7 +129,7 @@ def matrix_jointed(
         for i in range(N):
             z = at[i]
             if kind[i] == 2:
-                W[i, j] = bounded_rate(D, z, V)
+                W[i, j] = bounded_rate(B, z, V)
                 continue
             row = ROWS[z]
             if MOVED[row.a] != j and MOVED[row.b] != j:

@@ -43,7 +43,7 @@ def set_impulses(tableau: Tableau, m: int, X: FloatArray, L: FloatArray) -> None
 def correct_residual(problem: JointedProblem, tableau: Tableau, V: FloatArray, X: FloatArray) -> None:
     """Correct the unknowns X (size,) by what the proximal term and the round-off of pivots leave of the velocities that
     the present states fix; V (k, 3) are those of the bodies."""
-    ROWS, _, D, m = problem
+    ROWS, _, B, m = problem
     T, size = tableau.T, len(X)
     for k in range(size):
         T[size + 2, k] = 0.0
@@ -51,7 +51,7 @@ def correct_residual(problem: JointedProblem, tableau: Tableau, V: FloatArray, X
         k, state = unknown_of(m, c), tableau.MODE[c]
         for z in range(2 if state == STICK else 1 if state in (SLIP, INSIDE) else 0):
             if c >= m:
-                off = D.ROWS[c - m].speed + bounded_rate(D, c - m, V)
+                off = B.ROWS[c - m].speed + bounded_rate(B, c - m, V)
             elif z == 1:
                 off = tangent_rate(ROWS[c], V) - tableau.TARGET_T[c]
             else:

@@ -31,8 +31,8 @@ def start_homotopy(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: 
     `anew`, without impulses of contacts, and with rows at a bound. Contacts that are inactive (`Row.wake`) or left out
     (`Columns.LEFT_OUT`), and rows that joints hold take no part: their impulses stay, and so do those of discs, unless
     these are replaced by squares (`discs`)."""
-    ROWS, C, D, m = problem
-    n = D.USED[0]
+    ROWS, C, B, m = problem
+    n = B.NUMBER[0]
     size = 2 * m + n
     changes = HOMOTOPY_CHANGES_ANEW if anew else HOMOTOPY_CHANGES
     tableau = make_tableau(m, n, size + changes * (m + n))
@@ -59,12 +59,12 @@ def start_homotopy(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: 
             X[2 * i], X[2 * i + 1] = L[i, 0], L[i, 1]
             C.WORK[0] += work_of_change(size) if L[i, 0] > 0.0 else 0.0
     for i in range(n):
-        row, k = D.ROWS[i], 2 * m + i
+        row, k = B.ROWS[i], 2 * m + i
         tableau.LOW[i], tableau.HIGH[i] = row.low, row.high
         if (discs or row.part == SINGLE) and T[k, k] > 0.0:
             upper = L[m + i, 0] >= row.high or row.low == -np.inf
             tableau.MODE[m + i], tableau.SIGN[m + i] = BOUND, 1.0 if upper else -1.0
-            T[size, k] = row.speed + bounded_rate(D, i, V)
+            T[size, k] = row.speed + bounded_rate(B, i, V)
             X[k] = L[m + i, 0]
     if not anew:
         set_direction_of_residuals(tableau, m, X, BEGAN, SIGN)

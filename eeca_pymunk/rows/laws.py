@@ -45,7 +45,7 @@ def solve_columns(
     """
     worst = sweep_conjugate(problem, L, V, tolerance, sweeps)[1] if sweeps > 0 else breach(problem, L, V)
     best, L0, V0, before, earlier = worst, L.copy(), V.copy(), np.inf, np.inf
-    within = inside_discs(problem.D, L, problem.m)  # as long as impulses stay inside, discs are linear rows
+    within = inside_discs(problem.B, L, problem.m)  # as long as impulses stay inside, discs are linear rows
     for _ in range(joints.COLUMN_HOMOTOPIES):
         if worst <= tolerance:
             return worst
@@ -55,7 +55,7 @@ def solve_columns(
         push(problem, L, -1.0, FREE)
         divide_friction(problem.ROWS, L, problem.m)  # points that slip against each other have no common motion
         follows = follow_homotopy(problem, L, V, FREE, False, within)
-        if within and not inside_discs(problem.D, L, problem.m):
+        if within and not inside_discs(problem.B, L, problem.m):
             within = False
             restore_impulses(L, V, L0, V0)
             continue

@@ -15,7 +15,7 @@ from eeca_pymunk.compiled.records import zeros
 from eeca_pymunk.contacts.interval import make_contacts
 from eeca_pymunk.jointed import contact_laws, iterates
 from eeca_pymunk.jointed.advance import Interval, Motion
-from eeca_pymunk.jointed.broyden import fit_columns
+from eeca_pymunk.jointed.broyden import update_columns
 from eeca_pymunk.jointed.groups import Groups
 from eeca_pymunk.model.contacts import ROW, Columns
 from eeca_pymunk.model.islands import Island
@@ -126,7 +126,7 @@ def test_columns_answer_as_the_last_motion_did(unit: float) -> None:
         return velocities
 
     was, was_across = answer(new - old), answer(across)
-    fit_columns(interval, room_for_rows(0, 0), new, old, np.empty(0), before)
+    update_columns(interval, room_for_rows(0, 0), new, old, np.empty(0), before)
     fitted = mean - before if unit == 1.0 else was
     np.testing.assert_allclose(answer(new - old)[:2], fitted[:2], rtol=1e-12)
     np.testing.assert_allclose(answer(new - old)[2], was[2], rtol=1e-12)  # free bodies answer by their mass

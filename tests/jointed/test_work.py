@@ -110,7 +110,7 @@ BACK: list[Part] = [
 ]
 REFINEMENTS: list[Part] = [(systems, "back_condensed", lambda W, passes, *_: passes * W.joints)]
 # The box is the only body: each contact and each row has one entry.
-SWEEPS: list[Part] = [(columns, "sweep_bounded", lambda B, L, m, V: m + B.USED[0])]
+SWEEPS: list[Part] = [(columns, "sweep_bounded", lambda B, L, m, V: m + B.NUMBER[0])]
 SLIPS: list[Part] = [(columns, "lawful", lambda *given: lawful(*given)[2])]
 DISCS: list[Part] = [(columns, "sweep_bounded", lambda *_: 1)]
 HOMOTOPIES: list[Part] = [(homotopy, "start_homotopy", lambda *_: 1)]

@@ -83,7 +83,7 @@ def off(problem: JointedProblem, L: Array, V: Array) -> float:
             worst = max(worst, abs(ut))
         elif mu > 0.0 and lam > 0.0:
             worst = max(worst, np.sign(beta) * ut)
-    for i in range(D.USED[0]):
+    for i in range(D.NUMBER[0]):
         x, row = L[m + i, 0], D.ROWS[i]
         u = row.speed + V[D.END[i, 1], 2]
         worst = max(worst, row.low - x, x - row.high)
@@ -176,7 +176,7 @@ def pinned(count: int, most: float) -> JointedProblem:
     """A chain of points of unit mass without contacts; neighbours are pinned by impulses of at most `most`."""
     rows = 2 * (count - 1)
     D = room_for_rows(rows, 2 * rows)
-    D.USED[0] = rows
+    D.NUMBER[0] = rows
     for i in range(rows):
         first, axis = divmod(i, 2)
         D.AT[i + 1], D.BODY[2 * i], D.BODY[2 * i + 1] = 2 * i + 2, first, first + 1
@@ -201,7 +201,7 @@ def test_chains_of_bounded_pivots_are_solved_as_a_whole() -> None:
     problem = pinned(count, 0.9 * float(np.hypot(L[::2, 0], L[1::2, 0]).max()))
     L, V = np.zeros((2 * count - 2, 2)), free.copy()
     assert solve_columns(problem, L, V, 1e-10, 3, 5000, np.inf) <= 1e-10
-    sizes = np.hypot(L[::2, 0], L[1::2, 0]) / problem.D.ROWS[0].high
+    sizes = np.hypot(L[::2, 0], L[1::2, 0]) / problem.B.ROWS[0].high
     assert 1.0 - 1e-12 <= sizes.max() <= 1.0 + 1e-12
     apart = np.linalg.norm(np.diff(V[:, :2], axis=0), axis=1)
     assert apart.max() > 0.01
@@ -213,7 +213,7 @@ def matrix(problem: JointedProblem, free: Array) -> tuple[Array, Array, Array]:
 
     def rates(V: Array) -> Array:
         contact = normal_rate(problem.ROWS[0], V) - problem.ROWS[0].target
-        return np.array([contact, *(problem.D.ROWS[i].speed + V[i, 2] for i in range(2))])
+        return np.array([contact, *(problem.B.ROWS[i].speed + V[i, 2] for i in range(2))])
 
     q, columns = rates(free), []
     for j in range(3):

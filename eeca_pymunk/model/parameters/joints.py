@@ -105,11 +105,11 @@ STRUT = round_off(1e-6, "of the free mobility",
 STRUT_BETWEEN = round_off(1e-07, "of the free mobility",
     "Mobility of other contacts that is the error of the response.")
 CORRECTION_JOINTS = accuracy(1e-11, "of the component", "Error of joints when overlaps are corrected.")
-FIT_CLOSING = round_off(1e-09, "of the island's speed",
+PROJECTED_CLOSING = round_off(1e-09, "of the island's speed",
     "Speed with which contacts may close after velocities were projected onto the joints.")
-FIT_RESIDUAL = accuracy(1e-06, "of the fastest closing contact",
+PROJECTED_RESIDUAL = accuracy(1e-06, "of the fastest closing contact",
     "Residual of the impulses that keep contacts from closing in this projection.")
-FIT_ENERGY = round_off(1e-12, "of the energy", "Change of energy by this projection that is round-off.")
+PROJECTED_ENERGY = round_off(1e-12, "of the energy", "Change of energy by this projection that is round-off.")
 JOINTED_CORRECTION_SWEEPS = work(40, "sweeps", "Sweeps of the penetration correction of jointed bodies.")
 JOINTED_LIFT_ERROR = accuracy(0.001, "of the deepest overlap", "Error of this correction, also of limits in its way.")
 JOINTED_CORRECTION_TRIES = work(4, "number", "How often it is tried within its budget, at most.")
@@ -128,10 +128,14 @@ COMPONENT_WORK_BODY = work(650.0, "operations", "What each of its bodies adds to
 MEET = round_off(1e-13, "of the smaller shape", "Gap at the located instant of an impact on a component.")
 MEET_LOADED = accuracy(1e-06, "of the smaller shape", "Gap at that instant if contacts push on the component.")
 MEET_MANY = accuracy(0.0001, "of the smaller shape", "Gap at that instant if many contacts push on it.")
+MEET_DEEP = accuracy(0.0001, "of the smaller shape",
+    "Depth at that instant, or more of it than at the start of the interval, from which on it is searched further.")
 MEET_DOUBLINGS = work(20, "number", "Impacts up to which an interval in which joints only begin to act doubles.")
 MEET_SECANTS = work(5, "iterations", "Secant steps to the instant of an impact on a component, at most.")
 MEET_HALVINGS = work(40, "iterations", "Halvings of the time to an instant before shapes pass each other, at most.")
 MEET_SECANTS_LOADED = work(2, "iterations", "Secant steps to that instant if contacts push on the component.")
+END_HALVINGS = work(5, "iterations",
+    "Halvings of an interval that ends before an impact, until it may; then to nothing.")
 MEET_INSTANT = round_off(1e-9, "of the step",
     "Length below which an interval before an impact, or a part before a limit, is empty.")
 PART_ROUND_OFF = round_off(1e-13, "of the step", "Length of a part of a step that is not solved.")
@@ -165,8 +169,8 @@ LAWS_RESIDUAL = accuracy(1e-09, "of |a| h and the speed", "Residual of sweeps ov
 LAWS_RESIDUAL_REST = accuracy(1e-12, "of |a| h and the speed", "Residual of these sweeps near rest.")
 LOCK_TRIES = work(10, "number", "Attempts of the energy lock of components, at most.")
 JOINTS_NEAR = accuracy(1e-09, "of the component", "Error of joints while many contacts have not converged.")
-FIT_ROUND_OFF = round_off(1e-12, "of the size of a body",
-    "Way in an interval up to which columns are not made to fit what they missed.")
+UPDATE_ROUND_OFF = round_off(1e-12, "of the size of a body",
+    "Way in an interval up to which columns are not updated by what they missed.")
 OUTER_FLOOR = round_off(1e-08, "of the speed",
     "Difference of the velocities at which elastic contacts count as solved if it does not fall: round-off of stiff "
     "components.")

@@ -7,11 +7,11 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
 from ..contacts.works import kinetic_energy
-from ..joints.correct import fitting_loss
+from ..joints.correct import loss_of_projection
 from ..joints.workspace import workspace
 from ..model.contacts import JointedProblem
 from ..model.joints import Joints
-from ..model.parameters.joints import FIT_CLOSING, FIT_ENERGY, FIT_RESIDUAL
+from ..model.parameters.joints import PROJECTED_CLOSING, PROJECTED_ENERGY, PROJECTED_RESIDUAL
 from ..model.scene import Scene
 from ..rows.bounded import room_for_rows
 from ..rows.build import normal_rate
@@ -36,24 +36,24 @@ def project_velocities(A: Scene, J: Joints, interval: Interval, L: FloatArray, s
     """
     isle, groups, ROWS, motion, _, m, _, t, h, _ = interval
     NOTHING = np.zeros_like(isle.V)
-    PUSHED = np.zeros(len(groups.COMPONENT) + 1, np.int64)  # one more, for GROUP -1
+    LOADED = np.zeros(len(groups.COMPONENT) + 1, np.int64)  # one more, for GROUP -1
     for i in range(m):
         if L[i, 0] > 0.0:
-            PUSHED[groups.GROUP[ROWS[i].a] + 1] = PUSHED[groups.GROUP[ROWS[i].b] + 1] = 1
+            LOADED[groups.GROUP[ROWS[i].a] + 1] = LOADED[groups.GROUP[ROWS[i].b] + 1] = 1
     payer, DRIVEN = -1, np.zeros(len(groups.COMPONENT) + 1, np.int64)
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
         if s < 0:
             continue
-        C, DRIVEN[g + 1] = J.COMPONENT[s], J.COMPONENT[s].driven
+        component, DRIVEN[g + 1] = J.COMPONENT[s], J.COMPONENT[s].driven
         # Impulses at one instant move bodies freely whose joints are all bounded.
-        if PUSHED[g + 1] == 0 or C.bounded_joints == C.end_joint - C.first_joint:
+        if LOADED[g + 1] == 0 or component.bounded_joints == component.end_joint - component.first_joint:
             continue
         payer = s if payer < 0 else payer
-        length = gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, t + h, h)
-        project_speeds(J, s, length)
-        J.STEPPED[s].projected += fitting_loss(workspace(J, s), J.STEPPED[s])
-        for w in range(C.end_body - C.first_body):
+        extent = gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, t + h, h)
+        project_speeds(J, s, extent)
+        J.STEPPED[s].projected += loss_of_projection(workspace(J, s), J.STEPPED[s])
+        for w in range(component.end_body - component.first_body):
             q = number_of(A, J, s, w)
             for c in range(3 if q >= 0 else 0):
                 motion.V[q, c] = J.LOCAL[w].v0[c]
@@ -66,15 +66,15 @@ def project_velocities(A: Scene, J: Joints, interval: Interval, L: FloatArray, s
             PUSHING[pushing] = i
             pushing += 1
             fastest = max(fastest, -normal_rate(ROWS[i], motion.V))
-    if fastest > FIT_CLOSING * scale:
-        return stop_closing(A, J, interval, PUSHING[:pushing], FIT_RESIDUAL * fastest, payer)
+    if fastest > PROJECTED_CLOSING * scale:
+        return stop_closing(A, J, interval, PUSHING[:pushing], PROJECTED_RESIDUAL * fastest, payer)
     return np.zeros(m)
 
 
 @kernel
 def stop_closing(A: Scene, J: Joints, interval: Interval, PUSHING: IntArray, fine: float, payer: int) -> FloatArray:
     """Normal impulses mu (m,), 0 <= mu _|_ u + G S G^T mu >= 0, on the contacts PUSHING, whose rates are u, with S the
-    response of components at one instant: velocities that fit the joints still do, and contacts do not close. Energy
+    response of components at one instant: velocities that hold the joints still do, and contacts do not close. Energy
     changes by mu.(u + G S G^T mu / 2) <= 0, also if sweeps end early. Component `payer` has the loss in its ledger."""
     isle, groups, ROWS, motion, _, m, n, _, _, _ = interval
     pushing, KEEP = len(PUSHING), ROWS[: len(PUSHING)].copy()
@@ -106,7 +106,7 @@ def stop_closing(A: Scene, J: Joints, interval: Interval, PUSHING: IntArray, fin
         for c in range(3):
             motion.V[q, c] += D[q, c]
     gained = kinetic_energy(motion.V, isle.IM, isle.II, n) - before
-    if abs(gained + loss) > FIT_ENERGY * before:
+    if abs(gained + loss) > PROJECTED_ENERGY * before:
         # Supports move.
         J.STEPPED[payer].projected += loss
         J.STEPPED[payer].supports += gained + loss
