@@ -121,7 +121,7 @@ def fill_group(
 
 @nonallocating
 def column_rate(C: Columns, ROWS: Rows[Row], i: int, ANSWER: FloatArray, tangent: bool) -> float:
-    """Change of contact i's normal (or tangential) velocity by its own column D, 1/mass."""
+    """Change of contact i's normal (or tangential) velocity by its own column, whose entries are ANSWER; 1/mass."""
     x, y = (-ROWS[i].ny, ROWS[i].nx) if tangent else (ROWS[i].nx, ROWS[i].ny)
     arm_a = ROWS[i].arm_ta if tangent else ROWS[i].arm_na
     arm_b = ROWS[i].arm_tb if tangent else ROWS[i].arm_nb

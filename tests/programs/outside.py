@@ -4,8 +4,8 @@ What acts from outside has a power that the scene and the step's own report boun
 
 * a contact of a kinematic body, or of shapes with a surface velocity: its impulse times the speed of the surface at its
   point, |J| |v|, for the impulse does the work J v on the other body. Where such a body has gone into others, it lifts
-  them out: at most the weight of all bodies times the deepest overlap, of the contacts or with that body before, and
-  what springs then store by that way of their ends;
+  them out, and what lies deep in them: at most the weight of all bodies times the deepest overlap, of the contacts or
+  of any two bodies before, and what springs then store by that way of their ends;
 * a motor: `max_force` times the angle that it turns. Mostly that is the larger of the change of the angle and of dt
   times the largest relative spin, before or after the step. Impacts may turn it to and fro within the step: it never
   turns by more than dt times the largest spins that the energy of the scene allows (`Outside.fastest`);
@@ -22,6 +22,7 @@ from __future__ import annotations
 
 import math
 from contextlib import suppress
+from itertools import combinations
 
 import numpy as np
 import pymunk
@@ -97,15 +98,14 @@ def _squeezed(space: pymunk.Space, depth: float) -> float:
     return total
 
 
-def _deepest(space: pymunk.Space, box: pymunk.Body) -> float:
-    """Deepest overlap of the shapes of a body with others. The sign of the distance depends on the order of the two
-    shapes; only what overlaps has points."""
-    depth = 0.0
-    for one in box.shapes:
-        for other in space.shapes:
-            if other.body is not box and one.cache_bb().intersects(other.cache_bb()):
-                with suppress(AssertionError):  # of pymunk, for shapes that do not collide
-                    depth = max(depth, *(abs(point.distance) for point in one.shapes_collide(other).points), 0.0)
+def _deepest(space: pymunk.Space) -> float:
+    """Deepest overlap of shapes of two bodies. The sign of the distance depends on the order of the two shapes; only
+    what overlaps has points."""
+    depth, boxes = 0.0, [(shape, shape.cache_bb(), shape.body) for shape in space.shapes]
+    for (one, here, a), (other, there, b) in combinations(boxes, 2):
+        if a is not b and here.intersects(there):
+            with suppress(AssertionError):  # of pymunk, for shapes that do not collide
+                depth = max(depth, *(abs(point.distance) for point in one.shapes_collide(other).points), 0.0)
     return depth
 
 
@@ -122,7 +122,7 @@ class Outside:
         self.bounded = [(c, motion(c)) for c in space.constraints if math.isfinite(c.max_force)]
         self.belt = max((shape.surface_velocity.length for shape in space.shapes), default=0.0)
         moving = self.speed > 0.0 or self.spin > 0.0
-        self.depth = _deepest(space, box) if moving else 0.0
+        self.depth = _deepest(space) if moving else 0.0
         self.energy = _loose_energy(space)
         self.unbounded = pushed or any(moving and box in (c.a, c.b) for c in space.constraints)
 
