@@ -107,24 +107,37 @@ def rollout(
     if not full:
         return job.frames
     first = np.cumsum([0, *map(len, events)])
-    parameters = {"steps": steps, "dt": dt, "every": every, "model": stepper.model, **versions()}
+    parameters = {"steps": steps, "dt": dt, "every": every, "model": stepper.model}
+    parameters |= {"controlled": push is not None, **versions()}
     return Rollouts(start, job.frames, job.ledger, job.unmet, Events.joined(events), first, parameters=parameters)
 
 
 def certify(
-    stepper: RunningStepper, rollouts: Rollouts, threads: int | None = None, progress: bool = False
+    stepper: RunningStepper, rollouts: Rollouts, threads: int | None = None, progress: bool = False,
+    controls: FloatArray | None = None,
 ) -> FloatArray:  # fmt: skip
     """Estimate the errors of the frames of rollouts: they are computed again with half the time step and compared.
 
     For a method of order p >= 1 and small dt the error is 2^p / (2^p - 1) <= 2 times the difference. Where the method
     is exact (impacts of disks, free flight) the two differ by round-off, and the difference measures how it grows from
-    impact to impact. Only for rollouts without controls: the second computation has none.
+    impact to impact.
+
+    Args:
+        controls: (K, T, b, 3) those of the rollouts, which do not store them; None if they had none.
 
     Returns:
         (K,) length, twice the largest difference of a position in any frame; also stored as `rollouts.error`.
+
+    Raises:
+        ValueError: the rollouts had controls and none are given, or the reverse.
     """
+    controlled = rollouts.parameters.get("controlled", controls is not None)  # unknown of older files
+    if controlled and controls is None:
+        raise ValueError("these rollouts had controls, which they do not store: give certify the same, as controls=...")
+    if not controlled and controls is not None:
+        raise ValueError("these rollouts had no controls: give certify none")
     steps, dt, every = (rollouts.parameters[name] for name in ("steps", "dt", "every"))
-    finer = rollout(stepper, rollouts.states, 2 * steps, 0.5 * dt, 2 * every, None, threads, progress)
+    finer = rollout(stepper, rollouts.states, 2 * steps, 0.5 * dt, 2 * every, controls, threads, progress)
     distance = np.linalg.norm(finer[..., :2] - rollouts.frames[..., :2], axis=-1)
     rollouts.error = 2.0 * distance.max(axis=(1, 2), initial=0.0)
     return rollouts.error

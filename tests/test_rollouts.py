@@ -106,6 +106,20 @@ def test_controls_are_forces_held_over_the_steps_up_to_each_frame() -> None:
             np.testing.assert_array_equal(found[k, t], poses(stepper.space))
 
 
+def test_certified_rollouts_have_the_controls_that_they_had() -> None:
+    space = pymunk.Space()
+    body = pymunk.Body(1.0, 1.0)
+    space.add(body, pymunk.Circle(body, 1.0))
+    stepper, states, controls = ep.EECA(space), np.zeros((2, 1, 6)), np.ones((2, 5, 1, 3))
+    driven = ep.rollout(stepper, states, 5, 0.1, controls=controls, full=True)
+    with pytest.raises(ValueError, match="had controls"):
+        ep.certify(stepper, driven)
+    assert ep.certify(stepper, driven, controls=controls).max() < 1e-14
+    free = ep.rollout(stepper, states, 5, 0.1, full=True)
+    with pytest.raises(ValueError, match="no controls"):
+        ep.certify(stepper, free, controls=controls)
+
+
 def test_copies_follow_edits_of_the_space() -> None:
     stepper, bodies = gas()
     states = poses(stepper.space)[None]

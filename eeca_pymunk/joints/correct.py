@@ -172,7 +172,7 @@ def hold_passed_by(W: Workspace, least: float) -> bool:
     poses."""
     hinge, link, found = W.J.HINGE, W.link, False
     for k in range(W.joints):
-        if link[k].bounded != 0:
+        if link[k].bounded != 0 or link[k].rows == 0:  # springs have no limits
             continue
         a, b = W.J.LOCAL[link[k].body[0]].v0, W.J.LOCAL[link[k].body[1]].v0
         for side in (-1, 1):

@@ -19,7 +19,7 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, nonallocating
+from ..compiled import inlined, kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.bodies import Body
 from ..model.joints import FREE, PIN, PIVOT, SLIDE, WHOLLY, Joint
@@ -54,14 +54,31 @@ def anchor(bodies: Rows[Body], joint: Joint, end: int) -> tuple[float, float]:
 
 
 @nonallocating
+def size_of_anchor(bodies: Rows[Body], joint: Joint, end: int) -> float:
+    """The size of the numbers whose sum is an `anchor`: its round-off is relative to these, also at the origin."""
+    body, x, y = bodies[joint.body[end]], joint.anchor_a[0], joint.anchor_a[1]
+    if end == 1:
+        x, y = joint.anchor_b[0], joint.anchor_b[1]
+    return float(abs(body.x) + abs(body.y) + abs(x) + abs(y))
+
+
+@inlined
+def is_round_off(dx: float, dy: float, size: float) -> bool:
+    """Whether the distance of two points is round-off; `size`: the larger `size_of_anchor`."""
+    return abs(dx) + abs(dy) <= STRAIGHT_CHAIN * size
+
+
+@nonallocating
 def list_points(bodies: Rows[Body], joint: Rows[Joint], X: FloatArray, HEAD: IntArray, NEXT: IntArray) -> None:
-    """Fill in the places X (2 j, 2) of the points of all joints: point 2 i of joint i on its body a, 2 i + 1 on its
-    body b, so that p ^ 1 is the other point of a joint. Points of joints that may be straight are listed by body: HEAD
-    (n,) the first one, NEXT (2 j,) the following one, -1 for none, which both contain."""
+    """Fill in the places X[:, :2], and their `size_of_anchor` X[:, 2], of the points (2 j,) of all joints: point 2 i of
+    joint i on its body a, 2 i + 1 on its body b, so that p ^ 1 is the other point of a joint. Points of joints that may
+    be straight are listed by body: HEAD (n,) the first one, NEXT (2 j,) the following one, -1 for none, which both
+    contain."""
     for j in range(len(joint)):
         for end in range(2):
             p, i = 2 * j + end, joint[j].body[end]
             X[p, 0], X[p, 1] = anchor(bodies, joint[j], end)
+            X[p, 2] = size_of_anchor(bodies, joint[j], end)
             if reach(joint[j]) < math.inf:
                 NEXT[p], HEAD[i] = HEAD[i], p
 
@@ -74,33 +91,35 @@ def straight(X: FloatArray, first: int, p: int, length: float) -> bool:
     return bool(abs(length - math.sqrt(dx * dx + dy * dy)) <= STRAIGHT_CHAIN * size)
 
 
+@inlined
+def in_one_place(X: FloatArray, p: int, q: int) -> bool:
+    """Whether two points are one, but for round-off."""
+    return is_round_off(X[q, 0] - X[p, 0], X[q, 1] - X[p, 1], max(X[p, 2], X[q, 2]))
+
+
 @nonallocating
 def fix_chain(
     joint: Rows[Joint], X: FloatArray, FROM: IntArray, p: int, first: int, spins: IntArray, pinned: IntArray
 ) -> int:
-    """Hold the bodies of the straight chain from `first` that ends in p, on a fixed body; how many there are: none if a
-    body of it has all its points on the chain in one place and joints may turn it about that (`spins`).
+    """Hold the bodies of the straight chain from `first` that ends in p, on a fixed body; how many of them were free.
 
     FROM (2 j,): the point from which the chain has come to a point.
     """
-    for pass_ in range(2):
-        count, q = 0, p
-        while FROM[q] != first:
-            out, q = FROM[q], FROM[FROM[q]]
-            i = joint[q // 2].body[q % 2]
-            far = abs(X[out, 0] - X[q, 0]) + abs(X[out, 1] - X[q, 1])
-            wholly = far > STRAIGHT_CHAIN * (abs(X[q, 0]) + abs(X[q, 1]))
-            if not wholly and spins[i] == FREE:
-                return 0
-            if pass_ == 1:
-                pinned[i] = WHOLLY if wholly else spins[i]
-            count += 1
+    count, q = 0, p
+    while FROM[q] != first:
+        out, q = FROM[q], FROM[FROM[q]]
+        i = joint[q // 2].body[q % 2]
+        count += 1 if pinned[i] == FREE else 0
+        if pinned[i] != WHOLLY:
+            pinned[i] = spins[i] if in_one_place(X, q, out) else WHOLLY
     return count
 
 
 @kernel
 def hold_chains(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, spins: IntArray, pinned: IntArray) -> int:
     """Hold the bodies of straight chains between fixed points, which are still or pinned; how many there are.
+
+    A chain does not lead through a body whose points on it are in one place, if joints may turn it about that.
 
     Args:
         bodies (n,): at their present poses.  joint (j,).
@@ -110,7 +129,7 @@ def hold_chains(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, spins: 
         pinned (n,): in and out, FREE, WHOLLY or CENTRE.
     """
     points, n = 2 * len(joint), len(bodies)
-    X, LENGTH = np.empty((points, 2)), np.empty(points)
+    X, LENGTH = np.empty((points, 3)), np.empty(points)
     HEAD, NEXT = np.full(n, -1, np.int64), np.full(points, -1, np.int64)
     FROM, SEEN, STACK = np.empty(points, np.int64), np.full(points, -1, np.int64), np.empty(points, np.int64)
     list_points(bodies, joint, X, HEAD, NEXT)
@@ -125,6 +144,7 @@ def hold_chains(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, spins: 
                 continue
             stamp += 1
             FROM[first ^ 1], LENGTH[first ^ 1], STACK[0], room = first, across, first ^ 1, 1
+            SEEN[first] = SEEN[first ^ 1] = stamp
             while room > 0:
                 room -= 1
                 p = STACK[room]
@@ -137,8 +157,9 @@ def hold_chains(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, spins: 
                 q = HEAD[i]
                 while q >= 0:
                     length = LENGTH[p] + math.sqrt((X[q, 0] - X[p, 0]) ** 2 + (X[q, 1] - X[p, 1]) ** 2)
-                    if q != p and SEEN[q ^ 1] < stamp and straight(X, first, q, length):
-                        SEEN[q ^ 1] = stamp
+                    leads = SEEN[q] < stamp and not (spins[i] == FREE and in_one_place(X, p, q))
+                    if leads and straight(X, first, q, length):
+                        SEEN[q] = SEEN[q ^ 1] = stamp  # joints of length 0 may form a cycle
                         FROM[q], FROM[q ^ 1], LENGTH[q ^ 1] = p, q, length + reach(joint[q // 2])
                         STACK[room] = q ^ 1
                         room += 1

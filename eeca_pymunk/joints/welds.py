@@ -14,7 +14,7 @@ from ..compiled.records import Rows
 from ..model.bodies import Body
 from ..model.joints import FREE, GEAR, PIVOT, WELDED, Joint
 from ..model.parameters.joints import STRAIGHT_CHAIN
-from .straight import anchor
+from .straight import anchor, is_round_off, size_of_anchor
 
 
 @nonallocating
@@ -25,7 +25,8 @@ def closed(bodies: Rows[Body], joint: Joint) -> bool:
         return bool(abs(b - a - joint.phase) <= STRAIGHT_CHAIN * max(1.0, abs(a), abs(b)))
     ax, ay = anchor(bodies, joint, 0)
     bx, by = anchor(bodies, joint, 1)
-    return bool(abs(ax - bx) + abs(ay - by) <= STRAIGHT_CHAIN * max(abs(ax), abs(ay), abs(bx), abs(by)))
+    size = max(size_of_anchor(bodies, joint, 0), size_of_anchor(bodies, joint, 1))
+    return bool(is_round_off(ax - bx, ay - by, size))
 
 
 @nonallocating

@@ -73,14 +73,13 @@ def fill_lists(table: Table, BOUND: FloatArray) -> bool:
             entries += A.LIST[s].number
         # Margins do not fall with the bounding radius, so the shapes of median radius have the median margin.
         small, large = margin_at(A, BOUND, (A.GRID.moving - 1) // 2), margin_at(A, BOUND, A.GRID.moving // 2)
-        if entries <= MOST_NEIGHBOURS * A.GRID.moving or 0.5 * (small + large) <= MARGIN_LEAST * middle(BOUND):
+        least = 0.5 * (small + large) <= MARGIN_LEAST * middle(BOUND) or A.GRID.halvings >= MARGIN_HALVINGS
+        if least or entries <= MOST_NEIGHBOURS * A.GRID.moving:
             return made
         for s in range(A.GRID.moving):
             A.MARK[s].margin *= 0.5
             A.MARK[s].usual = A.MARK[s].margin
         A.GRID.halvings += 1
-        if A.GRID.halvings == MARGIN_HALVINGS:
-            return made
 
 
 @nonallocating

@@ -293,3 +293,15 @@ def test_saved_runs_go_on_bit_by_bit() -> None:
     again = impulses(copied_space, copied, next(iter(copied_space.bodies)), 6, steps=20)
     assert np.array_equal(first, again)
     assert [b.position for b in space.bodies] == [b.position for b in copied_space.bodies]
+
+
+@pytest.mark.parametrize("angle", [0.3, 0.7, 1.1, 2.0])
+@pytest.mark.parametrize("x", [0.0, 5.0])
+def test_a_pivot_at_the_origin_welds_as_elsewhere(x: float, angle: float) -> None:
+    space = pymunk.Space()
+    space.gravity = 0.0, -10.0
+    plank = pymunk.Body(1.0, 1.0 / 3.0)
+    plank.position, plank.angle = (x + 1.0, 0.0), angle
+    space.add(plank, pymunk.PivotJoint(space.static_body, plank, (x, 0.0)))
+    space.add(pymunk.GearJoint(space.static_body, plank, angle, 1.0))
+    assert welded(ep.EECA(space)) == 1

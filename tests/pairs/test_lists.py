@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
+import pymunk
 import pytest
 
+import eeca_pymunk as ep
 from eeca_pymunk.compiled import table_of
 from eeca_pymunk.compiled.records import columns, put
 from eeca_pymunk.model.bodies import VELOCITY
+from eeca_pymunk.model.parameters.detection import MARGIN_HALVINGS
 from eeca_pymunk.model.scene import scene_of
 from eeca_pymunk.model.shapes import LEVELS
 from eeca_pymunk.pairs import cells, grid, setup
@@ -253,3 +256,18 @@ def test_a_list_drawn_ahead_is_complete_and_its_old_part_comes_first(ahead: floa
         assert np.hypot(*away) == pytest.approx(ahead * n.MARK["margin"][s], abs=1e-12)
         assert away @ columns(world.body[s], "vx", "vy") >= 0.0
     near.check()
+
+
+def test_points_in_one_place_do_not_halve_their_margins_for_ever() -> None:
+    space = pymunk.Space()
+    space.gravity = 0.0, -1.0
+    for _ in range(100):
+        body = pymunk.Body(1.0, 1.0)
+        space.add(body, pymunk.Circle(body, 0.0))
+    stepper = ep.EECA(space)
+    loop = stepper.event_loop
+    assert loop is not None
+    scene = loop.scene
+    assert scene.GRID.halvings == MARGIN_HALVINGS
+    assert scene.GRID.cell > 0.0
+    stepper.step(1 / 60)
