@@ -8,10 +8,11 @@ from __future__ import annotations
 from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Solved
+from ..model.islands import Island
 from ..model.parameters.events import BODY_LOOKS, DIRECT_LOOKS, EVENT_LOOKS, OPERATION_LOOKS, PAIR_LOOKS, SWEEP_LOOKS
 from ..model.parameters.impulses import DENSE_CONTACTS
 from ..model.scene import Scene
-from ..model.step import SOLVES
+from ..model.step import CONTACTS, SOLVES
 
 
 @nonallocating
@@ -49,7 +50,17 @@ def note_lock(A: Scene, OUT: Rows[Solved]) -> None:
 
 
 @nonallocating
+def note_solution(A: Scene, isle: Island, OUT: Rows[Solved]) -> None:
+    """Report the solve of an interval that is taken: its lock, its residual if that is above the tolerance."""
+    note_lock(A, OUT)
+    if OUT[0].residual > OUT[0].tolerance:
+        note_unmet(A, CONTACTS, isle.PAIRS[0, 0], isle.PAIRS[0, 1], OUT[0].residual, OUT[0].tolerance)
+    A.COUNT.solves += 1
+
+
+@nonallocating
 def count_solve(A: Scene, n: int, p: int, m: int, OUT: Rows[Solved]) -> None:
-    """Count the solve of an island of n bodies with m contacts of p pairs, and its work."""
+    """Count the solve of an island of n bodies with m contacts of p pairs, whether it is taken or not, and its work."""
     A.COUNT.solved += n
+    A.COUNT.direct += OUT[0].direct
     spend(A, n, 2 * p, looks_of(m, OUT))

@@ -98,8 +98,9 @@ def speeds(isle: Island, n: int, h: float, REACH: FloatArray) -> tuple[float, fl
 @kernel
 def make_contacts(p: int, k: int) -> IslandContacts:
     """Empty contacts for p pairs of shapes of k bodies."""
-    room = 2 * p + 1
-    return IslandContacts(empty(room, ROW), np.zeros((room, 2)), np.zeros((k, 3)), np.zeros((k, 6)), zeros(1, SOLVED))
+    room, OUT = 2 * p + 1, zeros(1, SOLVED)
+    clear_report(OUT[0])
+    return IslandContacts(empty(room, ROW), np.zeros((room, 2)), np.zeros((k, 3)), np.zeros((k, 6)), OUT)
 
 
 class Begun(NamedTuple):

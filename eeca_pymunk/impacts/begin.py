@@ -97,11 +97,10 @@ def begin(A: Scene, IDS: IntArray) -> None:
             continue
         if BODY[i].inv_mass == 0.0:
             fixed += 1
-            if moves(BODY[i]):
-                COUNT.closing = 1
-                A.MEMBER[i].rest = CHANGED
-            else:
-                A.MEMBER[i].rest = AWAKE if unchanged(A, i) else CHANGED
+            COUNT.closing = 1 if moves(BODY[i]) else COUNT.closing
+            # One that joints hold from now on may be the root of an island at rest, which then is CHANGED.
+            still = unchanged(A, i) and not moves(BODY[i]) and STATE[i].island < 0
+            A.MEMBER[i].rest = AWAKE if still else CHANGED
         ax, ay = BODY[i].ax, BODY[i].ay
         A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2] = ax, ay, BODY[i].angular
         pulled = max(pulled, ax * ax + ay * ay)

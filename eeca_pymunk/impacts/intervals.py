@@ -18,7 +18,7 @@ from ..model.bodies import AT_REST
 from ..model.joints import Joints
 from ..model.parameters.joints import CUT_WORK
 from ..model.scene import Scene
-from ..model.step import DONE, PUSHES_FULL, SOLVES, SPENT
+from ..model.step import DONE, LOG_FULL, PUSHES_FULL, SOLVES, SPENT
 from ..prediction.scheduling import predict_all
 from ..prediction.work import most_work
 
@@ -57,7 +57,7 @@ def start_islands(A: Scene, J: Joints) -> int:
 @kernel
 def start_waiting(A: Scene, J: Joints) -> int:
     """Begin intervals of the islands of the COUNT.waiting bodies in A.BLOCK, which are at the instant of an event, and
-    predict the events of these bodies. DONE, or PUSHES_FULL: to be called again with more memory."""
+    predict the events of these bodies. DONE, or PUSHES_FULL or LOG_FULL: to be called again with more memory."""
     COUNT, BLOCK = A.COUNT, A.BLOCK
     for q in range(COUNT.waiting):
         root = A.STATE[BLOCK[q]].island
@@ -65,6 +65,8 @@ def start_waiting(A: Scene, J: Joints) -> int:
             status = start_interval(A, J, root, A.BODY[root].since)
             if status == PUSHES_FULL:
                 return status
+            if status == SPENT and COUNT.logged + COUNT.pushes > A.LOG.shape[0]:
+                return LOG_FULL
             if status == SPENT:
                 COUNT.waiting = 0
                 return cut_short(A, J, root, A.BODY[root].since)

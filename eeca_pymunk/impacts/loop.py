@@ -81,7 +81,7 @@ def run_events(A: Scene, may_persist: bool, most: float) -> int:
         COUNT.heap = pop(TIME, OF, COUNT.heap)
         look_ahead(A, i)
         s, o = STATE[i].own, STATE[i].other
-        if o == RENEW or COUNT.work > most:
+        if o == RENEW or (COUNT.work > most and t > 0.0):
             A.PAR.now, COUNT.event_body = t, i
             return BLOCK_DUE
         if o == LEAVE:
@@ -166,12 +166,13 @@ def process_events(A: Scene, J: Joints, may_persist: bool) -> int:
         t, i = A.PAR.now, COUNT.event_body
         s, o = STATE[i].own, STATE[i].other
         j = i if o < 0 else A.LINK[o].owner
-        if COUNT.work + work_of_event(A, i, j) > most_looks(A, J):
-            return cut_short(A, J, i, t)
         # Each contact of an interval will have a row of LOG, too.
         if COUNT.logged + COUNT.pushes + max(_ROWS_OF_A_BODY * STATE.shape[0], COUNT.room) > A.LOG.shape[0]:
             COUNT.heap = push_event(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
             return LOG_FULL
+        # A step is not cut to nothing: impacts at its start act.
+        if COUNT.work + work_of_event(A, i, j) > most_looks(A, J) and t > 0.0:
+            return cut_short(A, J, i, t)
         met = o != RENEW
         if met and remembers(A, s, o):
             note_sides(A, min(s, o), max(s, o), t)
@@ -190,7 +191,7 @@ def process_events(A: Scene, J: Joints, may_persist: bool) -> int:
                 lasts = persists_from(A, s, o, t)
             waiting = strike(A, s, o, t, lasts)
             joints = waiting < 0  # others of the block are jointed: nothing was done
-        if joints and work_left(A, J) < 0.0:
+        if joints and work_left(A, J) < 0.0 and t > 0.0:
             return cut_short(A, J, i, t)
         more = 2 * COUNT.pushes + _MORE_CONTACTS
         if joints and (more > A.PUSHED.shape[0] or not table_has_room(A, more)):

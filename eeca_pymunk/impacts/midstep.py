@@ -11,8 +11,12 @@ from ..compiled import kernel, nonallocating
 from ..geometry.flight import fastest, norm, pose
 from ..geometry.gap import gap
 from ..geometry.widths import smaller
+from ..islands.building import hold_penetrating
 from ..islands.candidates import travel_bound
 from ..islands.membership import approach, unite
+from ..jointed.ends import components_of
+from ..jointed.gathered import restore_joints
+from ..model.bodies import AWAKE
 from ..model.joints import Joints
 from ..model.parameters.intervals import MIDSTEP_PASSES, TOUCH
 from ..model.scene import Scene
@@ -62,13 +66,27 @@ def join_all(A: Scene) -> bool:
 
 @nonallocating
 def undo_intervals(A: Scene) -> None:
-    """Undo the intervals begun so far: no body is in an island, and no impulse has changed a path."""
+    """Undo the intervals begun so far, but for joints: no body is in an island, or at rest, no impulse has changed a
+    path, and nothing is reported."""
     for c in range(A.COUNT.pushes):
         mark_pair(A, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0)
-    A.COUNT.pushes = 0
+    A.COUNT.pushes = A.COUNT.unmet = 0
+    A.PAR.lock = 1.0
     for i in range(A.BODY.shape[0] - 1):
         A.STATE[i].island = -1
+        if A.BODY[i].inv_mass > 0.0:
+            A.MEMBER[i].rest = AWAKE  # at rest in the last step, of another closure
         A.BODY[i].ax, A.BODY[i].ay, A.BODY[i].angular = A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2]
+
+
+@kernel
+def undo_joints(A: Scene, J: Joints) -> None:
+    """Restore the joints of the islands whose intervals have begun, and the budgets of the step."""
+    A.COUNT.work = J.PROGRESS.effort = 0.0
+    for i in range(A.BODY.shape[0] - 1):
+        if A.STATE[i].island == i and A.MEMBER[i].jointed > 0 and A.MEMBER[i].open > 0:
+            for s in components_of(A, J, i):
+                restore_joints(J, s)
 
 
 @nonallocating
@@ -105,13 +123,20 @@ def missed_bodies(A: Scene) -> int:
 
 @kernel
 def act_together(A: Scene, J: Joints) -> int:
-    """Solve all contacts of a step, from its start also when it is called again after more memory was needed. DONE, or
-    which memory is full."""
+    """Solve all contacts of a step, from its start also when it is called again after more memory was needed
+    (COUNT.phase 1). DONE, or which memory is full."""
     BODY = A.BODY
     n = BODY.shape[0] - 1
+    if A.COUNT.phase == 1:
+        undo_joints(A, J)
+    A.COUNT.phase = 1
     A.RESTING[n].speed = 0.0
     for i in range(n):
         A.RESTING[i].speed = fastest(BODY[i])
+        BODY[i].due = 0.0  # no event is predicted, and in the next step the body counts as placed only if it is
+    if A.COUNT.any_placed > 0:
+        undo_intervals(A)  # of the last step
+        hold_penetrating(A)  # here only for which bodies count as placed any longer: islands are built below
     for solves in range(MIDSTEP_PASSES + 1):
         undo_intervals(A)
         if not join_all(A):

@@ -85,10 +85,12 @@ def act(A: Scene, J: Joints) -> int:
 @kernel
 def resume(A: Scene, J: Joints, R: Reading) -> int:
     """The rest of a step that has begun; results as of `step`."""
-    met = act(A, J)
-    if met == DONE and A.COUNT.logged + A.COUNT.pushes > A.LOG.shape[0]:
-        met = LOG_FULL
-    return met if met != DONE else finish(A, J, R)
+    status = act(A, J)
+    # The impulses of contacts of intervals, and of the rotations of free islands (`..islands.turned`).
+    rows = A.COUNT.pushes + (A.BODY.shape[0] if A.COUNT.even == 0 else 0)
+    if status == DONE and A.COUNT.logged + rows > A.LOG.shape[0]:
+        status = LOG_FULL
+    return status if status != DONE else finish(A, J, R)
 
 
 @kernel

@@ -196,7 +196,8 @@ def begin_islands(A: Scene) -> int:
             for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
                 # Two points for each pair; pairs of two moving shapes are in two lists.
                 wanted += 1 if A.POOL[w] < A.LIST.shape[0] else 2
-    wanted *= 2 if COUNT.may_support > 0 else 1  # an island may be solved once more as a support (`support.py`)
+    # An island may be solved once more, as a support, or as it does not rest in part: there is room for that.
+    wanted *= 2 if COUNT.may_support > 0 else 1
     if kept + wanted > A.PUSHED.shape[0] or not table_has_room(A, wanted):
         return PUSHES_FULL
     drop_contacts(A, LASTED, ENDED)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..compiled import kernel, nonallocating
-from ..geometry.flight import norm
+from ..geometry.flight import norm, rate
 from ..geometry.gap import gap
 from ..geometry.widths import half_width
 from ..model.parameters.events import BUSY_STEPS, RESOLUTION, WORK_JOINTED
@@ -39,9 +39,11 @@ def most_hits(A: Scene, a: int, b: int) -> int:
 def stays_shallow(A: Scene, a: int, b: int, t: float, h: float) -> bool:
     """Whether shapes a and b, which touch at instant t, get no deeper in a time h than INTERVAL_DEPTH_WIDTH allows,
     without impulses on each other. Without losses no depth is corrected: there the present one adds to it."""
-    one, two = A.BODY[A.LINK[a].owner], A.BODY[A.LINK[b].owner]
-    speed = norm(one.vx - two.vx, one.vy - two.vy)
-    speed += abs(one.spin) * one.extent + abs(two.spin) * two.extent
+    i, j = A.LINK[a].owner, A.LINK[b].owner
+    one, two = A.BODY[i], A.BODY[j]
+    vx, vy, spin = rate(A.BODY, i, t)
+    wx, wy, turn = rate(A.BODY, j, t)
+    speed = norm(vx - wx, vy - wy) + abs(spin) * one.extent + abs(turn) * two.extent
     # Joints may pull harder than gravity, as the present paths show.
     pulled = norm(one.ax - two.ax, one.ay - two.ay)
     pulled += abs(one.angular) * one.extent + abs(two.angular) * two.extent

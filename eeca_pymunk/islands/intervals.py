@@ -9,13 +9,13 @@ import numpy as np
 from ..arrays import FlagArray, FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..contacts.correction import correct_penetration, without_turning
-from ..contacts.counts import count_solve, note_lock, note_unmet
+from ..contacts.counts import count_solve, note_solution
 from ..contacts.interval import make_contacts, step_island
 from ..model.contacts import Problem
 from ..model.islands import Island, IslandContacts
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES
 from ..model.scene import Scene
-from ..model.step import AGAIN, CONTACTS, DONE, PUSHES_FULL
+from ..model.step import AGAIN, DONE, PUSHES_FULL
 from . import candidates
 from .at_rest import put_to_rest
 from .depths import left_to_lift, lifts_through, times_too_long
@@ -177,11 +177,7 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
             return AGAIN, h / far
         if m > 0 and OUT[0].at_rest == 0:
             payable = correct_interval(A, root, isle, contacts, n, m, t, h, placed)
-        note_lock(A, OUT)
-    if OUT[0].residual > OUT[0].tolerance:
-        note_unmet(A, CONTACTS, isle.PAIRS[0, 0], isle.PAIRS[0, 1], OUT[0].residual, OUT[0].tolerance)
-    COUNT.solves += 1
-    COUNT.direct += OUT[0].direct
+    note_solution(A, isle, OUT)
     count_solve(A, n, p, m, OUT)
     take_interval(A, root, isle, contacts, MINE, m, t, h, payable, with_supports)
     return DONE, 0.0

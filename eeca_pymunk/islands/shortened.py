@@ -15,7 +15,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import inlined, kernel, nonallocating
 from ..contacts.correction import connect
-from ..contacts.counts import count_solve
+from ..contacts.counts import count_solve, note_solution
 from ..contacts.interval import make_contacts, step_island
 from ..geometry.flight import move_to, norm
 from ..model.contacts import ENDED
@@ -158,12 +158,12 @@ def solve_again(A: Scene, root: int, t: float, first: int, end: int) -> None:
     contacts = make_contacts(len(found), len(isle.WHO))
     VN, OUT, owed = contacts.VN, contacts.OUT, max(-A.RESTING[root].lost, 0.0)
     m = step_island(A, isle, contacts, n, s, sweeps_of(n, start), 0.0, owed, 0.0)
-    A.COUNT.direct += OUT[0].direct
     count_solve(A, n, len(found), m, OUT)
     too_long = m < 0 or m > end - first or times_too_long(A, isle, contacts, m, s) > INTERVAL_RETRY
     if too_long or leave_paths(A, MINE, VN, s):
         scale_impulses(A, root, t)
         return
+    note_solution(A, isle, OUT)
     for c in range(first, end):
         A.PUSHED_BY[c].root = ENDED
         mark_pair(A, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0)

@@ -19,6 +19,7 @@ from ..model.scene import Scene
 from .accounting import wake
 from .intervals import begin_interval
 from .loads import mark_loaded, unsupported
+from .local import drop_ended
 from .membership import members_of
 from .rest import postpone_test
 
@@ -52,6 +53,7 @@ def support(A: Scene) -> None:
                 MEMBER[i].new_forces = 1
             else:
                 postpone_test(A, members_of(A, i))
-                begin_interval(A, wake(A, i, 0.0), 0.0)
-                all_moving = True
+                root, all_moving = wake(A, i, 0.0), True
+                drop_ended(A)  # so that there is room for an island that is solved again and again
+                begin_interval(A, root, 0.0)
         rounds += 1

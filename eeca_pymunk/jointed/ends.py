@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ..arrays import IntArray
@@ -83,7 +85,7 @@ def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
     for s in components_of(A, J, root):
         A.RESTING[root].lost -= J.STEPPED[s].lifted
         account_component(A, J, s)
-    A.MEMBER[root].open = 0
+    A.MEMBER[root].open, A.RESTING[root].until = 0, math.inf
     for i in members_of(A, root):
         A.STATE[i].version += 1
         if empty:

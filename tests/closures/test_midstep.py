@@ -144,3 +144,69 @@ def test_order_in_dt_is_one_at_impacts_and_two_in_free_flight() -> None:
     # It is at the floor at .4637 s: the impulse acts half a step off at most.
     for dt in (0.1, 0.01, 0.001):
         assert abs(end(dt, 0.5637)[1] - (0.1 + 1.0 - 0.4637)) <= dt
+
+
+def test_a_kinematic_floor_that_does_not_move_gives_no_energy() -> None:
+    """As the program has placed it once, in the first step, it pays for no correction later."""
+    rng, space = np.random.default_rng(0), pymunk.Space()
+    space.gravity = 0.0, -GRAVITY
+    ground = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    shape = pymunk.Poly(ground, [(-20.0, -1.0), (20.0, -1.0), (20.0, 0.0), (-20.0, 0.0)])
+    shape.elasticity, shape.friction = 0.3, 0.6
+    space.add(ground, shape)
+    for k in range(12):
+        body = add_box(space, (rng.uniform(-2.0, 2.0), 1.0 + 1.2 * k), 0.3, 0.6)
+        body.angle, body.angular_velocity = rng.uniform(0.0, 6.0), rng.uniform(-5.0, 5.0)
+    stepper = ep.EECA(space, ep.Midstep())
+    for _ in range(120):
+        report = stepper.step(1 / 30)
+        assert report.ledger is not None
+        assert report.ledger.external == 0.0
+
+
+def test_another_closure_goes_on_without_what_was_at_rest() -> None:
+    space = floor(0.0, 0.8)
+    boxes = [add_box(space, (0.0, 0.5 + k), friction=0.8) for k in range(2)]
+    stepper = ep.EECA(space)
+    for _ in range(5):
+        stepper.step(1 / 60)
+    stepper.closure = ep.Midstep()
+    add_box(space, (8.0, 5.0))
+    boxes[1].velocity = 0.0, 10.0
+    for _ in range(6):
+        stepper.step(1 / 60)
+        loop = stepper.event_loop
+        assert loop is not None
+        assert loop.scene.MEMBER["rest"].tolist() == [0, 0, 0, 0]
+        assert loop.scene.STATE["version"][-1] == 0  # of the ground
+    assert boxes[1].position.y == pytest.approx(1.5 + 1.0 - 0.5 * GRAVITY * 0.01, abs=1e-12)
+
+
+@pytest.mark.parametrize("turns", [1.0, -1.0])
+@pytest.mark.parametrize("kind", ["ratchet", "limit"])
+def test_joints_take_their_step_once_whatever_memory_contacts_need(kind: str, turns: float) -> None:
+    def path(crowd: int) -> list[tuple[float, float]]:
+        space = pymunk.Space()
+        wheel = pymunk.Body(1.0, 1.0)
+        wheel.position, wheel.angular_velocity = (-50.0, 0.0), turns * 10.0
+        rim = pymunk.Circle(wheel, 0.5)
+        rim.elasticity = 1.0
+        space.add(wheel, rim, pymunk.PivotJoint(space.static_body, wheel, (-50.0, 0.0)))
+        if kind == "ratchet":
+            space.add(pymunk.RatchetJoint(space.static_body, wheel, 0.0, 0.3))
+        else:
+            space.add(pymunk.RotaryLimitJoint(space.static_body, wheel, -0.05, 0.05))
+        for i in range(crowd * crowd):
+            body = pymunk.Body(1.0, 1.0)
+            body.position = float(i // crowd), float(i % crowd)
+            body.velocity = tuple(0.1 * (0.5 * crowd - x) for x in body.position)
+            shape = pymunk.Circle(body, 0.5)
+            shape.elasticity = 1.0
+            space.add(body, shape)
+        stepper, found = ep.EECA(space, ep.Midstep()), []
+        for _ in range(3):
+            stepper.step(0.1)
+            found.append((wheel.angle, wheel.angular_velocity))
+        return found
+
+    assert path(12) == path(3)

@@ -298,3 +298,24 @@ def test_what_rests_beside_others_that_do_not_is_awake_again(seed: int) -> None:
         report = stepper.step(chance.choice((1 / 240, 1 / 60)))
         assert report.ledger is not None
         assert abs(report.ledger.residual) < 1e-14 * scale
+
+
+@pytest.mark.parametrize("pinned", [0, 1, 2])
+def test_what_rests_on_a_body_that_is_welded_rests_on(pinned: int) -> None:
+    """Whatever place the body has in its island, contacts act in the step in which joints begin to hold it."""
+    stepper, bodies, _ = at_rest()
+    space, body = stepper.space, bodies[pinned]
+    space.add(
+        pymunk.PivotJoint(space.static_body, body, body.position),
+        pymunk.GearJoint(space.static_body, body, body.angle, 1.0),
+    )
+    where = [b.position for b in bodies]
+    for _ in range(3):
+        report = stepper.step(DT)
+        assert report.converged
+        assert max((b.position - at).length for b, at in zip(bodies, where, strict=True)) < 1e-15
+        assert max(b.velocity.length for b in bodies) < 1e-15
+        c, up = report.contacts, report.impulse * report.contacts.normal[:, 1]
+        for body in bodies[:pinned] + bodies[pinned + 1 :]:
+            i = c.bodies.index(body)
+            assert up[c.body_b == i].sum() - up[c.body_a == i].sum() == pytest.approx(G * DT, rel=1e-9)

@@ -269,3 +269,24 @@ def test_what_is_hit_as_often_as_a_step_allows_lands_on_all_else() -> None:
         assert energy(space) <= before + 1e-10 * 9.81 * 50.0
         before = energy(space)
     assert touched == set(range(6))
+
+
+@pytest.mark.parametrize("left", [2e-9, 9e-10, 1e-10, 1e-11, 1e-12])
+def test_a_rod_that_bounces_just_before_the_end_of_a_step_ends_it(left: float) -> None:
+    """`left`: of the step. No interval is begun for that, and none ends again and again."""
+    space, dt = pymunk.Space(), 0.01
+    wall = pymunk.Segment(space.static_body, (0.0, -5.0), (0.0, 5.0), 0.0)
+    wall.elasticity = 1.0
+    space.add(wall)
+    ends = []
+    for x in (0.0, -2.0):
+        body = pymunk.Body(1.0, 1.0)
+        body.position, body.velocity = (x - 0.5 - dt * (1.0 - left), 0.0), (1.0, 0.0)
+        shape = pymunk.Circle(body, 0.5)
+        shape.elasticity = 1.0
+        space.add(body, shape)
+        ends.append(body)
+    space.add(pymunk.PinJoint(*ends))
+    report = ep.EECA(space).step(dt)
+    assert report.converged
+    assert [body.velocity.x for body in ends] == pytest.approx([-1.0, -1.0], abs=1e-8)
