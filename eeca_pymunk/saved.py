@@ -19,7 +19,7 @@ from .model.shapes import Link
 from .space.decisions import Decisions
 from .space.world import World
 
-_TIE = "kind", "body", "bounded"  # fields of JOINT that decide the plan of the components
+_TIE = "kind", "body", "finite_force"  # fields of JOINT that decide the plan of the components
 
 
 def differences(now: AnyArray, then: AnyArray) -> Iterator[tuple[str, BoolArray]]:

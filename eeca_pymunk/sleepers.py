@@ -9,7 +9,7 @@ import numpy as np
 from .arrays import FloatArray, IntArray
 from .compiled import kernel
 from .compiled.records import Rows
-from .joints.plan import root
+from .joints.plan import representative
 from .layout import BODY_ROW, READ, WRITTEN
 from .model.contacts import Impulse
 from .model.values import DYNAMIC, KINEMATIC
@@ -71,7 +71,7 @@ def connect(PAIRS: IntArray, KIND: IntArray, READY: IntArray, GROUP: IntArray) -
     N = KIND.shape[0]
     parent, awake = np.arange(N), np.zeros(N, np.int64)
     for p in range(PAIRS.shape[0]):
-        a, b = root(parent, PAIRS[p, 0]), root(parent, PAIRS[p, 1])
+        a, b = representative(parent, PAIRS[p, 0]), representative(parent, PAIRS[p, 1])
         if KIND[a] == DYNAMIC and KIND[b] == DYNAMIC:
             parent[a] = b
         elif KIND[a] == KINEMATIC:
@@ -80,9 +80,9 @@ def connect(PAIRS: IntArray, KIND: IntArray, READY: IntArray, GROUP: IntArray) -
             awake[PAIRS[p, 0]] = 1
     for i in range(N):
         if KIND[i] == DYNAMIC and (awake[i] == 1 or READY[i] == 0):
-            awake[root(parent, i)] = 1
+            awake[representative(parent, i)] = 1
     for i in range(N):
-        GROUP[i] = root(parent, i)
+        GROUP[i] = representative(parent, i)
         if READY[i] == 0 or awake[GROUP[i]] == 1:
             GROUP[i] = -1
 

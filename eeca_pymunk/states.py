@@ -135,7 +135,7 @@ def _remember(stepper: RunningStepper, world: World, parts: _Parts, at: IntArray
         for name, unequal in differences(joints.joint, joint):
             if name != "body":  # bodies may have other rows now
                 joints.joint["touched"][unequal] = EDITED
-        loop.joints.KEPT[:] = joints.joint
+        loop.joints.AT_START[:] = joints.joint
         tally = numbers(loop.joints.TALLY)
         tally[:] = parts.take(np.int64, tally.shape)
         rates = parts.take(np.float64, (len(joint), 2))

@@ -30,7 +30,7 @@ from .transfer import read_states
 
 @nonallocating
 def place_points(
-    BODIES: Rows[BodyValues], SHAPES: Rows[ShapeValues], POINT: FloatArray, PLACED: FloatArray
+    BODIES: Rows[BodyValues], SHAPES: Rows[ShapeValues], POINT: FloatArray, POINT_PLACED: FloatArray
 ) -> None:  # fmt: skip
     """Convert the vertices of static shapes to world coordinates, and those of others to coordinates about the centre
     of mass; leave out a vertex that repeats the one before: a segment of length 0 is a disk."""
@@ -45,14 +45,14 @@ def place_points(
             else:
                 x, y = x - body.centre_x, y - body.centre_y
             at += 1
-            if to == first or x != PLACED[to - 1, 0] or y != PLACED[to - 1, 1]:
-                PLACED[to, 0], PLACED[to, 1] = x, y
+            if to == first or x != POINT_PLACED[to - 1, 0] or y != POINT_PLACED[to - 1, 1]:
+                POINT_PLACED[to, 0], POINT_PLACED[to, 1] = x, y
                 to += 1
         one.first, one.vertices = first, to - first
 
 
 @nonallocating
-def give_rows(BODIES: Rows[BodyValues], SHAPES: Rows[ShapeValues], PLACED: FloatArray, ORDER: IntArray) -> int:
+def give_rows(BODIES: Rows[BodyValues], SHAPES: Rows[ShapeValues], POINT_PLACED: FloatArray, ORDER: IntArray) -> int:
     """Number the bodies that are not static: single disks, other dynamic bodies, kinematic ones, each group by `place`.
     ORDER (n,) is scratch.
 
@@ -65,7 +65,7 @@ def give_rows(BODIES: Rows[BodyValues], SHAPES: Rows[ShapeValues], PLACED: Float
     for s in range(SHAPES.shape[0]):
         # The sum is 1 for a single disk: one shape, a circle about the centre of mass.
         k = SHAPES[s].first
-        centred = SHAPES[s].vertices == 1 and PLACED[k, 0] == 0.0 and PLACED[k, 1] == 0.0
+        centred = SHAPES[s].vertices == 1 and POINT_PLACED[k, 0] == 0.0 and POINT_PLACED[k, 1] == 0.0
         BODIES[SHAPES[s].owner].shapes += 1 if centred else 2
     row, disks = 0, 0
     for rank in range(3):
@@ -99,14 +99,14 @@ def order_shapes(BODIES: Rows[BodyValues], SHAPES: Rows[ShapeValues], ground: in
 
 
 @nonallocating
-def write_shape(PLACED: FloatArray, values: ShapeValues, SHAPE: Shape, LINK: Link, VERTEX: FloatArray) -> None:
+def write_shape(POINT_PLACED: FloatArray, values: ShapeValues, SHAPE: Shape, LINK: Link, VERTEX: FloatArray) -> None:
     """Write one shape's vertices, with the outward normals of the edges that begin there, and its sizes."""
     n, first = values.vertices, values.first
     low_x, low_y, high_x, high_y = math.inf, math.inf, -math.inf, -math.inf
     for j in range(n):
-        x, y, k = PLACED[first + j, 0], PLACED[first + j, 1], first + j + 1 if j + 1 < n else first
+        x, y, k = POINT_PLACED[first + j, 0], POINT_PLACED[first + j, 1], first + j + 1 if j + 1 < n else first
         # The outside of a counter-clockwise outline (pymunk's hulls) is on the right of every edge.
-        ex, ey = PLACED[k, 0] - x, PLACED[k, 1] - y
+        ex, ey = POINT_PLACED[k, 0] - x, POINT_PLACED[k, 1] - y
         length = math.hypot(ex, ey)
         length = length if length > 0.0 else 1.0
         to = VERTEX[LINK.first + j]
@@ -115,8 +115,8 @@ def write_shape(PLACED: FloatArray, values: ShapeValues, SHAPE: Shape, LINK: Lin
     SHAPE.centre_x, SHAPE.centre_y = 0.5 * (low_x + high_x), 0.5 * (low_y + high_y)
     far, away = 0.0, 0.0
     for j in range(first, first + n):
-        far = max(far, math.hypot(PLACED[j, 0], PLACED[j, 1]))
-        away = max(away, math.hypot(PLACED[j, 0] - SHAPE.centre_x, PLACED[j, 1] - SHAPE.centre_y))
+        far = max(far, math.hypot(POINT_PLACED[j, 0], POINT_PLACED[j, 1]))
+        away = max(away, math.hypot(POINT_PLACED[j, 0] - SHAPE.centre_x, POINT_PLACED[j, 1] - SHAPE.centre_y))
     SHAPE.extent, SHAPE.bound = values.rounding + far, values.rounding + away
 
 
@@ -130,8 +130,8 @@ def write_rows(table: Table) -> None:
         BODIES[i].x, BODIES[i].y, BODIES[i].angle = now[i, 0], now[i, 1], now[i, 2]
     for s in range(SHAPES.shape[0]):
         SHAPES[s].owner = R.OWNER[s]
-    place_points(BODIES, SHAPES, R.POINT, R.PLACED)
-    disks = give_rows(BODIES, SHAPES, R.PLACED, ORDER)
+    place_points(BODIES, SHAPES, R.POINT, R.POINT_PLACED)
+    disks = give_rows(BODIES, SHAPES, R.POINT_PLACED, ORDER)
     ground = BODY.shape[0] - 1
     for i in range(BODIES.shape[0]):
         if BODIES[i].row >= 0:
@@ -146,7 +146,7 @@ def write_rows(table: Table) -> None:
         link.group, link.categories, link.mask = values.group, values.categories, values.mask
         shape.rounding, shape.elasticity, shape.friction = values.rounding, values.elasticity, values.friction
         shape.surface_x, shape.surface_y = values.surface_x, values.surface_y
-        write_shape(R.PLACED, values, shape, link, R.VERTEX)
+        write_shape(R.POINT_PLACED, values, shape, link, R.VERTEX)
         at += values.vertices
         carried += 1 if row >= 0 else 0
         body = BODY[link.owner]

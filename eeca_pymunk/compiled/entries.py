@@ -34,15 +34,15 @@ TABLES = {
         SIDE:Side[1] CORNER:Corner[1] MISSED:Missed[1] PAR:Step COUNT:Count
     """,
     "Reading": """
-        TOTALS:i8[1] BODIES:BodyValues[1] SHAPES:ShapeValues[1] OWNER:i8[1] POINT:f8[2] PLACED:f8[2] STATES:f8[3]
+        TOTALS:i8[1] BODIES:BodyValues[1] SHAPES:ShapeValues[1] OWNER:i8[1] POINT:f8[2] POINT_PLACED:f8[2] STATES:f8[3]
         IDS:i8[2] EXTRA:f8[2] ENDS:f8[1] HOOKED:f8[3] BODY:Body[1] SHAPE:Shape[1] LINK:Link[1] VERTEX:f8[2] ORDER:i8[1]
         MEASURED:Measures
     """,
     "Joints": """
         JOINT:Joint[1] PARTNER:Body[1] STILL:i8[1] PINNED:Pinned[1] ROOM:i8[1] COMPONENT:Component[1]
         JOINED:ComponentBody[1] COUPLING:Coupling[1] HINGE:JointStep[1] LOCAL:BodyStep[1] MATRIX:f8[1] RIGHT:f8[1]
-        MORE:f8[1] STIFF:f8[2] PROGRESS:Progress NEWTON:Newton PARTS:Parts AGREEMENT:Agreement PART_LEDGER:JointLedger
-        PIVOTS:i8[1] OF:i8[1] KEPT:Joint[1] STEPPED:JointLedger[1] TALLY:Tally
+        MORE:f8[1] STIFF:f8[2] PROGRESS:Progress NEWTON:Newton PARTS:Parts AGREEMENT:Agreement RUNG_LEDGER:JointLedger
+        PIVOTS:i8[1] OF:i8[1] AT_START:Joint[1] STEPPED:JointLedger[1] TALLY:Tally
     """,
     "Island": """
         WHO:i8[1] POSE:f8[2] V:f8[2] ACC:f8[2] IM:f8[1] II:f8[1] EXTENT:f8[1] LEVER:f8[1] PAIRS:i8[2]
@@ -91,12 +91,12 @@ ENTRIES = {
     "impacts.run:run": "{Scene} {Joints} {RunArrays} {Reading}",
     "joints.workspace:plan_components": "{Scene} {Joints}",
     "joints.workspace:tie_components": "{Scene} {Joints}",
-    "joints.pinned:hold": "{Scene} {Joints}",
+    "joints.pinned:find_pinned": "{Scene} {Joints}",
     "joints.pinned:release_held": "{Scene} {Joints}",
     "joints.partners:read_partners": "f8[1] i8[1] f8[2] f8[2] Body[1] Joint[1] i8",
     # Only tests call this, which solves single islands: some hundred times slower as plain Python.
     "contacts.interval:step_island": "{Scene} {Island} {IslandContacts} i8 f8 i8 f8 f8 f8",
-    "contacts.memory:copy_recent": "i8[1] Force[1] Count i8[1] Force[1] f8",
+    "contacts.forces:copy_recent": "i8[1] Force[1] Count i8[1] Force[1] f8",
 }
 
 _CODES = {"f8": "<f8", "i8": "<i8", "i4": "<i4", "u1": "|u1"}

@@ -23,7 +23,7 @@ from .kernels import Kernel, nonallocating
 from .tables import WORDS, Pointers, Table, array_words
 
 T = TypeVar("T")
-COUNT = -1
+ROWS = -1
 
 
 @nonallocating
@@ -31,7 +31,7 @@ def lay_out(PLAN: IntArray, SIZES: IntArray, TABLE: IntArray, address: int) -> i
     """Write the words of a arrays, of which the last g are in other memory.
 
     Args:
-        PLAN (a, 5): of each array, its first word; bytes and numbers of a row; two lengths, COUNT for the rows.
+        PLAN (a, 5): of each array, its first word; bytes and numbers of a row; two lengths, ROWS for the rows.
         SIZES (a + g,): how many rows each has; then the addresses of the last g arrays.  TABLE: out, the words.
         address: of the memory in which the first a - g arrays lie side by side.
 
@@ -45,7 +45,7 @@ def lay_out(PLAN: IntArray, SIZES: IntArray, TABLE: IntArray, address: int) -> i
         TABLE[word] = SIZES[arrays + a - own] if a >= own else address + at
         TABLE[word + 1] = count * PLAN[a, 2]
         for k in range(2):
-            TABLE[word + 2 + k] = count if PLAN[a, 3 + k] == COUNT else PLAN[a, 3 + k]
+            TABLE[word + 2 + k] = count if PLAN[a, 3 + k] == ROWS else PLAN[a, 3 + k]
         at += (count * PLAN[a, 1] + LINE - 1) // LINE * LINE if a < own else 0
     return at
 
@@ -58,7 +58,7 @@ class Plan(Generic[T]):
         own: the arrays in the memory of the layout, in this order; of which the first `zeros` are 0, the rest of any
             content.
         elsewhere: arrays in other memory.  constant: others, which stay the same.
-        dimensions: of arrays with more than one, COUNT for the number of rows.
+        dimensions: of arrays with more than one, ROWS for the number of rows.
     """
 
     def __init__(
@@ -71,12 +71,12 @@ class Plan(Generic[T]):
         self.place = {name: i for i, name in enumerate(self.names)}
         self.first_word = {name: WORDS * i for i, (name, *_) in enumerate(fields)}
         self.dtypes = {name: dtype for name, dtype, _ in fields}
-        self.dimensions = {name: dimensions.get(name, (COUNT,) * many) for name, _, many in fields}
+        self.dimensions = {name: dimensions.get(name, (ROWS,) * many) for name, _, many in fields}
         self.words: IntArray = np.zeros(WORDS * len(fields), np.int64)
         rows = []
         for name in self.names:
             shape, dtype = self.dimensions[name], self.dtypes[name]
-            width = math.prod(length for length in shape if length != COUNT)
+            width = math.prod(length for length in shape if length != ROWS)
             rows.append((self.first_word[name], width * dtype.itemsize, width, *lengths(shape)))
         self.rows: IntArray = np.array(rows, np.int64)
         for name, array in constant.items():
@@ -139,7 +139,7 @@ class Layout(Generic[T]):
         plan = self._plan
         count, at = self._into[plan.place[name]], self._table[plan.first_word[name]] - self._memory.address
         shape = plan.dimensions[name]
-        shape = (count,) if len(shape) == 1 else tuple([count if length == COUNT else length for length in shape])
+        shape = (count,) if len(shape) == 1 else tuple([count if length == ROWS else length for length in shape])
         array = self._memory.array(shape or (1,), plan.dtypes[name], at)
         return array if shape else array[0]
 

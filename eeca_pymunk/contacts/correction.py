@@ -36,7 +36,7 @@ from ..model.parameters.intervals import (
 from ..model.scene import Scene
 from ..rows.build import normal_rate
 from ..rows.lifting import keep_walls, lift_above_walls
-from .memory import shapes_of
+from .forces import shapes_of
 from .works import work_of_forces
 
 
@@ -238,7 +238,7 @@ def stop_at_walls(A: Scene, problem: AnyProblem, n: int, LEFT_OUT: IntArray, L: 
     LACK = np.full(problem.m, inf)
     for i in range(problem.m):
         row = problem.ROWS[i]
-        if max(row.a, row.b) >= n and row.wake == inf and LEFT_OUT[i] == 0:
+        if max(row.a, row.b) >= n and row.activation == inf and LEFT_OUT[i] == 0:
             a, b = shapes_of(A, row)
             LACK[i] = -row.target if row.gap < -depth_limit(A, a, b) else inf
     keep_walls(problem, n, LACK, np.zeros(problem.m), L[:, 0], V)

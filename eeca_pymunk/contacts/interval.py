@@ -34,8 +34,8 @@ from ..rows.inplace import copy
 from ..rows.laws import solved_exactly
 from ..rows.sweeps import velocities
 from .correction import stop_at_walls
-from .geometry import gather_contacts
-from .memory import find, remember_loads, table_has_room
+from .forces import find, remember_loads, table_has_room
+from .gathering import gather_contacts
 from .relaxation import relax
 from .statics import find_static_forces
 from .targets import target

@@ -28,7 +28,7 @@ from ..rows.sweeps import sweep
 @kernel
 def relax(
     problem: Problem, L: FloatArray, V: FloatArray, FREE: FloatArray, rounds: int, fine: float, coarse: float,
-    STATE: Rest, most: int, out: Solved,
+    rest: Rest, most: int, out: Solved,
 ) -> float:  # fmt: skip
     """Solve a contact problem from the initial impulses L (m, 2) and velocities V (k, 3), which are replaced.
 
@@ -37,16 +37,16 @@ def relax(
         rounds: largest number of direct solves; 0 for a large moving island.
         fine: change of velocity in a sweep at which the solve ends.
         coarse: that with which a moving island is content, or one near rest after a direct solve.
-        STATE: of the island, changed.
+        rest: of the island, changed.
         most: largest number of sweeps of a large island that moves, or waits for its next direct solve.
         out: numbers of sweeps and direct solves, and operations of homotopies, are added.
 
     Returns:
         The change of velocity in the last sweep.
     """
-    few, waits = solved_exactly(problem.n, problem.m), STATE.wait > 0.0
+    few, waits = solved_exactly(problem.n, problem.m), rest.wait > 0.0
     if rounds == 0 or waits:
-        STATE.wait = max(STATE.wait - 1.0, 0.0)
+        rest.wait = max(rest.wait - 1.0, 0.0)
     if rounds == 0 or (waits and not few):
         sweeps, worst = sweep_conjugate(problem, L, V, max(fine, coarse), most)
         out.sweeps += sweeps
@@ -60,9 +60,9 @@ def relax(
         return worst
     fails, done, last = 0, 0, worst
     while done < rounds and not waits:
-        passes = REFINEMENTS_INTERVAL if STATE.augmentation > REFINED_AUGMENTATION else 1
-        STATE.augmentation, worst, taken = refine_and_sweep(
-            problem, L, V, FREE, STATE.augmentation, passes, fine, worst, intervals.SWEEPS_AFTER
+        passes = REFINEMENTS_INTERVAL if rest.augmentation > REFINED_AUGMENTATION else 1
+        rest.augmentation, worst, taken = refine_and_sweep(
+            problem, L, V, FREE, rest.augmentation, passes, fine, worst, intervals.SWEEPS_AFTER
         )  # fmt: skip
         done += 1
         out.sweeps += taken
@@ -71,13 +71,13 @@ def relax(
         if worst > intervals.DIRECT_PROGRESS * last:
             fails += 1
         last = worst
-        if fails >= (intervals.FAILED_DIRECT_AGAIN if few or STATE.backoff > 0.0 else intervals.FAILED_DIRECT):
+        if fails >= (intervals.FAILED_DIRECT_AGAIN if few or rest.backoff > 0.0 else intervals.FAILED_DIRECT):
             break
     out.direct += done
     failed = worst > max(fine, coarse)
     if failed and few:
         worst = solve_few(problem, L, V, max(fine, coarse), out)
     if not waits:
-        STATE.backoff = min(2.0 * STATE.backoff + 2.0, intervals.LONGEST_BACKOFF) if failed else 0.0
-        STATE.wait = STATE.backoff
+        rest.backoff = min(2.0 * rest.backoff + 2.0, intervals.LONGEST_BACKOFF) if failed else 0.0
+        rest.wait = rest.backoff
     return worst

@@ -119,13 +119,13 @@ def strike_disk(A: Scene, i: int, o: int, t: float) -> None:
     BODY[i].vy -= fy * BODY[i].inv_mass
     BODY[i].spin -= BODY[i].inv_inertia * r_i * beta
     A.STATE[i].version += 1
-    A.STATE[i].events += 1
+    A.STATE[i].impacts += 1
     if disk:
         BODY[j].vx += fx * BODY[j].inv_mass
         BODY[j].vy += fy * BODY[j].inv_mass
         BODY[j].spin += BODY[j].inv_inertia * r_j * beta
         A.STATE[j].version += 1
-        A.STATE[j].events += 1
+        A.STATE[j].impacts += 1
     PAR.restitution += 0.5 * lam * (1.0 - e) * max(-u, 0.0)
     log_impulse(A.LOG[A.COUNT.logged], i, o, t, lam, beta, nx, ny, px, py, lam * free, math.nan)
     A.COUNT.logged += 1

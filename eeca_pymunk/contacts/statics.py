@@ -7,10 +7,10 @@ others hold it from then on,
 
     v / N + h a + M^-1 (G^T lam + T^T beta) = 0   and   h a + M^-1 (G^T lam + T^T beta) = 0.
 
-Bodies below REST_CANDIDATE |a| h are tested, and N of a body is at most REST_CANDIDATE |a| h / |v|, so that it stops no
-farther than REST_CANDIDATE |a| h^2 / 2 from where it would be. Faster bodies, up to IMPACT_SPEED |a| h below which
-contacts persist, may only be frozen (without `hold`): the first equilibrium ends their motion, and the next solve shows
-whether they stay.
+Bodies below r |a| h are tested, with r = REST_CANDIDATE, in large islands REST_CANDIDATE_LARGE. N of a body is at most
+r |a| h / |v|, so that it stops no farther than r |a| h^2 / 2 from where it would be, and at most STOPPING_STEPS. Faster
+bodies, up to IMPACT_SPEED |a| h below which contacts persist, may only be frozen (without `hold`): the first
+equilibrium ends their motion, and the next solve shows whether they stay.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
+from ..geometry.flight import point_speed
 from ..model.contacts import Problem
 from ..model.parameters.rest import (
     REST_CANDIDATE_LARGE,
@@ -27,7 +28,7 @@ from ..model.parameters.rest import (
     STATICS_FACTORS_NEAREST,
     STOPPING_STEPS,
 )
-from ..rows.equilibrium import equilibrium, point_speed
+from ..rows.equilibrium import equilibrium
 from ..rows.inplace import copy
 
 
@@ -49,7 +50,7 @@ def set_motionless(problem: Problem, V: FloatArray, FREE: FloatArray, close: flo
             ROWS[i].target = 0.0
         ROWS[i].un = 0.0
         ROWS[i].ut = 0.0
-        ROWS[i].wake = np.inf
+        ROWS[i].activation = np.inf
     return True
 
 

@@ -10,8 +10,8 @@ bounce is e max(-u, 0) for e < 1, -u for e = 1.
   inactive while u_n+ is above its activation velocity `wake`, with which the gap is just closed at the end.
 * Else the surfaces meet softly at the end of the interval: b = min(bounce, -u - 2 max(g, 0)/h).
 
-Where a wall turns (`turning.py`, c = c_0), u is less by c than with the geometry of the start, and u+ more by c than
-with that of the end: u + c bounces, for c >= 0 and up to -u, and c is added to the bounce. So a body that the wall
+Where a wall turns (`turning_walls.py`, c = c_0), u is less by c than with the geometry of the start, and u+ more by c
+than with that of the end: u + c bounces, for c >= 0 and up to -u, and c is added to the bounce. So a body that the wall
 carries along neither sinks nor loses energy, to second order; with the bounce 0 it would follow the tangent of the
 middle, through the wall. 2 c/h is an acceleration, too.
 """
@@ -47,7 +47,7 @@ def target(ROWS: Rows[Row], m: int, ACC: FloatArray, EXPECTED: FloatArray, pull:
         close = -u - 2.0 * ROWS[i].gap / h  # end velocity that closes the gap
         begins = u + min(ROWS[i].turned, max(-u, 0.0))
         bounce = -e * begins if begins < 0.0 else 0.0
-        ROWS[i].wake = np.inf
+        ROWS[i].activation = np.inf
         if e >= 1.0:
             bounce = -u
         else:
@@ -57,6 +57,6 @@ def target(ROWS: Rows[Row], m: int, ACC: FloatArray, EXPECTED: FloatArray, pull:
             bounce += begins - u
         if begins < -IMPACT_SPEED * (pull * h + 2.0 * ROWS[i].turned) or (e >= 1.0 and ROWS[i].gap > 0.0):
             ROWS[i].target = bounce
-            ROWS[i].wake = close
+            ROWS[i].activation = close
         else:
             ROWS[i].target = min(bounce, min(-u, close))

@@ -90,3 +90,21 @@ def opening_rate_at(
     x = V[b, 0] - V[b, 2] * (py - POSE[b, 1]) - V[a, 0] + V[a, 2] * (py - POSE[a, 1])
     y = V[b, 1] + V[b, 2] * (px - POSE[b, 0]) - V[a, 1] - V[a, 2] * (px - POSE[a, 0])
     return nx * x + ny * y
+
+
+@nonallocating
+def point_speed(vx: float, vy: float, spin: float, extent: float) -> float:
+    """Bound of the speed (length/time) of the points of a body, which are within `extent` of its centre of mass."""
+    return abs(vx) + abs(vy) + extent * abs(spin)
+
+
+@nonallocating
+def fastest_point(V: FloatArray, EXTENT: FloatArray, n: int) -> float:
+    """Bound of the speed of all points of n bodies with velocities V (k, 3); inf if one is not finite."""
+    found = 0.0
+    for i in range(n):
+        one = point_speed(V[i, 0], V[i, 1], V[i, 2], EXTENT[i])
+        if not one < math.inf:
+            return math.inf
+        found = max(found, one)
+    return found

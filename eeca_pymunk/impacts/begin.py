@@ -60,7 +60,7 @@ def begin(A: Scene, IDS: IntArray) -> None:
     BODY, STATE, PAR, COUNT = A.BODY, A.STATE, A.PAR, A.COUNT
     COUNT.heap, COUNT.logged, COUNT.blocks, COUNT.room = 0, 0, 0, 0
     COUNT.solves, COUNT.solved, COUNT.direct, COUNT.work = 0, 0, 0, 0.0
-    COUNT.met, COUNT.meets, COUNT.met_work, COUNT.before = 0, 0, 0.0, 0.0
+    COUNT.event_bodies, COUNT.present_bodies, COUNT.events_work, COUNT.work_before = 0, 0, 0.0, 0.0
     if COUNT.unmet > 0:
         A.FLAG[:] = 0
         COUNT.unmet = 0
@@ -85,7 +85,7 @@ def begin(A: Scene, IDS: IntArray) -> None:
     COUNT.closing, fixed = 0, 1 if A.SHAPE.shape[0] > A.LIST.shape[0] else 0
     pulled, even, may_support = 0.0, True, A.RULE.shape[0] == 0 and not quiet
     for i in range(n):
-        STATE[i].events = 0
+        STATE[i].impacts = 0
         may_support = may_support and A.MEMBER[i].tied < 0
         if not quiet:
             A.MEMBER[i].busy = max(A.MEMBER[i].busy - 1, 0)

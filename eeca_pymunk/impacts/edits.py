@@ -18,9 +18,9 @@ from ..geometry.sides import shapes_of_pair
 from ..islands.accounting import flag_pairs
 from ..islands.at_rest import disturb
 from ..layout import PLACED, SHIFTED
-from ..model.bodies import CHANGED, MOBILITY
+from ..model.bodies import MOBILITY
 from ..model.scene import Scene, scene_of
-from ..model.shapes import SURFACE as SURFACE_FIELDS
+from ..model.shapes import SURFACE_FIELDS
 from ..pairs.grid import relist
 from ..pairs.rules import allowed, far_apart, may_collide
 
@@ -56,7 +56,7 @@ def disturb_shape(A: Scene, s: int) -> None:
     for c in range(A.COUNT.pushes):
         touching = A.PUSHED_BY[c]
         if touching.root >= 0 and (touching.a == s or touching.b == s):
-            A.MEMBER[touching.root].rest = CHANGED
+            disturb(A, touching.root)
 
 
 @nonallocating

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ..compiled import kernel, nonallocating
 from ..contacts.counts import note_unmet
-from ..islands.accounting import close_interval
+from ..islands.accounting import end_interval
 from ..islands.building import begin_islands, build_islands
 from ..islands.intervals import begin_interval
 from ..islands.local import contact_range
@@ -107,7 +107,7 @@ def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
             continue
         if A.MEMBER[k].jointed == 0 and A.MEMBER[k].open > 0:
             first, after = contact_range(A, k)
-            close_interval(A, k, max(A.PUSHED[first].start, t) if first < after else t)
+            end_interval(A, k, max(A.PUSHED[first].start, t) if first < after else t)
         elif A.MEMBER[k].jointed > 0 and (A.MEMBER[k].open == 0 or A.BODY[k].since > t):
             carry(A, J, k, t)
     for k in range(A.BODY.shape[0] - 1):

@@ -179,7 +179,7 @@ def act_through_joints(
     if fits:
         velocities(problem, L, FITTED, V)
     account_impact(A, block, n, L, BEFORE, FITTED if fits else BEFORE, driven, owed, exact, OUT)
-    add_joint_impulses(A, J, block, groups, L, BEFORE if fits else 0.0 * BEFORE, t)
+    add_joint_impulses(A, J, block, groups, L, BEFORE if fits else np.zeros_like(BEFORE), t)
     count_operations(J, C)
     return status
 

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from ..compiled import inlined, kernel, nonallocating
 from ..contacts.counts import note_unmet
-from ..contacts.memory import table_has_room
+from ..contacts.forces import table_has_room
 from ..contacts.single import only_pair, strike_disk
 from ..geometry.sides import remembers
-from ..islands.accounting import end_interval, lift_within_step
+from ..islands.accounting import end_rest_or_interval, lift_within_step
 from ..islands.hits import hits_of, most_hits, passed_over
 from ..islands.local import drop_ended
-from ..islands.membership import jointed, members, persists_from
+from ..islands.membership import island_size, jointed, members, persists_from
 from ..jointed.ends import end_here
 from ..jointed.ledger import most_looks, work_left
 from ..model.bodies import LEAVE, RENEW
@@ -28,7 +28,7 @@ from ..prediction.disks import body_of, continue_path
 from ..prediction.heap import pop, push_event, sweep_out
 from ..prediction.next_event import margin_used
 from ..prediction.scheduling import look_ahead, predict_next
-from ..prediction.turning import note_sides
+from ..prediction.search import note_sides
 from .intervals import cut_short, start_waiting
 from .joint_impact import collide
 from .resolution import strike
@@ -100,7 +100,7 @@ def run_events(A: Scene, may_persist: bool, most: float) -> int:
         if o < 0 or STATE[j].version != STATE[i].known:
             one = i
             continue
-        impacts, allowed = max(STATE[i].events, STATE[j].events), most_impacts(A, i, j)
+        impacts, allowed = max(STATE[i].impacts, STATE[j].impacts), most_impacts(A, i, j)
         if impacts >= allowed:
             note_unmet(A, IMPACTS, s, o, float(impacts), float(allowed))
             mark_pair(A, s, o, 1)
@@ -120,32 +120,33 @@ def run_events(A: Scene, may_persist: bool, most: float) -> int:
 
 
 @nonallocating
-def end_of_interval(A: Scene, J: Joints, i: int, t: float) -> int:
+def renew_island(A: Scene, J: Joints, i: int, t: float) -> int:
     """End the interval of the island of body i at instant t, within the step. Writes its bodies to A.BLOCK; returns
     their number."""
     if jointed(A, i):
         end_here(A, J, i, t)
     else:
-        end_interval(A, i, t)
+        end_rest_or_interval(A, i, t)
         lift_within_step(A, i, t)
     return int(members(A, i, A.BLOCK))
 
 
-@inlined
-def bodies_of(A: Scene, i: int) -> int:
-    """Number of bodies of the island of body i, 0 if it is in none."""
-    return A.MEMBER[A.STATE[i].island].bodies if A.STATE[i].island >= 0 else 0
+@nonallocating
+def end_event(A: Scene) -> None:
+    """Count the last event of islands, with the work that it has taken; not if it is tried again, with more memory."""
+    COUNT = A.COUNT
+    if COUNT.present_bodies > 0 and COUNT.work > COUNT.work_before:
+        COUNT.event_bodies += COUNT.present_bodies
+        COUNT.events_work += COUNT.work - COUNT.work_before
 
 
 @nonallocating
-def work_of_event(A: Scene, i: int, j: int) -> float:
-    """What an event of bodies i and j will probably take, with the predictions that follow: for each body of their
-    islands as much as such events of the step have taken so far. The last event ends here."""
+def begin_event(A: Scene, i: int, j: int) -> float:
+    """Begin an event of bodies i and j. Returns what it will probably take, with the predictions that follow: for each
+    body of their islands as much as such events of the step have taken so far."""
     COUNT = A.COUNT
-    if COUNT.meets > 0 and COUNT.work > COUNT.before:  # else the same event is tried again, with more memory
-        COUNT.met, COUNT.met_work = COUNT.met + COUNT.meets, COUNT.met_work + COUNT.work - COUNT.before
-    COUNT.meets, COUNT.before = bodies_of(A, i) + (bodies_of(A, j) if j != i else 0), COUNT.work
-    return float(COUNT.met_work * COUNT.meets / max(COUNT.met, 1))
+    COUNT.present_bodies, COUNT.work_before = island_size(A, i) + (island_size(A, j) if j != i else 0), COUNT.work
+    return float(COUNT.events_work * COUNT.present_bodies / max(COUNT.event_bodies, 1))
 
 
 @kernel
@@ -170,8 +171,9 @@ def process_events(A: Scene, J: Joints, may_persist: bool) -> int:
         if COUNT.logged + COUNT.pushes + max(_ROWS_OF_A_BODY * STATE.shape[0], COUNT.room) > A.LOG.shape[0]:
             COUNT.heap = push_event(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
             return LOG_FULL
+        end_event(A)
         # A step is not cut to nothing: impacts at its start act.
-        if COUNT.work + work_of_event(A, i, j) > most_looks(A, J) and t > 0.0:
+        if COUNT.work + begin_event(A, i, j) > most_looks(A, J) and t > 0.0:
             return cut_short(A, J, i, t)
         met = o != RENEW
         if met and remembers(A, s, o):
@@ -190,7 +192,7 @@ def process_events(A: Scene, J: Joints, may_persist: bool) -> int:
                     bring_to(A, j, t)
                 lasts = persists_from(A, s, o, t)
             waiting = strike(A, s, o, t, lasts)
-            joints = waiting < 0  # others of the block are jointed: nothing was done
+            joints = waiting < 0  # others of the block are jointed: no impulse has acted
         if joints and work_left(A, J) < 0.0 and t > 0.0:
             return cut_short(A, J, i, t)
         more = 2 * COUNT.pushes + _MORE_CONTACTS
@@ -198,7 +200,7 @@ def process_events(A: Scene, J: Joints, may_persist: bool) -> int:
             COUNT.heap = push_event(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
             return PUSHES_FULL
         if not met:
-            waiting = end_of_interval(A, J, i, t)
+            waiting = renew_island(A, J, i, t)
         elif joints:
             waiting = collide(A, J, s, o, t)
         if A.BODY[i].inv_mass == 0.0:

@@ -11,7 +11,7 @@ from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, zeros
 from ..contacts.counts import looks_of, note_lock, note_unmet, spend
-from ..contacts.memory import shapes_of
+from ..contacts.forces import shapes_of
 from ..contacts.single import log_impulse
 from ..contacts.works import external_work
 from ..geometry.sides import pair_of
@@ -51,7 +51,7 @@ def finish_block(
         i = A.BLOCK[q]
         BODY[i].vx, BODY[i].vy, BODY[i].spin = V[q, 0], V[q, 1], V[q, 2]
         A.STATE[i].version += 1
-        A.STATE[i].events += 1
+        A.STATE[i].impacts += 1
     clear_places(A, A.BLOCK[:n])
     for z in range(len(ROWS)):
         if L[z, 0] > 0.0:
@@ -98,7 +98,8 @@ def list_ended(A: Scene, n: int) -> int:
 @kernel
 def strike(A: Scene, a: int, b: int, t: float, lasts: bool) -> int:
     """The simultaneous impact of shapes a and b at instant t. Writes the bodies to predict to A.BLOCK, after their
-    islands have begun new intervals; returns their number, or -1, with nothing done, if joints take part.
+    islands have begun new intervals; returns their number, or -1 if joints take part: then no impulse has acted, but
+    intervals of the block have ended at t.
 
     Args:
         lasts: whether the contact of a and b persists from now on.

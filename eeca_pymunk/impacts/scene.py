@@ -12,9 +12,9 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import Table, replaced
 from ..compiled.library import result_of
 from ..compiled.records import Rows, columns, from_bytes, rows
-from ..contacts.memory import copy_recent
+from ..contacts.forces import copy_recent
 from ..islands.accounting import flag_pairs
-from ..joints.pinned import hold, release_held
+from ..joints.pinned import find_pinned, release_held
 from ..joints.workspace import NO_LINKAGE, Linkage, tie_components
 from ..model.bodies import CHECK, MOBILITY, Body
 from ..model.contacts import Force, Impulse
@@ -108,7 +108,7 @@ class EventLoop(Remembering):
                 where they are than before.
         """
         self.release()
-        if replan or hold(self.table, self.ties):
+        if replan or find_pinned(self.table, self.ties):
             self.release()
             self._plan(linkage)
             if not self.jointed:

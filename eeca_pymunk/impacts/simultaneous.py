@@ -19,7 +19,7 @@ from ..contacts.targets import hardly_bounces
 from ..geometry.flight import move_to, pose, rate
 from ..geometry.manifold import face
 from ..geometry.sides import note_side, pair_of, shapes_of_pair
-from ..islands.accounting import end_interval
+from ..islands.accounting import end_rest_or_interval
 from ..islands.membership import budget_spent, fixed_support, in_large_island, remembered_force
 from ..model.contacts import CONTACT_POINT, ROW, Row
 from ..model.parameters.impulses import BLOCK_BODIES
@@ -50,7 +50,7 @@ def bring_to(A: Scene, i: int, t: float) -> None:
     if root >= 0 and A.MEMBER[root].open > 0:
         if A.MEMBER[root].jointed > 0:
             return
-        end_interval(A, root, t)
+        end_rest_or_interval(A, root, t)
     move_to(A.BODY, i, t)
 
 

@@ -72,7 +72,7 @@ def act(A: Scene, J: Joints) -> int:
         if COUNT.pushes + COUNT.any_placed + J.TALLY.components > 0 and start_islands(A, J) != DONE:
             return PUSHES_FULL
         COUNT.phase = 3
-        COUNT.work = COUNT.before = 0.0  # the intervals at the start of a step do not count
+        COUNT.work = COUNT.work_before = 0.0  # the intervals at the start of a step do not count
         predict_due(A)
     if COUNT.phase == 3:
         status = process_events(A, J, COUNT.lossy > 0 or A.PAR.pulled > 0.0)

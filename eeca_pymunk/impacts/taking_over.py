@@ -17,7 +17,7 @@ import numpy as np
 
 from ..arrays import IntArray
 from ..compiled import Table, kernel, nonallocating
-from ..contacts.memory import key_of, row_for, table_has_room
+from ..contacts.forces import key_of, row_for, table_has_room
 from ..geometry.sides import keep_sides, shapes_of_pair
 from ..islands.accounting import flag_pairs
 from ..islands.at_rest import disturb
@@ -100,7 +100,7 @@ def take_islands(P: Scene, A: Scene, BODIES: IntArray) -> None:
         first = P.MEMBER[i]
         A.MEMBER[root].last, A.MEMBER[root].bodies = last, bodies
         A.MEMBER[root].open, A.MEMBER[root].jointed, A.MEMBER[root].rest = first.open, first.jointed, first.rest
-        A.MEMBER[root].loaded, A.MEMBER[root].with_supports = first.loaded, first.with_supports
+        A.MEMBER[root].unverified, A.MEMBER[root].with_supports = first.unverified, first.with_supports
         A.MEMBER[root].new_forces = first.new_forces
         if changed:
             disturb(A, root)

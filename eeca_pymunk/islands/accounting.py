@@ -25,7 +25,7 @@ from .at_rest import log_contact, set_awake, wake_supported
 from .loads import presses_on, renew_loads
 from .local import contact_range
 from .membership import unite
-from .shortened import losses, repay
+from .shortened import losses_up_to, repay
 from .turned import keep_angular_momentum, report_lift
 
 
@@ -49,7 +49,7 @@ def account_contact(A: Scene, c: int, t: float) -> None:
     f = (t - pushed.start) / pushed.length
     if f == 0.0 or (pushed.normal == 0.0 and pushed.tangential == 0.0):
         return
-    normal, tangential = losses(A, c, t)
+    normal, tangential = losses_up_to(A, c, t)
     A.RESTING[root].lost += normal + tangential
     normal, tangential = offset_gain(normal, tangential)
     PAR.restitution += normal
@@ -77,26 +77,26 @@ def wake(A: Scene, root: int, t: float) -> int:
     wake_supported(A)
     # Before others are united with it, which may become the root.
     set_awake(A, root)
-    close_interval(A, root, t)
+    end_interval(A, root, t)
     for i in range(A.BODY.shape[0] - 1):
         if A.STATE[i].island == i and A.BODY[i].inv_mass > 0.0 and MEMBER[i].rest == CHANGED:
             set_awake(A, i)
-            close_interval(A, i, t)
+            end_interval(A, i, t)
             one = unite(A, one, i)
     return one
 
 
 @nonallocating
-def end_interval(A: Scene, root: int, t: float) -> None:
+def end_rest_or_interval(A: Scene, root: int, t: float) -> None:
     """End the interval of an island at instant t; of an island at rest also those of the islands that it supports."""
     if A.MEMBER[root].rest == AT_REST:
         wake(A, root, t)
     else:
-        close_interval(A, root, t)
+        end_interval(A, root, t)
 
 
 @nonallocating
-def close_interval(A: Scene, root: int, t: float) -> None:
+def end_interval(A: Scene, root: int, t: float) -> None:
     """End the interval of one island without joints at instant t: replace forces that gave energy (`repay`), account
     its contacts, move its bodies to their poses at t, and keep the angular momentum of bodies in flight. Corrections
     are not made here: `lift_within_step` and `apply_correction` do where the interval ended as planned."""

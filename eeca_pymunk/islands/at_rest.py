@@ -11,7 +11,7 @@ supports it moves, and when collision handlers or joints give other laws to pair
 from __future__ import annotations
 
 from ..compiled import nonallocating
-from ..contacts.memory import find, key_of
+from ..contacts.forces import find, key_of
 from ..contacts.single import log_impulse
 from ..contacts.works import kinetic
 from ..model.bodies import AT_REST, AWAKE, CHANGED

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..arrays import IntArray
 from ..compiled import kernel, nonallocating
-from ..contacts.memory import table_has_room
+from ..contacts.forces import table_has_room
 from ..geometry.flight import fastest, move_to
 from ..geometry.widths import smaller
 from ..model.bodies import AT_REST
@@ -17,7 +17,7 @@ from ..model.parameters.intervals import TOUCH, TRAVEL_MARGIN
 from ..model.scene import Scene
 from ..model.step import DONE, PUSHES_FULL
 from ..pairs.rules import barred, far_apart, law
-from .accounting import end_interval
+from .accounting import end_rest_or_interval
 from .at_rest import disturb, wake_changed
 from .intervals import begin_interval
 from .local import drop_contacts
@@ -114,7 +114,7 @@ def join_neighbours(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
             if g <= TOUCH * small and (u > pulled * dt or (-u > pulled * dt and not busy)):
                 continue
             if begun:
-                end_interval(A, other, t)
+                end_rest_or_interval(A, other, t)
             if other < 0:
                 FOUND[joined] = j
                 joined += 1

@@ -7,7 +7,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import inlined, kernel, nonallocating
 from ..compiled.records import Rows
-from ..contacts.memory import shapes_of
+from ..contacts.forces import shapes_of
 from ..contacts.targets import hardly_bounces
 from ..geometry.flight import fastest, norm
 from ..geometry.widths import smaller
@@ -56,7 +56,8 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                 o = int(A.POOL[w])
                 j = LINK[o].owner
                 # Each pair of two bodies of the island once; else pairs with fixed bodies only.
-                if j < i if STATE[j].island == root else not fixed_support(A, j):
+                inside = STATE[j].island == root
+                if (inside and j < i) or not (inside or fixed_support(A, j)):
                     continue
                 if barred(A, s, o):
                     continue

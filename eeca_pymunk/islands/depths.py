@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
-from ..contacts.memory import shapes_of
+from ..contacts.forces import shapes_of
 from ..geometry.flight import norm, opening_rate_at, pose
 from ..geometry.gap import gap_along, gap_at
 from ..geometry.sides import held_side, remembers
@@ -65,7 +65,7 @@ def known_depth(A: Scene, a: int, b: int) -> float:
 
 
 @nonallocating
-def room_of(A: Scene, a: int, b: int, gap: float) -> float:
+def closing_allowed(A: Scene, a: int, b: int, gap: float) -> float:
     """Way (length) that shapes a and b with this gap may close in an interval: an open gap and
     `depth_limit`. Let w be the sum of their half widths: at depths from w/2 to w the limit falls linearly to
     INTERVAL_DEPTH_LEAST. So what rocks on a rounded side, deeper and deeper, is integrated more finely, and does not
@@ -84,7 +84,7 @@ def too_deep(A: Scene, a: int, b: int, gap: float, closing: float) -> float:
     interval is solved again, also where most of the way is a gap."""
     if not closing > intervals.INTERVAL_DEPTH_LEAST * smaller(A, a, b):
         return 0.0
-    room, apart = room_of(A, a, b, gap), max(gap, 0.0)
+    room, apart = closing_allowed(A, a, b, gap), max(gap, 0.0)
     if not closing > apart + intervals.INTERVAL_RETRY * (room - apart):
         return 0.0
     return max(closing / room, 1.01 * intervals.INTERVAL_RETRY)
@@ -103,8 +103,9 @@ def turns_corners(A: Scene, isle: Island, END: FloatArray, row: Row, a: int, b: 
 
 @kernel
 def too_deep_at_end(A: Scene, isle: Island, END: FloatArray, ROWS: Rows[Row], m: int, h: float, every: bool) -> float:
-    """How many times too long an interval h is in which a pair closes farther than `room_of`, by its gaps at the poses
-    END (k, 3); 0 if none does. `every`: of all pairs, else of thin shapes, and of shapes with corners that turn."""
+    """How many times too long an interval h is in which a pair closes farther than `closing_allowed`, by its gaps at
+    the poses END (k, 3); 0 if none does. `every`: of all pairs, else of thin shapes, and of shapes with corners that
+    turn."""
     far, last = 0.0, -1
     for z in range(m):
         a, b = shapes_of(A, ROWS[z])
@@ -176,7 +177,7 @@ def deep_at_end(A: Scene, isle: Island, END: FloatArray, ROWS: Rows[Row], m: int
     closing = gap - after
     if too_deep(A, a, b, gap, closing) == 0.0:
         return 0.0
-    S, V, room = isle.POSE, isle.V, room_of(A, a, b, gap)
+    S, V, room = isle.POSE, isle.V, closing_allowed(A, a, b, gap)
     _, nx, ny, x, y = gap_at(A, a, S[p, 0], S[p, 1], S[p, 2], b, S[q, 0], S[q, 1], S[q, 2])
     way = max(-h * opening_rate_at(S, V, p, q, nx, ny, x, y), 0.0)
     root = math.sqrt(max(way * way + 4.0 * (closing - way) * room, 0.0))
@@ -213,5 +214,5 @@ def times_too_long(A: Scene, isle: Island, contacts: IslandContacts, m: int, h: 
         turned = max(turned, 0.5 * h * abs(isle.V[q, 2] + VN[q, 2]))
     if far <= intervals.INTERVAL_RETRY and (len(A.SIDE) > 0 or turned > intervals.NORMAL_TURN):
         END = isle.POSE + 0.5 * h * (isle.V + VN)
-        far = too_deep_at_end(A, isle, END, ROWS, m, h, False)
+        far = max(far, too_deep_at_end(A, isle, END, ROWS, m, h, False))
     return far

@@ -19,7 +19,7 @@ from ..model.step import AGAIN, DONE, PUSHES_FULL
 from . import candidates
 from .at_rest import put_to_rest
 from .depths import left_to_lift, lifts_through, times_too_long
-from .local import clear_places, local_island, needs_memory, number_bodies, open_interval
+from .local import clear_places, lacks_rows, local_island, number_bodies, open_interval
 from .membership import lossy
 from .payment import payment, was_placed
 from .rest import rest_threshold
@@ -140,7 +140,7 @@ def try_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> t
         found = candidates.pairs_within(A, root, t, h, may_lose, MINE)
     p = len(found)
     h = min(h, candidates.interval_length(A, found, t))
-    if needs_memory(A, p):
+    if lacks_rows(A, p):
         clear_places(A, MINE)
         return PUSHES_FULL, 0.0
     isle = local_island(A, MINE, found, t)

@@ -8,7 +8,8 @@ from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import empty
 from ..contacts.counts import note_unmet
-from ..contacts.memory import find, key_of, remember_force, table_has_room
+from ..contacts.forces import find, key_of, remember_force, table_has_room
+from ..geometry.flight import fastest_point
 from ..model.bodies import AT_REST
 from ..model.contacts import ROW, Problem
 from ..model.parameters.rest import REST_CANDIDATE, REST_SPEED, STATICS_FACTORS, SUPPORT_ROUNDS
@@ -16,7 +17,7 @@ from ..model.scene import Scene
 from ..model.step import CONTACTS
 from ..pairs.rules import law
 from ..rows.build import place_row
-from ..rows.equilibrium import equilibrium, fastest_point
+from ..rows.equilibrium import equilibrium
 from ..rows.sweeps import velocities
 from .local import contact_range, give_places, take_places
 from .membership import members_of
@@ -114,7 +115,7 @@ def unsupported(A: Scene, root: int, t: float, factors: int) -> float:
 
 @nonallocating
 def remember_forces(A: Scene, c: int) -> None:
-    """Write the forces of contact c into the memory of forces (`..contacts.memory`)."""
+    """Write the forces of contact c into the memory of forces (`..contacts.forces`)."""
     a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
     key = key_of(A, a, b)
     if c > 0 and A.PUSHED_BY[c - 1].a == a and A.PUSHED_BY[c - 1].b == b:
@@ -141,7 +142,7 @@ def mark_loaded(A: Scene, c: int) -> bool:
         j = A.LINK[shape].owner
         other = A.STATE[j].island
         if A.BODY[j].inv_mass > 0.0 and other != A.PUSHED_BY[c].root and other >= 0 and A.MEMBER[other].rest == AT_REST:
-            A.MEMBER[other].loaded, found = 1, True
+            A.MEMBER[other].unverified, found = 1, True
     return found
 
 
@@ -165,14 +166,14 @@ def renew_loads(A: Scene, t: float) -> None:
     get the impulses that balance the momenta of all loads up to instant t; those of their contacts were for the loads
     at its start. Where there are no such impulses these stay, and `unmet` says so."""
     # Impacts at the start of the step begin intervals there anew.
-    since, rounds = -1.0 if A.COUNT.met + A.COUNT.meets > 0 else 0.0, 0
+    since, rounds = -1.0 if A.COUNT.event_bodies + A.COUNT.present_bodies > 0 else 0.0, 0
     more = A.COUNT.may_support > 0 and mark_under_moving(A, since)
     while more and rounds < SUPPORT_ROUNDS:
         more = False
         for i in range(A.BODY.shape[0] - 1):
-            if A.MEMBER[i].loaded == 0:
+            if A.MEMBER[i].unverified == 0:
                 continue
-            A.MEMBER[i].loaded = 0
+            A.MEMBER[i].unverified = 0
             if A.STATE[i].island != i or A.MEMBER[i].rest != AT_REST:
                 continue
             first, end = contact_range(A, i)

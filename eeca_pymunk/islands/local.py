@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
-from ..contacts.memory import shapes_of, table_has_room
+from ..contacts.forces import shapes_of, table_has_room
 from ..contacts.works import external_work
 from ..geometry.flight import pose, rate
 from ..model.bodies import AT_REST
@@ -70,7 +70,7 @@ def give_places(A: Scene, GATHERED: IntArray) -> None:
 
 
 @nonallocating
-def needs_memory(A: Scene, p: int) -> bool:
+def lacks_rows(A: Scene, p: int) -> bool:
     """Whether the contacts of p more pairs of shapes need more memory (PUSHES_FULL)."""
     return bool(A.COUNT.pushes + 2 * p > A.PUSHED.shape[0] or not table_has_room(A, 2 * p))
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import IntArray
-from ..compiled import kernel, nonallocating
-from ..contacts.memory import find, key_of
+from ..compiled import inlined, kernel, nonallocating
+from ..contacts.forces import find, key_of
 from ..contacts.targets import hardly_bounces
 from ..geometry.flight import move_to, opening_rate, pose, rate
 from ..geometry.gap import gap_at
@@ -63,15 +63,16 @@ def jointed(A: Scene, i: int) -> bool:
     return bool(root >= 0 and A.MEMBER[root].jointed > 0)
 
 
+@inlined
+def island_size(A: Scene, i: int) -> int:
+    """Number of bodies of the island of body i, 0 if it is in none."""
+    return A.MEMBER[A.STATE[i].island].bodies if A.STATE[i].island >= 0 else 0
+
+
 @nonallocating
 def largest_island(A: Scene, a: int, b: int) -> int:
     """Number of bodies of the larger of the islands of shapes a and b, 0 for none."""
-    size = 0
-    for s in (a, b):
-        root = A.STATE[A.LINK[s].owner].island
-        if root >= 0:
-            size = max(size, A.MEMBER[root].bodies)
-    return size
+    return max(island_size(A, A.LINK[a].owner), island_size(A, A.LINK[b].owner))
 
 
 @nonallocating
@@ -221,7 +222,7 @@ def persists_from(A: Scene, a: int, b: int, t: float) -> bool:
     e = law(A, a, b)[0]
     _, u, closing, present, _ = approach(A, a, b, t)
     end = A.PAR.dt
-    met = max(A.STATE[i].events, A.STATE[j].events)
+    met = max(A.STATE[i].impacts, A.STATE[j].impacts)
     if e < 1.0:
         if A.PAR.pulled == 0.0 and e**met * RESOLUTION <= 1.0:
             return True

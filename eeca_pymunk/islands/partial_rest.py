@@ -22,7 +22,7 @@ from ..model.bodies import AT_REST, AWAKE
 from ..model.parameters.intervals import IMPACT_SPEED, LARGE_ISLAND
 from ..model.parameters.rest import MOVING_SHARE, PARTIAL_REST_FACTORS_STEP, REST_RETRY
 from ..model.scene import Scene
-from .accounting import close_interval
+from .accounting import end_interval
 from .at_rest import put_to_rest, set_awake, stop
 from .candidates import pairs_within
 from .intervals import begin_interval, set_lifts
@@ -168,7 +168,7 @@ def rests_in_part(A: Scene, root: int) -> bool:
             if MEMBER[other].rest == AT_REST:  # static forces hold it on the others, but not these
                 set_awake(A, other)
             if MEMBER[other].open > 0:
-                close_interval(A, other, 0.0)
+                end_interval(A, other, 0.0)
             one = unite(A, one, i)
     begin_interval(A, STATE[one].island, 0.0)
     return True

@@ -21,7 +21,7 @@ from typing import NamedTuple
 from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..compiled.records import Rows
-from ..contacts.memory import shapes_of
+from ..contacts.forces import shapes_of
 from ..geometry.widths import depth_limit
 from ..model.bodies import MOVED
 from ..model.contacts import Row

@@ -8,11 +8,10 @@ from __future__ import annotations
 
 from ..arrays import IntArray
 from ..compiled import nonallocating
-from ..geometry.flight import has_velocity
+from ..geometry.flight import has_velocity, point_speed
 from ..model.parameters.intervals import LARGE_ISLAND
 from ..model.parameters.rest import REST_CANDIDATE, REST_CANDIDATE_LARGE, REST_RETRY, REST_SPEED
 from ..model.scene import Scene
-from ..rows.equilibrium import point_speed
 
 
 @nonallocating

@@ -37,7 +37,7 @@ from .local import (
 
 
 @inlined
-def losses(A: Scene, c: int, t: float) -> tuple[float, float]:
+def losses_up_to(A: Scene, c: int, t: float) -> tuple[float, float]:
     """Losses (energy) of contact c of an interval by normal impulse and by friction up to instant t. As velocities are
     linear, D_n = -f lam (u_n + f (u_n+ - u_n) / 2) with the part f of the interval that is over, and D_t likewise."""
     pushed = A.PUSHED[c]
@@ -52,7 +52,7 @@ def gave_energy(A: Scene, first: int, end: int, t: float) -> bool:
     """Whether contacts [first, end) of an island have given energy up to instant t."""
     lost, size = 0.0, 0.0
     for c in range(first, end):
-        normal, tangential = losses(A, c, t)
+        normal, tangential = losses_up_to(A, c, t)
         lost += normal + tangential
         size += abs(normal) + abs(tangential)
     return lost < -REPAY_ROUND_OFF * size
@@ -107,7 +107,7 @@ def scale_impulses(A: Scene, root: int, t: float) -> None:
     n = len(MINE)
     GROUP, LOST, SQUARE, Q = pressing_groups(A, MINE, first, end), np.zeros(n), np.zeros(n), np.ones(n)
     for c in range(first, end):
-        normal, tangential = losses(A, c, t)
+        normal, tangential = losses_up_to(A, c, t)
         LOST[group_of(A, GROUP, c)] += normal + tangential
     for q in range(n):
         body, pull = A.BODY[MINE[q]], A.PULL[MINE[q]]

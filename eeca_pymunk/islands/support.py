@@ -42,9 +42,9 @@ def support(A: Scene) -> None:
         for i in range(BODY.shape[0] - 1):
             MEMBER[i].new_forces = 0
         for i in range(BODY.shape[0] - 1):
-            if MEMBER[i].loaded == 0:
+            if MEMBER[i].unverified == 0:
                 continue
-            MEMBER[i].loaded = 0
+            MEMBER[i].unverified = 0
             if STATE[i].island != i or MEMBER[i].rest != AT_REST:
                 continue
             more = True

@@ -91,7 +91,7 @@ def stays(J: Joints, groups: Groups, g: int, PUSHED: FloatArray, ACC: FloatArray
     """Whether the component of group g need not be stepped: its motion was computed under the accelerations ACC. False
     if rows are redundant, since their impulses depend on those with which the solve begins."""
     component = J.COMPONENT[groups.COMPONENT[g]]
-    same = component.loops == 0 or component.dependence == INDEPENDENT
+    same = component.cycles == 0 or component.dependence == INDEPENDENT
     for w in range(groups.FIRST[g], groups.FIRST[g + 1]):
         for c in range(3):
             same = same and PUSHED[groups.BODY[w], c] == ACC[groups.BODY[w], c]

@@ -10,9 +10,9 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
 from ..contacts.counts import note_unmet
-from ..contacts.geometry import gather_contacts
+from ..contacts.forces import remember_loads, shapes_of
+from ..contacts.gathering import gather_contacts
 from ..contacts.interval import make_contacts, recall, speeds
-from ..contacts.memory import remember_loads, shapes_of
 from ..geometry.widths import depth_limit
 from ..islands import local
 from ..islands.candidates import shortest_interval

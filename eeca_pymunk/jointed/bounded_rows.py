@@ -26,7 +26,7 @@ from .groups import Groups
 @nonallocating
 def is_exact_limit(J: Joints, k: int) -> bool:
     """Whether coupling k is a limit of unlimited force."""
-    return bool(is_limit(J.COUPLING[k].kind) and J.JOINT[J.COUPLING[k].joint].bounded == 0)
+    return bool(is_limit(J.COUPLING[k].kind) and J.JOINT[J.COUPLING[k].joint].finite_force == 0)
 
 
 @nonallocating
@@ -35,7 +35,7 @@ def prescribe_bounded(J: Joints, s: int, given: bool, limits: bool) -> None:
     with contacts, and, if `limits`, those of limits that act."""
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         link = J.COUPLING[k]
-        if link.bounded != 0 and J.JOINT[link.joint].bounded != 0 and J.COMPONENT[s].bounded > 0:
+        if link.bounded != 0 and J.JOINT[link.joint].finite_force != 0 and J.COMPONENT[s].bounded_rows > 0:
             link.bounded = PRESCRIBED if given else BOUNDED
         elif limits and is_exact_limit(J, k):
             link.bounded = PRESCRIBED if given and link.side != 0 else 0
@@ -48,7 +48,7 @@ def make_bounded(J: Joints, groups: Groups, limits: bool) -> Bounded:
     for g in range(len(groups.COMPONENT)):
         if groups.COMPONENT[g] >= 0:
             s = groups.COMPONENT[g]
-            rows = J.COMPONENT[s].bounded
+            rows = J.COMPONENT[s].bounded_rows
             for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint if limits else 0):
                 rows += 1 if is_exact_limit(J, k) else 0
             n += rows

@@ -34,7 +34,7 @@ def step_in_scratch(J: Joints, s: int, h: float, extent: float, untouched: bool)
 def size_joints(W: Workspace, extent: float) -> None:
     """Units of the joints' functions in a component of size `extent`."""
     for k in range(W.joints):
-        W.J.HINGE[k].size = unit_of(W.J.JOINT[W.link[k].joint], extent)
+        W.J.HINGE[k].unit = unit_of(W.J.JOINT[W.link[k].joint], extent)
 
 
 @nonallocating
@@ -79,7 +79,7 @@ def close_at_poses(
         if link.bounded != 0:
             continue
         for r in range(link.rows):
-            if acts(W.link, k, r) and abs(hinge.value[r] - hinge.target[r]) > CORRECTION_JOINTS * hinge.size:
+            if acts(W.link, k, r) and abs(hinge.value[r] - hinge.target[r]) > CORRECTION_JOINTS * hinge.unit:
                 return math.inf
         passed = passed_side(W, k, CORRECTION_JOINTS)
         if passed != 0 and passed != link.side:

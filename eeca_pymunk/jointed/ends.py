@@ -15,7 +15,7 @@ from ..joints.bounds import hold_passed, stand_as_stepped
 from ..joints.closing import close_poses, farthest
 from ..joints.start import compute_rows, springs_of
 from ..joints.workspace import workspace
-from ..model.joint_steps import LINEAR
+from ..model.joint_steps import UNHELD
 from ..model.joints import Joints
 from ..model.parameters.intervals import INTERVAL_RETRY
 from ..model.parameters.joints import LINEAR_APART
@@ -105,7 +105,7 @@ def left_apart(A: Scene, J: Joints, root: int) -> bool:
     if A.RESTING[root].excess_left > INTERVAL_RETRY:
         return True
     for s in components_of(A, J, root):
-        if (J.STEPPED[s].status == LINEAR and gave_way(J, s)) or J.STEPPED[s].gave > LINEAR_APART:
+        if (J.STEPPED[s].status == UNHELD and gave_way(J, s)) or J.STEPPED[s].misfit_added > LINEAR_APART:
             return True
     return False
 

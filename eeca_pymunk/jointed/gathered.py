@@ -7,7 +7,7 @@ from ..compiled import nonallocating
 from ..geometry.flight import pose, rate
 from ..joints.ledger import clear_interval
 from ..joints.parts import meets_limit
-from ..model.joint_steps import ELASTIC, LINEAR
+from ..model.joint_steps import ELASTIC, UNHELD
 from ..model.joints import GIVES_WAY, LEFT_APART, RATCHET, UNTESTED, Joints
 from ..model.parameters.joints import GIVEN_INTERVAL, NEARLY_HELD
 from ..model.scene import Scene
@@ -19,10 +19,10 @@ from .ledger import has_work_for, work_left
 @nonallocating
 def save_joints(J: Joints, s: int) -> None:
     """Save the joints of component s, at the start of an interval, and forget what is known of its rows and parts."""
-    J.COMPONENT[s].parts, J.COMPONENT[s].dependence, J.PROGRESS.kept = 0, UNTESTED, 0
+    J.COMPONENT[s].parts, J.COMPONENT[s].dependence, J.PROGRESS.factors_of = 0, UNTESTED, 0
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         j = J.COUPLING[k].joint
-        J.KEPT[j] = J.JOINT[j]
+        J.AT_START[j] = J.JOINT[j]
 
 
 @nonallocating
@@ -31,7 +31,7 @@ def restore_joints(J: Joints, s: int) -> None:
     clear_interval(J.STEPPED[s])
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         j = J.COUPLING[k].joint
-        J.JOINT[j] = J.KEPT[j]
+        J.JOINT[j] = J.AT_START[j]
 
 
 @nonallocating
@@ -43,7 +43,7 @@ def compliance_of(J: Joints, s: int) -> float:
 @nonallocating
 def compliance_before(J: Joints, s: int) -> float:
     """`compliance_of` component s at the start of its interval."""
-    return float(J.KEPT[J.COUPLING[J.COMPONENT[s].first_joint].joint].compliance)
+    return float(J.AT_START[J.COUPLING[J.COMPONENT[s].first_joint].joint].compliance)
 
 
 @nonallocating
@@ -55,9 +55,9 @@ def gave_way(J: Joints, s: int) -> bool:
     stepped = J.STEPPED[s]
     if stepped.status < ELASTIC:
         return False
-    worse = compliance_of(J, s) > compliance_before(J, s) and stepped.gave > max(stepped.misfit, NEARLY_HELD)
+    worse = compliance_of(J, s) > compliance_before(J, s) and stepped.misfit_added > max(stepped.misfit, NEARLY_HELD)
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
-        touched = J.KEPT[J.COUPLING[k].joint].touched
+        touched = J.AT_START[J.COUPLING[k].joint].touched
         if touched == LEFT_APART or (touched == GIVES_WAY and stepped.status == ELASTIC and not worse):
             return False
     return True
@@ -73,7 +73,7 @@ def takes_shorter(A: Scene, J: Joints, s: int, t: float, h: float, effort: float
     the step then ends early."""
     if h <= GIVEN_INTERVAL * A.PAR.planned or not gave_way(J, s):
         return False
-    if compliance_before(J, s) == 0.0 or J.STEPPED[s].gave > NEARLY_HELD or work_left(A, J) < 0.0:
+    if compliance_before(J, s) == 0.0 or J.STEPPED[s].misfit_added > NEARLY_HELD or work_left(A, J) < 0.0:
         return True
     return has_work_for(A, J, t, h, 2.0, effort)
 
@@ -100,7 +100,7 @@ def some_give(J: Joints, groups: Groups) -> bool:
 def some_refused(J: Joints, groups: Groups) -> bool:
     """Whether a component `gave_way` in a long interval, or failed to take it as a whole."""
     for s in groups.JOINTED:
-        if gave_way(J, s) or J.STEPPED[s].status == LINEAR:
+        if gave_way(J, s) or J.STEPPED[s].status == UNHELD:
             return True
     return False
 
@@ -112,9 +112,9 @@ def rewind_joints(J: Joints, s: int) -> None:
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         j = J.COUPLING[k].joint
         if J.COUPLING[k].kind == RATCHET:
-            J.JOINT[j].notch = J.KEPT[j].notch
-        J.JOINT[j].side, J.JOINT[j].touched = J.KEPT[j].side, J.KEPT[j].touched
-        J.JOINT[j].compliance = J.KEPT[j].compliance
+            J.JOINT[j].notch = J.AT_START[j].notch
+        J.JOINT[j].side, J.JOINT[j].touched = J.AT_START[j].side, J.AT_START[j].touched
+        J.JOINT[j].compliance = J.AT_START[j].compliance
 
 
 @nonallocating

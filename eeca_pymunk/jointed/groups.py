@@ -46,7 +46,7 @@ def find_groups(WHO: IntArray, IM: FloatArray, J: Joints, impact: bool) -> Group
         GROUP[q], COMPONENT[groups] = groups, OF[q]
         if OF[q] >= 0:
             JOINTED[jointed] = OF[q]
-            LEAST[groups] = STRUT if J.COMPONENT[OF[q]].loops > 0 else STRUT_BETWEEN
+            LEAST[groups] = STRUT if J.COMPONENT[OF[q]].cycles > 0 else STRUT_BETWEEN
             jointed += 1
             for p in range(q + 1, k):
                 if OF[p] == OF[q]:

@@ -2,7 +2,7 @@
 
     M (v+ - v) = h M a + F_s + J^T Lam + G^T lam + T^T beta,    J, F_s the discrete rows of the joints,
 
-contact rows at the predicted middle, as in `..contacts.geometry`. The impulses of contacts act on components as
+contact rows at the predicted middle, as in `..contacts.gathering`. The impulses of contacts act on components as
 constant forces over the interval. So joints, springs, limits and motors satisfy `..joints` to round-off even if the
 contacts' solve is truncated, and a contact loses exactly -lam . (way of its row)/h. Impulses follow from Newton's
 method in the space of contacts: components are stepped under the present impulses, their columns linearise them, and

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
-from ..contacts.memory import shapes_of
+from ..contacts.forces import shapes_of
 from ..geometry.flight import fastest, norm
 from ..geometry.sides import pair_of
 from ..geometry.widths import depth_limit, smaller

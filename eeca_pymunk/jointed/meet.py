@@ -10,7 +10,7 @@ from ..geometry.gap import gap
 from ..islands.membership import in_large_island, members_of
 from ..islands.rest import speed
 from ..model.islands import MEETING, Meeting
-from ..model.joint_steps import LINEAR
+from ..model.joint_steps import UNHELD
 from ..model.joints import Joints
 from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import TOUCH
@@ -41,7 +41,7 @@ def valid_end(A: Scene, J: Joints, root: int, t: float) -> float:
     for tries in range(END_HALVINGS):
         if not (left_apart(A, J, root) or passes_through(A, root, end) < math.inf):
             break
-        J.TALLY.worst = LINEAR
+        J.TALLY.worst = UNHELD
         hopeless = tries + 1 == END_HALVINGS or work_left(A, J) < 0.0
         end = began if hopeless else 0.5 * (began + end)
         shorten(A, J, root, end)
@@ -91,9 +91,9 @@ def begin_meeting(A: Scene, J: Joints, a: int, b: int, t: float, SEARCH: Rows[Me
 @kernel
 def end_both(A: Scene, J: Joints, S: Meeting, t: float) -> None:
     """`shorten` both islands to t, or one if both are the same."""
-    S.t, S.loaded = t, shorten(A, J, S.roots[0], t)
+    S.t, S.pressing = t, shorten(A, J, S.roots[0], t)
     if S.roots[1] != S.roots[0]:
-        S.loaded += shorten(A, J, S.roots[1], t)
+        S.pressing += shorten(A, J, S.roots[1], t)
 
 
 @nonallocating
@@ -120,13 +120,13 @@ def find_contact(A: Scene, J: Joints, S: Meeting) -> None:
         t, last = S.t, tries + 1 == MEET_SECANTS
         end_both(A, J, S, t)
         S.gap, spent = gap(A, S.a, S.b, t)[0] - S.level, J.PROGRESS.effort > J.PROGRESS.budget
-        S.touch = S.small * (MEET if S.loaded == 0 else MEET_LOADED if S.loaded <= COLUMN_CONTACTS else MEET_MANY)
+        S.touch = S.small * (MEET if S.pressing == 0 else MEET_LOADED if S.pressing <= COLUMN_CONTACTS else MEET_MANY)
         crosses, through = False, t
         if S.gap + S.level > S.touch:
             through, crosses = crossing_of_paths(A, S.a, S.b, t)
         # Depths add up from impact to impact.
         deep = not spent and S.gap < -MEET_DEEP * S.small
-        if (S.loaded > 0 and tries + 1 >= most and not deep) or spent or abs(S.gap) <= S.touch:
+        if (S.pressing > 0 and tries + 1 >= most and not deep) or spent or abs(S.gap) <= S.touch:
             break
         secant = before >= 0.0 and t != before
         slope = (S.gap - gap_before) / (t - before) if secant else gap_and_rate(A, J, S.a, S.b, t, False)[1]
@@ -147,13 +147,13 @@ def find_contact(A: Scene, J: Joints, S: Meeting) -> None:
         then = max(min(t - S.gap / slope, S.latest), S.least)
         # A flat secant leads back to the start, where shapes that were apart do not meet.
         away = S.level < 0.0 or S.start > S.touch
-        if (then == S.least and away) or (then <= S.apart and S.loaded > 0 and deep):
+        if (then == S.least and away) or (then <= S.apart and S.pressing > 0 and deep):
             then = 0.5 * (S.apart + t)
         if then == t:
             break
         S.t = then
     # Joints may bring the shapes together before the first secant.
-    S.crosses = int(crosses or (S.loaded == 0 and S.rate >= 0.0 and S.gap < -MEET_DEEP * S.small))
+    S.crosses = int(crosses or (S.pressing == 0 and S.rate >= 0.0 and S.gap < -MEET_DEEP * S.small))
 
 
 @kernel
@@ -185,7 +185,7 @@ def find_later(A: Scene, J: Joints, S: Meeting) -> bool:
     velocities into the other shape. The interval doubles with each impact of the bodies, so that the step ends, and is
     halved while it is `too_late`. Returns whether it is not."""
     i, j = A.LINK[S.a].owner, A.LINK[S.b].owner
-    met = min(max(A.STATE[i].events, A.STATE[j].events), MEET_DOUBLINGS)
+    met = min(max(A.STATE[i].impacts, A.STATE[j].impacts), MEET_DOUBLINGS)
     end_both(A, J, S, min(S.least + 2.0 ** (met + 1) * A.PAR.instant, S.latest))
     valid = too_late(A, J, S) == math.inf
     while not valid and S.t - S.least > A.PAR.instant and work_left(A, J) >= 0.0:

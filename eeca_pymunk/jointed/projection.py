@@ -35,7 +35,7 @@ def project_velocities(A: Scene, J: Joints, interval: Interval, L: FloatArray, s
         (m,) normal impulses that keep contacts from closing, which are in the ledger.
     """
     isle, groups, ROWS, motion, _, m, _, t, h, _ = interval
-    NOTHING = np.zeros_like(isle.V)
+    ZERO = np.zeros_like(isle.V)
     LOADED = np.zeros(len(groups.COMPONENT) + 1, np.int64)  # one more, for GROUP -1
     for i in range(m):
         if L[i, 0] > 0.0:
@@ -50,7 +50,7 @@ def project_velocities(A: Scene, J: Joints, interval: Interval, L: FloatArray, s
         if LOADED[g + 1] == 0 or component.bounded_joints == component.end_joint - component.first_joint:
             continue
         payer = s if payer < 0 else payer
-        extent = gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, t + h, h)
+        extent = gather_component(A, J, s, motion.END, motion.V, ZERO, isle.IM, isle.II, t + h, h)
         project_speeds(J, s, extent)
         J.STEPPED[s].projected += loss_of_projection(workspace(J, s), J.STEPPED[s])
         for w in range(component.end_body - component.first_body):

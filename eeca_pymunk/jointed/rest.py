@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 
 from ..compiled import nonallocating
-from ..geometry.flight import has_velocity
+from ..geometry.flight import has_velocity, point_speed
 from ..islands.at_rest import moves_itself, put_to_rest, set_awake
 from ..joints.ledger import clear_interval
 from ..model.bodies import AT_REST, CHANGED
@@ -21,7 +21,6 @@ from ..model.joints import GEAR, Joints
 from ..model.parameters.rest import REST_SPEED
 from ..model.scene import Scene
 from ..pairs.rules import law
-from ..rows.equilibrium import point_speed
 from .gathered import save_joints
 
 
@@ -127,7 +126,7 @@ def disturbed(A: Scene, J: Joints, s: int) -> bool:
     something that moves."""
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         j = J.COUPLING[k].joint
-        joint, kept = J.JOINT[j], J.KEPT[j]
+        joint, kept = J.JOINT[j], J.AT_START[j]
         # The program's functions change the laws of springs without an edit.
         if joint.push != kept.push or joint.stiffness != kept.stiffness or joint.rest != kept.rest:
             return True

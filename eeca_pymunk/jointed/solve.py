@@ -82,7 +82,7 @@ def try_jointed(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     if shorter < h and not last:
         local.clear_places(A, MINE)
         return AGAIN, shorter
-    if local.needs_memory(A, p):
+    if local.lacks_rows(A, p):
         local.clear_places(A, MINE)
         return PUSHES_FULL, h
     tried = gather_attempt(A, J, MINE, found, t, h)

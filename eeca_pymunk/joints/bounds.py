@@ -65,22 +65,22 @@ def inactive(link: Rows[Coupling], k: int) -> bool:
 @nonallocating
 def passed_side(W: Workspace, k: int, least: float) -> int:
     """The side on which joint k is beyond its bound by more than `least`, in units of its g; 0 if there is none."""
-    least *= W.J.HINGE[k].size
+    least *= W.J.HINGE[k].unit
     return 1 if limit_gap(W, k, 1) < -least else -1 if limit_gap(W, k, -1) < -least else 0
 
 
 @nonallocating
-def limit_gap_rate(joint: JointStep, rows: int, side: int, v_a: FloatArray, v_b: FloatArray) -> float:
+def limit_gap_rate(hinge: JointStep, rows: int, side: int, v_a: FloatArray, v_b: FloatArray) -> float:
     """Rate of the gap at this side, negative if it closes: by the last of a joint's `rows` rows J and the velocities
     v_a and v_b (3,) of its bodies."""
-    return -side * along(joint, rows - 1, v_a, v_b)
+    return -side * along(hinge, rows - 1, v_a, v_b)
 
 
 @inlined
 def gap_rates(W: Workspace, k: int, side: int) -> tuple[float, float]:
     """`limit_gap_rate` of joint k at the start and at the end of the present iterate."""
-    joint, rows, a, b = W.J.HINGE[k], W.link[k].rows, W.J.LOCAL[W.link[k].body[0]], W.J.LOCAL[W.link[k].body[1]]
-    return limit_gap_rate(joint, rows, side, a.v0, b.v0), limit_gap_rate(joint, rows, side, a.v1, b.v1)
+    hinge, rows, a, b = W.J.HINGE[k], W.link[k].rows, W.J.LOCAL[W.link[k].body[0]], W.J.LOCAL[W.link[k].body[1]]
+    return limit_gap_rate(hinge, rows, side, a.v0, b.v0), limit_gap_rate(hinge, rows, side, a.v1, b.v1)
 
 
 @nonallocating
@@ -100,7 +100,7 @@ def closes_on_limit(W: Workspace, h: float) -> bool:
     for k in range(W.joints):
         if link[k].side != 0 and link[k].bounded == 0:
             rate, _ = gap_rates(W, k, link[k].side)
-            if -rate * h > LIMIT_WAY * W.J.HINGE[k].size:
+            if -rate * h > LIMIT_WAY * W.J.HINGE[k].unit:
                 return True
     return False
 
@@ -149,7 +149,7 @@ def held_till_then(W: Workspace, k: int, side: int, instant: float) -> bool:
     not left its bound since: its force changes sign only later."""
     link, hinge = W.link, W.J.HINGE
     rate, _ = gap_rates(W, k, side)
-    return bool(link[k].let_go == side and rate * instant <= LIMIT_WAY * hinge[k].size)
+    return bool(link[k].let_go == side and rate * instant <= LIMIT_WAY * hinge[k].unit)
 
 
 @nonallocating
@@ -161,7 +161,7 @@ def hops(W: Workspace, k: int, side: int, instant: float, h: float) -> bool:
     before, after = gap_rates(W, k, side)
     start = limit_gap(W, k, side) - 0.5 * h * (before + after)
     way = max(start, 0.0) + 0.25 * before * instant
-    return bool(link[k].let_go != side and before >= 0.0 and way <= LIMIT_HOP * hinge[k].size)
+    return bool(link[k].let_go != side and before >= 0.0 and way <= LIMIT_HOP * hinge[k].unit)
 
 
 @inlined
@@ -187,7 +187,7 @@ def first_bound(W: Workspace, h: float) -> tuple[int, int, float]:
         update_idle(W, k, h)
         for side in (-1, 1):
             end = limit_gap(W, k, side)
-            if end >= -JOINT_TOUCH * hinge[k].size:
+            if end >= -JOINT_TOUCH * hinge[k].unit:
                 continue
             before, after = gap_rates(W, k, side)
             when = min(instant_of(max(end - 0.5 * h * (before + after), 0.0), before, after, h), h)
@@ -230,6 +230,6 @@ def passed_within(W: Workspace, h: float) -> float:
             continue
         for side in (-1, 1):
             least, part = least_gap(W, k, side, h)
-            if part < first and least < -JOINT_TOUCH * W.J.HINGE[k].size:
+            if part < first and least < -JOINT_TOUCH * W.J.HINGE[k].unit:
                 first = part
     return first * h

@@ -14,7 +14,7 @@ from ..newton.entries import acts
 from ..newton.motion import go_back, save
 from ..newton.rows import joint_rows, shared_part, shares_point
 from .bounds import hold_passed, limit_gap, passed_side
-from .correct import CHANGE, KEPT, NOW, kinetic_of, loss_of_projection, project, restore_speeds, speeds_fit
+from .correct import BEFORE, CHANGE, NOW, kinetic_of, loss_of_projection, project, restore_speeds, speeds_fit
 from .frame import move_apart, work_of_shift
 from .lock import lock_energy, restore_momenta
 from .start import closing_share, compute_rows, springs_of
@@ -60,13 +60,13 @@ def set_targets(W: Workspace, h: float) -> Apart:
         passed = passed_side(W, k, JOINT_APART)
         if passed != 0:
             link[k].side = passed
-        elif link[k].side != 0 and limit_gap(W, k, link[k].side) > JOINT_APART * hinge[k].size:
+        elif link[k].side != 0 and limit_gap(W, k, link[k].side) > JOINT_APART * hinge[k].unit:
             link[k].side = 0
         joint_rows(W, k, 2.0, False)
         error = error_of(W, k)
-        if error > JOINT_APART * hinge[k].size and was == GIVES_WAY:
+        if error > JOINT_APART * hinge[k].unit and was == GIVES_WAY:
             joint[j].touched = GIVES_WAY
-        elif error > JOINT_APART * hinge[k].size:
+        elif error > JOINT_APART * hinge[k].unit:
             apart = True
             left = 1.0 - closing_share(joint, j, error, h)
             for r in range(rows):
@@ -83,7 +83,7 @@ def farthest(W: Workspace) -> float:
     worst = 0.0
     for k in range(W.joints):
         if W.link[k].bounded == 0:
-            worst = max(worst, error_of(W, k) / W.J.HINGE[k].size)
+            worst = max(worst, error_of(W, k) / W.J.HINGE[k].unit)
     return worst
 
 
@@ -160,19 +160,19 @@ def close_joints(W: Workspace, h: float, ledger: JointLedger) -> bool:
 
 @nonallocating
 def fit_speeds(W: Workspace, left: float) -> bool:
-    """Project velocities onto the joints, from `v_kept`, if more than the part `left` of the kinetic energy is across
+    """Project velocities onto the joints, from `v_before`, if more than the part `left` of the kinetic energy is across
     them, as steps may leave; whether they have changed. Rows must be those of the present poses."""
     if speeds_fit(W):
         return False
     project(W, SPEEDS)
-    if kinetic_of(W, CHANGE) <= left * kinetic_of(W, KEPT):
+    if kinetic_of(W, CHANGE) <= left * kinetic_of(W, BEFORE):
         restore_speeds(W)
         return False
     return True
 
 
 @nonallocating
-def fit_led(W: Workspace) -> bool:
+def fit_to_supports(W: Workspace) -> bool:
     """At the end of a step: if supports without a frame lead the bodies, make velocities fit the joints, unless little
     of their energy is across these; what that takes or gives is work of the supports. Returns whether it has.
 
@@ -185,5 +185,5 @@ def fit_led(W: Workspace) -> bool:
     compute_rows(W)
     if not fit_speeds(W, TAKEN_OVER_LEFT):
         return False
-    W.J.PART_LEDGER.supports += kinetic_of(W, NOW) - kinetic_of(W, KEPT)
+    W.J.RUNG_LEDGER.supports += kinetic_of(W, NOW) - kinetic_of(W, BEFORE)
     return True

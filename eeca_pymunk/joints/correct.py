@@ -15,7 +15,7 @@ from .bounds import inactive, limit_gap, limit_gap_rate, stand
 from .frame import has_prescribed_motion, work_of_change
 from .lock import restore_momenta
 
-NOW, KEPT, SAVED, CHANGE = 0, 1, 2, 3  # velocities of a kinetic energy
+NOW, BEFORE, SAVED, CHANGE = 0, 1, 2, 3  # velocities of a kinetic energy
 
 
 @nonallocating
@@ -25,11 +25,11 @@ def project(W: Workspace, what: int) -> None:
     POSES: until g is on its targets, at most CLOSINGS times. SPEEDS: closed limits whose gap closes act from the first
     pass on. Two passes with the same factors remove the effect of epsilon, three if rows are redundant. Then the limit
     that pulls most is released, or limits that the solution moves into act, and all begins again; at most joints + 1
-    times. The result is in `pose` or `v0`, the velocities before in `v_kept`, the impulses in `pushed`. Those of rows
+    times. The result is in `pose` or `v0`, the velocities before in `v_before`, the impulses in `pushed`. Those of rows
     that contradict one another are large, and change momenta by their round-off, which is undone.
     """
     component, passes, tries = W.J.COMPONENT[W.s], 0, 0
-    enough = 2 if component.loops == 0 else 3
+    enough = 2 if component.cycles == 0 else 3
     first_iterate(W, what, 2.0)
     if what == SPEEDS:
         keep_speeds(W)
@@ -65,26 +65,26 @@ def project(W: Workspace, what: int) -> None:
 
 @nonallocating
 def kinetic_of(W: Workspace, which: int) -> float:
-    """Kinetic energy in the directions that joints can move, of the velocities v0 (NOW), `v_kept` (KEPT) or
-    `saved_velocity` (SAVED), or of the CHANGE from `v_kept` to v0."""
+    """Kinetic energy in the directions that joints can move, of the velocities v0 (NOW), `v_before` (BEFORE) or
+    `saved_velocity` (SAVED), or of the CHANGE from `v_before` to v0."""
     local, total = W.J.LOCAL, 0.0
     for i in range(W.bodies):
-        velocity = local[i].v_kept if which == KEPT else local[i].saved_velocity if which == SAVED else local[i].v0
+        velocity = local[i].v_before if which == BEFORE else local[i].saved_velocity if which == SAVED else local[i].v0
         for c in range(3):
             if local[i].mobility[c] > 0.0:
-                v = velocity[c] - local[i].v_kept[c] if which == CHANGE else velocity[c]
+                v = velocity[c] - local[i].v_before[c] if which == CHANGE else velocity[c]
                 total += 0.5 * v**2 / local[i].mobility[c]
     return total
 
 
 @nonallocating
 def loss_of_projection(W: Workspace, ledger: JointLedger) -> float:
-    """The energy lost by the projection of velocities from `v_kept` to `v0`.
+    """The energy lost by the projection of velocities from `v_before` to `v0`.
 
     It is (1/2) dv.M dv, as the projection is orthogonal. The rest of the change of kinetic energy is the work of
     supports, 0 unless they move, and enters the ledger.
     """
-    gained = kinetic_of(W, NOW) - kinetic_of(W, KEPT)
+    gained = kinetic_of(W, NOW) - kinetic_of(W, BEFORE)
     if not has_prescribed_motion(W):
         return -gained
     lost = kinetic_of(W, CHANGE)
@@ -98,7 +98,7 @@ def keep_speeds(W: Workspace) -> None:
     """Store the velocities before they are projected, whose impulses become 0."""
     for i in range(W.bodies):
         for c in range(3):
-            W.J.LOCAL[i].v_kept[c] = W.J.LOCAL[i].v0[c]
+            W.J.LOCAL[i].v_before[c] = W.J.LOCAL[i].v0[c]
     restore_speeds(W)
 
 
@@ -107,7 +107,7 @@ def restore_speeds(W: Workspace) -> None:
     """Restore the velocities before the projection, and clear its impulses."""
     for i in range(W.bodies):
         for c in range(3):
-            W.J.LOCAL[i].v0[c] = W.J.LOCAL[i].v_kept[c]
+            W.J.LOCAL[i].v0[c] = W.J.LOCAL[i].v_before[c]
     for k in range(W.joints):
         W.J.HINGE[k].pushed[0] = W.J.HINGE[k].pushed[1] = 0.0
 
@@ -138,7 +138,7 @@ def noise(W: Workspace, k: int, r: int) -> float:
     """The impulse that changes the rate of row r of joint k by the round-off of the velocities before. A limit that
     pulls no more is not released: it would be met again at once."""
     hinge, a, b = W.J.HINGE[k], W.J.LOCAL[W.link[k].body[0]], W.J.LOCAL[W.link[k].body[1]]
-    return float(joints.JOINT_SPEED_ROUND_OFF * size_of_terms(hinge, r, a.v_kept, b.v_kept) * hinge.scale[r] ** 2)
+    return float(joints.JOINT_SPEED_ROUND_OFF * size_of_terms(hinge, r, a.v_before, b.v_before) * hinge.scale[r] ** 2)
 
 
 @nonallocating
@@ -151,13 +151,13 @@ def hold_closing(W: Workspace, kept: bool) -> bool:
         if not inactive(link, k):
             continue
         for side in (-1, 1):
-            if not limit_gap(W, k, side) <= joints.JOINT_TOUCH * hinge[k].size:
+            if not limit_gap(W, k, side) <= joints.JOINT_TOUCH * hinge[k].unit:
                 continue
             a, b, rows = local[link[k].body[0]], local[link[k].body[1]], link[k].rows
             if kept:
-                closes = limit_gap_rate(hinge[k], rows, side, a.v_kept, b.v_kept) < 0.0
+                closes = limit_gap_rate(hinge[k], rows, side, a.v_before, b.v_before) < 0.0
             else:
-                least = size_of_terms(hinge[k], rows - 1, a.v_kept, b.v_kept) * joints.JOINT_SPEED_ROUND_OFF
+                least = size_of_terms(hinge[k], rows - 1, a.v_before, b.v_before) * joints.JOINT_SPEED_ROUND_OFF
                 closes = limit_gap_rate(hinge[k], rows, side, a.v0, b.v0) < -least
             if closes:
                 stand(W, k, side)
@@ -176,7 +176,7 @@ def hold_passed_by(W: Workspace, least: float) -> bool:
             continue
         a, b = W.J.LOCAL[link[k].body[0]].v0, W.J.LOCAL[link[k].body[1]].v0
         for side in (-1, 1):
-            room = max(limit_gap(W, k, side), 0.0) + least * hinge[k].size
+            room = max(limit_gap(W, k, side), 0.0) + least * hinge[k].unit
             if limit_gap_rate(hinge[k], link[k].rows, side, a, b) < -room:
                 stand(W, k, side)
                 found = True
@@ -190,9 +190,9 @@ def speeds_fit(W: Workspace) -> bool:
     Rows are those of the present poses."""
     link = W.link
     for k in range(W.joints):
-        joint, a, b = W.J.HINGE[k], W.J.LOCAL[link[k].body[0]].v0, W.J.LOCAL[link[k].body[1]].v0
+        hinge, a, b = W.J.HINGE[k], W.J.LOCAL[link[k].body[0]].v0, W.J.LOCAL[link[k].body[1]].v0
         for r in range(link[k].rows if link[k].bounded == 0 else 0):
-            least = joints.JOINT_SPEED_LEFT * size_of_terms(joint, r, a, b)
-            if acts(link, k, r) and not abs(along(joint, r, a, b)) <= least:
+            least = joints.JOINT_SPEED_LEFT * size_of_terms(hinge, r, a, b)
+            if acts(link, k, r) and not abs(along(hinge, r, a, b)) <= least:
                 return False
     return True

@@ -26,7 +26,7 @@ from ..arrays import FloatArray
 from ..compiled import inlined, nonallocating
 from ..model.joints import Workspace
 
-PARTS, DEPTH = 5, 6
+SUZUKI_PARTS, DEPTH = 5, 6
 WEIGHTS: FloatArray = np.array([
     [4.847322101863073, 5.847322101863073, 0.0, -5.847322101863073, -4.847322101863073, 1.0],
     [2.415830022234291, -2.4314920796287818, -5.847322101863073, 0.0, 3.4314920796287818, 3.4314920796287818],

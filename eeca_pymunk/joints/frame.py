@@ -144,7 +144,7 @@ def move_apart(W: Workspace) -> bool:
 
 @nonallocating
 def account_frame(W: Workspace, h: float) -> None:
-    """Add the work of moving supports in a solved part h, by the balance of momentum, to PART_LEDGER: 0 without a
+    """Add the work of moving supports in a solved part h, by the balance of momentum, to RUNG_LEDGER: 0 without a
     frame."""
     if not has_prescribed_motion(W):
         return
@@ -163,7 +163,7 @@ def account_frame(W: Workspace, h: float) -> None:
                 elif c == 1:
                     speed = F.vy + wide * (body.pose[0] + 0.5 * body.way[0] - x)
                 impulse = (body.v1[c] - body.v0[c] - h * body.acceleration[c]) / body.mobility[c]
-                W.J.PART_LEDGER.frame_work += impulse * speed
+                W.J.RUNG_LEDGER.frame_work += impulse * speed
 
 
 @nonallocating
@@ -176,7 +176,7 @@ def velocity_in(F: Frame, body: BodyStep, c: int) -> float:
 
 @nonallocating
 def work_of_change(W: Workspace) -> float:
-    """The work of moving supports while velocities change from `v_kept` to v0 by impulses of joints."""
+    """The work of moving supports while velocities change from `v_before` to v0 by impulses of joints."""
     F, work = frame_of(W), 0.0
     if not (F.rigid and (F.hangs or F.turns)):
         return 0.0
@@ -184,7 +184,7 @@ def work_of_change(W: Workspace) -> float:
         body = W.J.LOCAL[i]
         for c in range(3):
             if is_led(body, c):
-                work += (body.v0[c] - body.v_kept[c]) * velocity_in(F, body, c) / body.mobility[c]
+                work += (body.v0[c] - body.v_before[c]) * velocity_in(F, body, c) / body.mobility[c]
     return work
 
 

@@ -22,7 +22,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import nonallocating
-from ..model.joint_steps import ELASTIC, EXACT, FINAL, HALVED, LINEAR, LONG
+from ..model.joint_steps import ELASTIC, EXACT, FINAL, LONG, NEARLY, UNHELD
 from ..model.joints import DEPENDENT, GIVES_WAY, INDEPENDENT, ROTARY_SPRING, SPRING, Workspace
 from ..model.parameters import joints
 from ..model.parameters.joints import BALANCED, JOINT_APART
@@ -31,15 +31,15 @@ from ..newton.entries import acting_rows
 from ..newton.motion import move
 from ..newton.rows import joint_rows
 from .bounds import standing
-from .foresight import PARTS, begin_steps, forget_parts, predict_part, recalls, remember_part
-from .gains import repaid
+from .foresight import SUZUKI_PARTS, begin_steps, forget_parts, predict_part, recalls, remember_part
+from .gains import repay
 from .ledger import clear_ledger
 from .limits import step_with_limits
 from .unheld import restore_start
 
 
 @nonallocating
-def misfit(W: Workspace, h: float) -> tuple[float, float, float]:
+def errors_of(W: Workspace, h: float) -> tuple[float, float, float]:
     """At the present iterate of a part h: the sum of the squares of the scaled errors of exact rows; that of the scaled
     forces by which they would pull bodies if joints were elastic; the largest error, over its unit."""
     link, hinge, local = W.link, W.J.HINGE, W.J.LOCAL
@@ -54,7 +54,7 @@ def misfit(W: Workspace, h: float) -> tuple[float, float, float]:
         for r in range(acting_rows(link, k)):
             off, scale = hinge[k].value[r] - hinge[k].target[r], hinge[k].scale[r]
             errors += (off * scale) ** 2
-            farthest = max(farthest, abs(off) / hinge[k].size)
+            farthest = max(farthest, abs(off) / hinge[k].unit)
             for end in range(2):
                 for c in range(3):
                     local[link[k].body[end]].impulse[c] += off * scale**2 * hinge[k].slopes[r, 3 * end + c]
@@ -83,20 +83,20 @@ def contradicts(W: Workspace, h: float) -> bool:
     """
     if W.J.PARTS.left != h:
         return False
-    errors, forces, farthest = misfit(W, h)
+    errors, forces, farthest = errors_of(W, h)
     if not farthest > JOINT_APART or not forces <= BALANCED**2 * errors:
         return False
     for i in range(W.bodies):
         for c in range(3):
             W.J.LOCAL[i].v1[c] = -W.J.LOCAL[i].v0[c]
     move(W.J.LOCAL, W.bodies, h)
-    at_start, _, _ = misfit(W, h)
+    at_start, _, _ = errors_of(W, h)
     return bool(errors <= at_start and math.isfinite(at_start))
 
 
 SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
 ORDER_4, WHOLE_STEP, ELASTIC_RUNG, RUNGS = 0, 1, 5, 11
-PARTS_ON: IntArray = np.array([PARTS, 1, 2, 4, joints.ELASTIC_PARTS, 1, *5 * [joints.ELASTIC_PARTS]])
+PARTS_ON: IntArray = np.array([SUZUKI_PARTS, 1, 2, 4, joints.ELASTIC_PARTS, 1, *5 * [joints.ELASTIC_PARTS]])
 COMPLIANCE_ON: FloatArray = np.array([*5 * [0.0], 1e-9, *(1e-9 * 10.0**k for k in range(4)), 1e-4])
 TAKEN, FAILED, CONTRADICTED = 0, 1, 2  # what becomes of a rung
 
@@ -128,7 +128,7 @@ def limit_work(W: Workspace) -> bool:
     one = work_of_iteration(component.system, joints.CONDENSED_PASSES, W.joints, component)
     # With no work left, components that are solved easily still are; not what was not solved in this interval before.
     share, least = (progress.budget - progress.effort) * joints.COMPONENT_BUDGET, joints.LEAST_SOLUTIONS * one
-    if W.J.STEPPED[W.s].status == LINEAR:
+    if W.J.STEPPED[W.s].status == UNHELD:
         least = 0.0
     progress.limit = progress.effort + max(share, least)
     return bool(share > least)
@@ -145,7 +145,7 @@ def compliance_on(rung: int, h: float, yields: bool, before: float) -> float:
 @nonallocating
 def take_parts(W: Workspace, h: float, extent: float, rung: int, compliance: float, cold: bool) -> int:
     """Take the step h in the parts of a rung: TAKEN, FAILED if one of them fails, or CONTRADICTED if exact joints
-    contradict one another at its start. Energies are added to PART_LEDGER.
+    contradict one another at its start. Energies are added to RUNG_LEDGER.
 
     Args:
         extent: size of the component.  compliance: of joints, time².
@@ -158,7 +158,7 @@ def take_parts(W: Workspace, h: float, extent: float, rung: int, compliance: flo
     for p in range(parts):
         if parts > 1:
             W.J.COMPONENT[W.s].parts = 0
-        piece = h / parts if rung > ORDER_4 else (1.0 - 4.0 * SUZUKI) * h if p == PARTS // 2 else SUZUKI * h
+        piece = h / parts if rung > ORDER_4 else (1.0 - 4.0 * SUZUKI) * h if p == SUZUKI_PARTS // 2 else SUZUKI * h
         for k in range(W.joints):
             warm = 0.0 if cold and W.link[k].bounded == 0 else piece / before
             W.J.HINGE[k].lam[0] *= warm
@@ -177,23 +177,23 @@ def take_parts(W: Workspace, h: float, extent: float, rung: int, compliance: flo
 
 @nonallocating
 def climb(W: Workspace, h: float, order: int, extent: float, touched: bool, own: bool) -> int:
-    """Take the step h by the first rung of the ladder that succeeds: EXACT, HALVED or ELASTIC; LINEAR if none does,
-    with everything as at the start. PART_LEDGER has the energies.
+    """Take the step h by the first rung of the ladder that succeeds: EXACT, NEARLY or ELASTIC; UNHELD if none does,
+    with everything as at the start. RUNG_LEDGER has the energies.
 
     | | whether |
     |---|---|
     | yields | a joint is elastic since an earlier step: rungs of exact joints would fail again |
-    | loops, sure | rows may be redundant; and were found to be independent at the start of the step |
-    | cold | a rung begins without impulses: dependent rows that do not pull hard (`taut`); after a fail all loops |
+    | cyclic, sure | rows may be redundant; and were found to be independent at the start of the step |
+    | cold | a rung begins without impulses: dependent rows that do not pull hard (`taut`); after a fail all `cyclic` |
     | dear | a shorter interval may be tried, and the budget does not pay RESOLUTION times for the rungs so far |
-    | again | a rung has begun with predicted values, or impulses of loops: it is tried once more without |
+    | again | a rung has begun with predicted values, or impulses of cycles: it is tried once more without |
     | tight | redundant rows have failed in the whole step: it is tried once more with the least `epsilon` |
 
     Args:
-        touched: whether joints were edited.  own: whether only steps have left them apart, see `repaid`.
+        touched: whether joints were edited.  own: whether only steps have left them apart, see `repay`.
     """
     first, progress = W.J.JOINT[W.link[0].joint], W.J.PROGRESS
-    component, loops = W.J.COMPONENT[W.s], W.J.COMPONENT[W.s].loops > 0
+    component, cyclic = W.J.COMPONENT[W.s], W.J.COMPONENT[W.s].cycles > 0
     cold, yields = component.dependence == DEPENDENT and component.taut == 0, has_elastic_joint(W)
     rung = ELASTIC_RUNG if yields else ORDER_4 if order == 4 and smooth(W) else WHOLE_STEP
     if rung != ORDER_4 or touched:
@@ -204,19 +204,19 @@ def climb(W: Workspace, h: float, order: int, extent: float, touched: bool, own:
         if (progress.attempt == LONG or dear) and WHOLE_STEP < rung < ELASTIC_RUNG:
             break
         compliance = compliance_on(rung, h, yields, first.compliance)
-        clear_ledger(W.J.PART_LEDGER)
+        clear_ledger(W.J.RUNG_LEDGER)
         outcome = take_parts(W, h, extent, rung, compliance, cold)
-        if outcome == TAKEN and (rung >= ELASTIC_RUNG or repaid(W, h, extent, own)):
+        if outcome == TAKEN and (rung >= ELASTIC_RUNG or repay(W, h, extent, own)):
             first.compliance = compliance
-            return EXACT if rung <= WHOLE_STEP else HALVED if rung < ELASTIC_RUNG else ELASTIC
+            return EXACT if rung <= WHOLE_STEP else NEARLY if rung < ELASTIC_RUNG else ELASTIC
         sure = component.dependence == INDEPENDENT
-        again = (cold != loops and not (sure and rung == ORDER_4)) or (rung == ORDER_4 and recalls(W))
+        again = (cold != cyclic and not (sure and rung == ORDER_4)) or (rung == ORDER_4 and recalls(W))
         if sure:  # rows may become dependent within the step, as where it passes a dead centre
             component.dependence = DEPENDENT
         restore_start(W)
         forget_parts(W)
-        tight = loops and rung == WHOLE_STEP and not again and progress.most_epsilon == joints.REDUNDANT_MOST
-        rung, cold = ELASTIC_RUNG if outcome == CONTRADICTED else rung if again or tight else rung + 1, loops
+        tight = cyclic and rung == WHOLE_STEP and not again and progress.most_epsilon == joints.REDUNDANT_MOST
+        rung, cold = ELASTIC_RUNG if outcome == CONTRADICTED else rung if again or tight else rung + 1, cyclic
         # Compliance makes rows independent by itself.
         progress.most_epsilon = joints.REDUNDANT_EPSILON if tight or rung >= ELASTIC_RUNG else joints.REDUNDANT_MOST
-    return LINEAR
+    return UNHELD

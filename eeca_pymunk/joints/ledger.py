@@ -23,12 +23,12 @@ def clear_ledger(ledger: JointLedger) -> None:
 def clear_interval(ledger: JointLedger) -> None:
     """Set all energies of an interval, and its status, to 0."""
     clear_ledger(ledger)
-    ledger.turned_work = ledger.lifted = ledger.misfit = ledger.gave = 0.0
+    ledger.turned_work = ledger.lifted = ledger.misfit = ledger.misfit_added = 0.0
     ledger.status = 0
 
 
 @inlined
-def add_part(ledger: JointLedger, part: JointLedger) -> None:
+def add_ledger(ledger: JointLedger, part: JointLedger) -> None:
     """Add the energies of a part of a step."""
     ledger.stored += part.stored
     ledger.damped += part.damped
@@ -43,11 +43,11 @@ def add_part(ledger: JointLedger, part: JointLedger) -> None:
 
 @nonallocating
 def account_part(W: Workspace, h: float) -> None:
-    """Add the works of a solved part h of the step to PART_LEDGER, and its impulses to `total`.
+    """Add the works of a solved part h of the step to RUNG_LEDGER, and its impulses to `total`.
 
     A joint's impulse F = J^T lam does the work F . x / h on its bodies; what it does on supports, they have done.
     """
-    hinge, link, ledger = W.J.HINGE, W.link, W.J.PART_LEDGER
+    hinge, link, ledger = W.J.HINGE, W.link, W.J.RUNG_LEDGER
     account_frame(W, h)
     per = 1.0 / h
     for k in range(W.joints):
@@ -86,8 +86,8 @@ def account_part(W: Workspace, h: float) -> None:
 @nonallocating
 def unexplained(W: Workspace) -> float:
     """The change of energy, from the saved state to the present one, that springs, motors and losses other than at
-    limits do not explain (PART_LEDGER)."""
-    part, gained = W.J.PART_LEDGER, 0.0
+    limits do not explain (RUNG_LEDGER)."""
+    part, gained = W.J.RUNG_LEDGER, 0.0
     for i in range(W.bodies):
         body = W.J.LOCAL[i]
         for c in range(3):
@@ -101,13 +101,13 @@ def unexplained(W: Workspace) -> float:
 
 @nonallocating
 def close_ledger(W: Workspace) -> None:
-    """Close PART_LEDGER for a step whose joints did not hold, by the change of energy that is `unexplained`. The work
+    """Close RUNG_LEDGER for a step whose joints did not hold, by the change of energy that is `unexplained`. The work
     of supports is that by the balance of momentum, and the rest is `closed` if it is a gain, else `limited`; without a
     `frame` supports can do any work, and all of it is theirs.
 
     This includes the works of limits: the impulses of contradictory rows grow without bound, and their works cancel up
     to round-off, so that only the sum is known.
     """
-    part, change = W.J.PART_LEDGER, unexplained(W)
+    part, change = W.J.RUNG_LEDGER, unexplained(W)
     part.supports = change if move_apart(W) else part.frame_work
     part.closed, part.limited = max(change - part.supports, 0.0), max(part.supports - change, 0.0)

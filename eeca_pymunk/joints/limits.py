@@ -43,7 +43,7 @@ GOES_ON, MEETS, ENDS, FAILS = 0, 1, 2, 3  # what follows a solve
 
 @nonallocating
 def stop_at(W: Workspace, k: int, side: int, at_once: bool, stays: bool) -> None:
-    """Let joint k stand on its limit at this side: velocities into the bound vanish, and the loss enters PART_LEDGER.
+    """Let joint k stand on its limit at this side: velocities into the bound vanish, and the loss enters RUNG_LEDGER.
     The next part begins without impulses.
 
     Args:
@@ -58,7 +58,7 @@ def stop_at(W: Workspace, k: int, side: int, at_once: bool, stays: bool) -> None
     bounds.begin_part(W)
     if at_once:
         bounds.stand(W, k, side)  # a velocity that released it is round-off: forces press it to its bound at once
-    W.J.PART_LEDGER.limited += loss_of_projection(W, W.J.PART_LEDGER)
+    W.J.RUNG_LEDGER.limited += loss_of_projection(W, W.J.RUNG_LEDGER)
     drop_impulses(W)
 
 
@@ -150,7 +150,7 @@ def seek(W: Workspace, S: Parts, gap_now: float) -> None:
 def at_limit(W: Workspace, S: Parts) -> int:
     """Decide what follows a solve to the instant of a limit: MEETS if that is met, and no other one before."""
     bounds.update_idle(W, S.limit, S.when)
-    gap_now, touch = bounds.limit_gap(W, S.limit, S.side), joints.JOINT_TOUCH * W.J.HINGE[S.limit].size
+    gap_now, touch = bounds.limit_gap(W, S.limit, S.side), joints.JOINT_TOUCH * W.J.HINGE[S.limit].unit
     S.secants += 1
     if S.foreseen > 0:  # met by the last solution, perhaps not by this one
         _, rate = bounds.gap_rates(W, S.limit, S.side)
@@ -184,7 +184,7 @@ def meet_limit(W: Workspace, S: Parts, h: float) -> None:
     at_once = not is_solved(S, h)
     if not at_once:
         rate, after = bounds.gap_rates(W, S.limit, S.side)
-        near = rate < 0.0 and -S.when * min(rate, after) <= joints.LIMIT_WAY * W.J.HINGE[S.limit].size
+        near = rate < 0.0 and -S.when * min(rate, after) <= joints.LIMIT_WAY * W.J.HINGE[S.limit].unit
         at_once = near or S.when <= joints.MEET_INSTANT * abs(h)
     if not at_once:  # else round-off of places, over S.when, would become velocities
         account_part(W, S.when)

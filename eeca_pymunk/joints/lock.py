@@ -38,7 +38,7 @@ def restore_momenta(W: Workspace, h: float, projected: bool) -> float:
     """Change the velocities v0 at the end of the step h by those of a rigid body, so that the momentum of a component
     without partners, and its angular momentum if it `turns_freely`, are those of the start and of the accelerations;
     with h = 0 those of the start, from which poses have been displaced; if velocities were `projected`, those of
-    `v_kept` at the same poses. Returns the change of the kinetic energy. Nothing changes where momenta are right to
+    `v_before` at the same poses. Returns the change of the kinetic energy. Nothing changes where momenta are right to
     MOMENTUM_LEFT of the sums of their magnitudes.
 
     L1 = L0 + sum m x_m x a h + I alpha h with the means x_m of the places over the time h, as the arms of joints are
@@ -53,7 +53,7 @@ def restore_momenta(W: Workspace, h: float, projected: bool) -> float:
         body = local[i]
         m = 1.0 / body.mobility[0] if is_led(body, 0) else 0.0
         rx, ry, now = body.pose[0] - x, body.pose[1] - y, body.v0
-        before, sx, sy, ax, ay, spun = body.v_kept, rx, ry, 0.0, 0.0, 0.0
+        before, sx, sy, ax, ay, spun = body.v_before, rx, ry, 0.0, 0.0, 0.0
         if not projected:
             before, sx, sy = body.saved_velocity, body.saved_pose[0] - x, body.saved_pose[1] - y
         if h > 0.0:

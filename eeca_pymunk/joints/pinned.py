@@ -22,7 +22,7 @@ def may_hold(J: Joints) -> bool:
     joint, still, ends = J.JOINT, J.STILL, 0
     for j in range(len(joint) if len(still) > 0 else 0):
         fixed = still[joint[j].body[0]] > 0 or still[joint[j].body[1]] > 0
-        if fixed and joint[j].bounded == 0 and joint[j].kind in (PIN, PIVOT, SLIDE, GEAR):
+        if fixed and joint[j].finite_force == 0 and joint[j].kind in (PIN, PIVOT, SLIDE, GEAR):
             ends += 1
     return ends >= 2
 
@@ -42,7 +42,7 @@ def note_pinned(J: Joints, k: int, body: Body, row: int, kind: int, weld: IntArr
 
 
 @kernel
-def hold(table: Table, joints: Table) -> bool:
+def find_pinned(table: Table, joints: Table) -> bool:
     """Find the bodies that joints hold where they are, at their present poses, which lose their mobilities; returns
     whether PINNED differs from the last one. A body that is held at its centre spins on if it has no friction; else it
     is held wholly. What was held before is released first (`release_held`)."""

@@ -21,7 +21,7 @@ from .ordering import order_rows, order_unknowns
 
 
 @kernel
-def root(parent: IntArray, i: int) -> int:
+def representative(parent: IntArray, i: int) -> int:
     """The representative of i in the forest `parent` (n,) of sets. Halves the paths to it."""
     while parent[i] != i:
         parent[i] = parent[parent[i]]
@@ -37,7 +37,7 @@ def find_components(bodies: Rows[Body], joint: Rows[Joint]) -> tuple[int, IntArr
     for j in range(len(joint)):
         a, b = joint[j].body[0], joint[j].body[1]
         if movable(bodies, a) and movable(bodies, b) and moves_body(bodies, joint[j]):
-            p, q = root(parent, a), root(parent, b)
+            p, q = representative(parent, a), representative(parent, b)
             if p != q:
                 parent[max(p, q)] = min(p, q)
     number = np.full(len(parent), -1, np.int64)
@@ -46,7 +46,7 @@ def find_components(bodies: Rows[Body], joint: Rows[Joint]) -> tuple[int, IntArr
         a, b = joint[j].body[0], joint[j].body[1]
         component_of[j] = -1
         if moves_body(bodies, joint[j]):
-            top = root(parent, a if movable(bodies, a) else b)
+            top = representative(parent, a if movable(bodies, a) else b)
             if number[top] < 0:
                 number[top] = count
                 count += 1
@@ -119,7 +119,7 @@ def mark_joints(J: Joints, s: int) -> tuple[bool, bool]:
     link, one, discs, hard, rows = J.COUPLING, J.COMPONENT[s], False, True, 0
     one.bounded_joints = one.driven = 0
     for k in range(one.first_joint, one.end_joint):
-        motor, limited = link[k].kind == model.MOTOR, J.JOINT[link[k].joint].bounded != 0
+        motor, limited = link[k].kind == model.MOTOR, J.JOINT[link[k].joint].finite_force != 0
         bounded = motor or (limited and link[k].kind not in (model.SPRING, model.ROTARY_SPRING))
         link[k].bounded = model.BOUNDED if bounded else 0
         if bounded:
@@ -128,7 +128,7 @@ def mark_joints(J: Joints, s: int) -> tuple[bool, bool]:
             one.driven = 1
         discs = discs or (limited and link[k].rows == 2)
         hard = hard and not (link[k].rows == 0 or motor or limited)
-    one.bounded = rows if rows <= MOST_BOUNDED else 0  # too many are not solved with contacts
+    one.bounded_rows = rows if rows <= MOST_BOUNDED else 0  # too many are not solved with contacts
     return discs, hard
 
 
@@ -178,14 +178,14 @@ def make_plan(bodies: Rows[Body], J: Joints) -> int:
         cost = component[s].unknowns * component[s].band ** 2
         pays = 0 < component[s].dual_size * component[s].dual_band ** 2 <= cost
         mark_actions(J, s)
-        component[s].dual_for = model.NOTHING if not pays else model.STEPS if hard else model.INSTANTS
-        component[s].loops = cycles(bodies, J, s, False)
-        component[s].knots = cycles(bodies, J, s, True)
+        component[s].dual_for = model.UNUSED if not pays else model.STEPS if hard else model.INSTANTS
+        component[s].cycles = count_cycles(bodies, J, s, False)
+        component[s].cycles_with_bounded = count_cycles(bodies, J, s, True)
     return count
 
 
 @kernel
-def cycles(bodies: Rows[Body], J: Joints, s: int, bounded: bool) -> int:
+def count_cycles(bodies: Rows[Body], J: Joints, s: int, bounded: bool) -> int:
     """Number of joints of component s that close a cycle in the graph of joints of points, or in that of joints of
     angles; all bodies that nothing moves, or nothing turns, are one node. Without cycles rows are independent,
     including limits: those of points by their effect on places, those of angles on angles. bounded: whether
@@ -202,7 +202,7 @@ def cycles(bodies: Rows[Body], J: Joints, s: int, bounded: bool) -> int:
                 ends[end] = n + 1 + (link[k].body[end] if body.inv_inertia > 0.0 else n)
             else:
                 ends[end] = link[k].body[end] if body.inv_mass > 0.0 else n
-        p, q = root(parent, ends[0]), root(parent, ends[1])
+        p, q = representative(parent, ends[0]), representative(parent, ends[1])
         if p == q:
             count += 1
         else:

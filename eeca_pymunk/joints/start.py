@@ -77,7 +77,7 @@ def most_impulse(W: Workspace, h: float, extent: float) -> float:
         a, b = W.J.LOCAL[W.link[k].body[0]], W.J.LOCAL[W.link[k].body[1]]
         if kind in (SPRING, ROTARY_SPRING):
             turning = abs(h) * spring_torque(W, k, extent)
-        elif joint.bounded != 0:
+        elif joint.finite_force != 0:
             turning = abs(h) * joint.max_force * (1.0 if kind >= GEAR else extent)
         elif kind == MOTOR and a.mobility[2] + b.mobility[2] > 0.0:
             turning = abs(joint.rate) / (a.mobility[2] + b.mobility[2])
@@ -113,7 +113,7 @@ def read_joints(W: Workspace, h: float, extent: float) -> tuple[bool, bool]:
         hinge[k].total[0] = hinge[k].total[1] = 0.0
         hinge[k].target[0] = hinge[k].target[1] = hinge[k].scale[0] = hinge[k].scale[1] = 0.0
         hinge[k].bound = joint[j].max_force
-        hinge[k].size = unit_of(joint[j], extent)
+        hinge[k].unit = unit_of(joint[j], extent)
         for end in range(2):
             for c in range(3):
                 W.J.LOCAL[link[k].body[end]].lead[c] = joint[j].led[end, c]

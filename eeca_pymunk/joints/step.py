@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from ..compiled import nonallocating
-from ..model.joint_steps import ELASTIC, HALVED, LINEAR, POSES, SPEEDS, JointLedger
+from ..model.joint_steps import ELASTIC, NEARLY, POSES, SPEEDS, UNHELD, JointLedger
 from ..model.joints import (
     APART,
     DEPENDENT,
@@ -38,7 +38,7 @@ from .closing import close_joints, farthest
 from .correct import loss_of_projection, project
 from .gains import take_gain
 from .ladder import climb, limit_work
-from .ledger import add_part, clear_ledger
+from .ledger import add_ledger, clear_ledger
 from .start import bounded_targets, compute_rows, read_joints
 from .unheld import step_linearly
 
@@ -115,7 +115,7 @@ def write_joints(W: Workspace, h: float, loose: int) -> None:
 
 @nonallocating
 def take_step(W: Workspace, h: float, order: int, extent: float, ledger: JointLedger) -> int:
-    """Step one component by h; its status: EXACT, HALVED, ELASTIC or LINEAR.
+    """Step one component by h; its status: EXACT, NEARLY, ELASTIC or UNHELD.
 
     LOCAL holds poses, velocities, accelerations and mobilities at the start and, on return, poses and velocities (v0)
     at the end.
@@ -129,10 +129,10 @@ def take_step(W: Workspace, h: float, order: int, extent: float, ledger: JointLe
     touched, bounded = read_joints(W, h, extent)
     enough = limit_work(W)
     # Redundant rows begin without impulses, unless their pull holds bodies; others, too, if there is no work to try.
-    component.taut = 1 if component.loops > 0 and is_taut(W, h) else 0
-    if component.loops > 0 and component.dependence == UNTESTED:
+    component.taut = 1 if component.cycles > 0 and is_taut(W, h) else 0
+    if component.cycles > 0 and component.dependence == UNTESTED:
         component.dependence = INDEPENDENT if enough and not rows_depend(W) else DEPENDENT
-    component.factored = 1 if W.J.PROGRESS.kept == W.s + 1 and component.dependence != DEPENDENT else 0
+    component.factored = 1 if W.J.PROGRESS.factors_of == W.s + 1 and component.dependence != DEPENDENT else 0
     if component.dependence == DEPENDENT and component.taut == 0:
         drop_impulses(W)
     for i in range(W.bodies):
@@ -155,11 +155,11 @@ def take_step(W: Workspace, h: float, order: int, extent: float, ledger: JointLe
     order = order if enough else 2
     ledger.misfit = farthest(W)
     status = climb(W, h, order, extent, touched, own)
-    before = step_linearly(W, h, extent) if status == LINEAR else 0.0
+    before = step_linearly(W, h, extent) if status == UNHELD else 0.0
     status = take_gain(W, h, extent, status, own, before)
     if status >= ELASTIC:
         compute_rows(W)  # they were those before the last correction
-    ledger.gave = max(farthest(W) - ledger.misfit, 0.0) if status >= ELASTIC else 0.0
-    add_part(ledger, W.J.PART_LEDGER)
-    write_joints(W, h, GIVES_WAY if status == ELASTIC else LEFT_APART if status == LINEAR else 0)
-    return HALVED if status == ELASTIC and farthest(W) <= NEARLY_HELD else status
+    ledger.misfit_added = max(farthest(W) - ledger.misfit, 0.0) if status >= ELASTIC else 0.0
+    add_ledger(ledger, W.J.RUNG_LEDGER)
+    write_joints(W, h, GIVES_WAY if status == ELASTIC else LEFT_APART if status == UNHELD else 0)
+    return NEARLY if status == ELASTIC and farthest(W) <= NEARLY_HELD else status

@@ -29,11 +29,11 @@ from ..model.parameters.joints import STRAIGHT_CHAIN
 @nonallocating
 def reach(joint: Joint) -> float:
     """The largest distance of a joint's two points, or infinity."""
-    if joint.bounded == 0 and joint.kind == PIVOT:
+    if joint.finite_force == 0 and joint.kind == PIVOT:
         return 0.0
-    if joint.bounded == 0 and joint.kind == PIN:
+    if joint.finite_force == 0 and joint.kind == PIN:
         return joint.length
-    return joint.upper if joint.bounded == 0 and joint.kind == SLIDE else math.inf
+    return joint.upper if joint.finite_force == 0 and joint.kind == SLIDE else math.inf
 
 
 @nonallocating
@@ -99,7 +99,7 @@ def in_one_place(X: FloatArray, p: int, q: int) -> bool:
 
 @nonallocating
 def fix_chain(
-    joint: Rows[Joint], X: FloatArray, FROM: IntArray, p: int, first: int, spins: IntArray, pinned: IntArray
+    joint: Rows[Joint], X: FloatArray, FROM: IntArray, p: int, first: int, spins: IntArray, kinds: IntArray
 ) -> int:
     """Hold the bodies of the straight chain from `first` that ends in p, on a fixed body; how many of them were free.
 
@@ -109,15 +109,15 @@ def fix_chain(
     while FROM[q] != first:
         out, q = FROM[q], FROM[FROM[q]]
         i = joint[q // 2].body[q % 2]
-        count += 1 if pinned[i] == FREE else 0
-        if pinned[i] != WHOLLY:
-            pinned[i] = spins[i] if in_one_place(X, q, out) else WHOLLY
+        count += 1 if kinds[i] == FREE else 0
+        if kinds[i] != WHOLLY:
+            kinds[i] = spins[i] if in_one_place(X, q, out) else WHOLLY
     return count
 
 
 @kernel
-def hold_chains(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, spins: IntArray, pinned: IntArray) -> int:
-    """Hold the bodies of straight chains between fixed points, which are still or pinned; how many there are.
+def hold_chains(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, spins: IntArray, kinds: IntArray) -> int:
+    """Hold the bodies of straight chains between fixed points, which are still or kinds; how many there are.
 
     A chain does not lead through a body whose points on it are in one place, if joints may turn it about that.
 
@@ -126,7 +126,7 @@ def hold_chains(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, spins: 
         still (n,): 1 for bodies that never move, 0 for those that may be held, -1 for others.
         spins (n,): how a body is held whose points on the chain are in one place: CENTRE, WHOLLY if contacts may turn
             it, FREE, which is not at all, if joints may.
-        pinned (n,): in and out, FREE, WHOLLY or CENTRE.
+        kinds (n,): in and out, FREE, WHOLLY or CENTRE.
     """
     points, n = 2 * len(joint), len(bodies)
     X, LENGTH = np.empty((points, 3)), np.empty(points)
@@ -135,12 +135,12 @@ def hold_chains(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, spins: 
     list_points(bodies, joint, X, HEAD, NEXT)
     total, found = 0, 1
     while found > 0:
-        # Bodies pinned in one round hold others in the next.
+        # Bodies kinds in one round hold others in the next.
         found, stamp = 0, -1
         SEEN[:] = -1
         for first in range(points):
             begin, across = joint[first // 2].body[first % 2], reach(joint[first // 2])
-            if across == math.inf or (still[begin] <= 0 and pinned[begin] == FREE):
+            if across == math.inf or (still[begin] <= 0 and kinds[begin] == FREE):
                 continue
             stamp += 1
             FROM[first ^ 1], LENGTH[first ^ 1], STACK[0], room = first, across, first ^ 1, 1
@@ -151,8 +151,8 @@ def hold_chains(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, spins: 
                 i = joint[p // 2].body[p % 2]
                 if still[i] < 0 or not straight(X, first, p, LENGTH[p]):
                     continue
-                if still[i] > 0 or pinned[i] != FREE:
-                    found += fix_chain(joint, X, FROM, p, first, spins, pinned)
+                if still[i] > 0 or kinds[i] != FREE:
+                    found += fix_chain(joint, X, FROM, p, first, spins, kinds)
                     continue
                 q = HEAD[i]
                 while q >= 0:

@@ -38,8 +38,8 @@ def restore_start(W: Workspace) -> None:
 @nonallocating
 def step_linearly(W: Workspace, h: float, extent: float) -> float:
     """Take the step h by linear systems, one for each limit that is released, or in free flight if they have no
-    solution. Returns `farthest` at its start. PART_LEDGER has the energy that springs have stored."""
-    local, part = W.J.LOCAL, W.J.PART_LEDGER
+    solution. Returns `farthest` at its start. RUNG_LEDGER has the energy that springs have stored."""
+    local, part = W.J.LOCAL, W.J.RUNG_LEDGER
     stored, apart, carried = springs_of(W), farthest(W), 0.0
     drop_impulses(W)
     if step_with_limits(W, True, h, extent, True, 0.0, False):
@@ -59,9 +59,9 @@ def step_linearly(W: Workspace, h: float, extent: float) -> float:
 
 @nonallocating
 def stop_joints(W: Workspace, h: float) -> None:
-    """Take the step h again by `move_rigidly`, which needs no solution; the loss is `limited` in PART_LEDGER: with
+    """Take the step h again by `move_rigidly`, which needs no solution; the loss is `limited` in RUNG_LEDGER: with
     supports, all of the motion relative to their frame."""
-    part = W.J.PART_LEDGER
+    part = W.J.RUNG_LEDGER
     go_back(W)
     stored = springs_of(W)
     lost, _ = relative_energy(W, frame_of(W), -1.0)

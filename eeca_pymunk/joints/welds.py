@@ -31,7 +31,7 @@ def closed(bodies: Rows[Body], joint: Joint) -> bool:
 
 @nonallocating
 def grow(
-    bodies: Rows[Body], joint: Rows[Joint], still: IntArray, loose: IntArray, pinned: IntArray, welds: IntArray
+    bodies: Rows[Body], joint: Rows[Joint], still: IntArray, loose: IntArray, kinds: IntArray, welds: IntArray
 ) -> int:  # fmt: skip
     """Weld bodies that are not `loose` (n,) to still or welded ones, layer by layer; how many there are. See `weld`."""
     count, layer, found = 0, 0, 1
@@ -40,40 +40,40 @@ def grow(
         for j in range(len(joint)):
             for end in range(2):
                 i, other = joint[j].body[end], joint[j].body[1 - end]
-                fixed = still[other] > 0 or (pinned[other] == WELDED and welds[other, 2] < layer)
+                fixed = still[other] > 0 or (kinds[other] == WELDED and welds[other, 2] < layer)
                 k = 1 if joint[j].kind == GEAR else 0
-                free = still[i] == 0 and loose[i] == 0 and pinned[i] == FREE and welds[i, k] < 0
-                exact = joint[j].bounded == 0 and joint[j].kind in (PIVOT, GEAR)
+                free = still[i] == 0 and loose[i] == 0 and kinds[i] == FREE and welds[i, k] < 0
+                exact = joint[j].finite_force == 0 and joint[j].kind in (PIVOT, GEAR)
                 if fixed and free and exact and closed(bodies, joint[j]):
                     welds[i, k] = 2 * j + end
         for i in range(len(bodies)):
-            if pinned[i] == FREE and welds[i, 0] >= 0 and welds[i, 1] >= 0:
-                pinned[i], welds[i, 2] = WELDED, layer
+            if kinds[i] == FREE and welds[i, 0] >= 0 and welds[i, 1] >= 0:
+                kinds[i], welds[i, 2] = WELDED, layer
                 found += 1
         count += found
     return count
 
 
 @kernel
-def weld(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, pinned: IntArray, welds: IntArray) -> int:
-    """Find the welded bodies: pinned (n,) becomes WELDED, and welds (n, 3) has `Pinned.weld` and `Pinned.link`; how
+def weld(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, kinds: IntArray, welds: IntArray) -> int:
+    """Find the welded bodies: kinds (n,) becomes WELDED, and welds (n, 3) has `Pinned.weld` and `Pinned.link`; how
     many there are. A body is only welded if it has no other joints than its weld and those of bodies welded to it,
     since their impulses would be unknown."""
     loose, spare = np.zeros(len(bodies), np.int64), np.zeros(len(bodies), np.int64)
     while True:
         welds[:] = -1
-        count, others = grow(bodies, joint, still, loose, pinned, welds), 0
+        count, others = grow(bodies, joint, still, loose, kinds, welds), 0
         spare[:] = 0
         for j in range(len(joint)):
             for end in range(2):
                 i, other, k = joint[j].body[end], joint[j].body[1 - end], 1 if joint[j].kind == GEAR else 0
                 own = welds[i, k] == 2 * j + end
-                spare[i] += 0 if own or (pinned[other] == WELDED and welds[other, k] == 2 * j + 1 - end) else 1
+                spare[i] += 0 if own or (kinds[other] == WELDED and welds[other, k] == 2 * j + 1 - end) else 1
         for i in range(len(bodies)):
-            if pinned[i] == WELDED and spare[i] > 0:
+            if kinds[i] == WELDED and spare[i] > 0:
                 loose[i] = 1
                 others += 1
         if others == 0:
             return count
         for i in range(len(bodies)):
-            pinned[i] = FREE if pinned[i] == WELDED else pinned[i]
+            kinds[i] = FREE if kinds[i] == WELDED else kinds[i]

@@ -10,12 +10,12 @@ import numpy as np
 
 from ..arrays import IntArray
 from ..compiled import Table, inlined, kernel, nonallocating
-from ..compiled.layouts import COUNT, Layout, Plan
+from ..compiled.layouts import ROWS, Layout, Plan
 from ..compiled.records import Rows, rows
 from ..model.bodies import AT_REST, CHANGED, Body
-from ..model.joints import NOTHING, Joint, Joints, Workspace, joints_of
+from ..model.joints import UNUSED, Joint, Joints, Workspace, joints_of
 from ..model.scene import scene_of
-from .pinned import hold, release_held
+from .pinned import find_pinned, release_held
 from .plan import make_plan, together
 
 
@@ -45,7 +45,7 @@ def measure_plan(J: Joints) -> bool:
         ROOM[0] = max(ROOM[0], component.end_body - component.first_body)
         ROOM[1] = max(ROOM[1], component.end_joint - component.first_joint)
         ROOM[2] = max(ROOM[2], 2 * component.unknowns, component.dual_size)
-        ROOM[3] = max(ROOM[3], whole, dual if component.dual_for != NOTHING or component.loops > 0 else 0)
+        ROOM[3] = max(ROOM[3], whole, dual if component.dual_for != UNUSED or component.cycles > 0 else 0)
         ROOM[4] = max(ROOM[4], 2 * (component.unknowns + component.impulses))
         ROOM[5] = max(ROOM[5], component.dual_size)
     ROOM[4] = max(ROOM[4], 2)
@@ -60,7 +60,7 @@ def tie_components(table: Table, joints: Table) -> None:
     """Make a ring of the bodies of each component. Predictions by earlier components are void; where bodies have lost
     theirs, islands are built in the next step, even if no component remains."""
     A, OF = scene_of(table), joints_of(joints).OF
-    MEMBER, BODY, COUNT = A.MEMBER, A.BODY, A.COUNT
+    MEMBER, BODY, ROWS = A.MEMBER, A.BODY, A.COUNT
     first, last = np.full(OF.shape[0], -1, np.int64), np.full(OF.shape[0], -1, np.int64)
     for i in range(MEMBER.shape[0]):
         BODY[i].due = min(BODY[i].due, -1.0)
@@ -68,7 +68,7 @@ def tie_components(table: Table, joints: Table) -> None:
         if MEMBER[i].rest == AT_REST:
             MEMBER[A.STATE[i].island].rest = CHANGED  # joints may hold it otherwise now
         if MEMBER[i].tied >= 0 and s < 0:
-            COUNT.any_placed = max(COUNT.any_placed, 1)
+            ROWS.any_placed = max(ROWS.any_placed, 1)
         MEMBER[i].tied, MEMBER[i].next_tied = -1, -1
         if s >= 0:
             first[s] = i if first[s] < 0 else first[s]
@@ -86,7 +86,7 @@ def plan_components(table: Table, joints: Table) -> int:
     J.OF[:] = -1
     J.TALLY.order = 4
     if J.JOINT.shape[0] > 0:
-        hold(table, joints)
+        find_pinned(table, joints)
         J.TALLY.components = make_plan(together(A.BODY, J.PARTNER), J)
     if not measure_plan(J):
         release_held(table, joints)
@@ -95,15 +95,15 @@ def plan_components(table: Table, joints: Table) -> int:
     return J.TALLY.pinned
 
 
-_ONE = "TALLY", "PROGRESS", "NEWTON", "PARTS", "AGREEMENT", "PART_LEDGER"
-_PLAN = *_ONE, "STIFF", "COMPONENT", "JOINED", "COUPLING", "KEPT", "STEPPED", "OF"
+_ONE = "TALLY", "PROGRESS", "NEWTON", "PARTS", "AGREEMENT", "RUNG_LEDGER"
+_PLAN = *_ONE, "STIFF", "COMPONENT", "JOINED", "COUPLING", "AT_START", "STEPPED", "OF"
 _OF_ONE = "LOCAL", "HINGE", "PIVOTS", "MATRIX", "RIGHT", "MORE"  # scratch of one component, in the order of ROOM
 
 
 @cache
 def _arrays() -> Plan[Joints]:
     zeros = "ROOM", *_PLAN, *_OF_ONE
-    return Plan(Joints, (*zeros, "PINNED"), len(zeros), ("JOINT", "PARTNER", "STILL"), {}, {"STIFF": (COUNT, 6)})
+    return Plan(Joints, (*zeros, "PINNED"), len(zeros), ("JOINT", "PARTNER", "STILL"), {}, {"STIFF": (ROWS, 6)})
 
 
 class Linkage(NamedTuple):
@@ -139,7 +139,7 @@ class JointMemory:
             counts = {
                 **dict.fromkeys(_ONE, 1), "STIFF": 6, "OF": n, "JOINT": j, "PARTNER": x, "STILL": len(STILL),
                 "PINNED": n if len(STILL) else 0, "ROOM": len(_OF_ONE),
-                "COMPONENT": j, "JOINED": 2 * j, "COUPLING": j, "KEPT": j, "STEPPED": j,
+                "COMPONENT": j, "JOINED": 2 * j, "COUPLING": j, "AT_START": j, "STEPPED": j,
                 **dict(zip(_OF_ONE, self._most, strict=True)),
             }  # fmt: skip
             table = self._layout.lay(counts, JOINT, PARTNER, STILL)

@@ -50,7 +50,7 @@ class Next(Record):
     version: int  # path version: number of paths so far
     first_shape: int  # its shapes are [first_shape, first_shape + shapes)
     shapes: int
-    events: int  # impacts of the body in this step
+    impacts: int  # impacts of the body in this step
     island: int  # first body (root) of its island, -1 for none
 
 
@@ -81,7 +81,7 @@ class Member(Record):
     next_tied: int  # next body of the component, in a ring
     jointed: int  # of the root: 1 if joints hold bodies of its island
     rest: int  # AWAKE, AT_REST or CHANGED
-    loaded: int  # of the root of an island at rest: 1 while support of moving neighbours is unverified
+    unverified: int  # of the root of an island at rest: 1 while support of moving neighbours is unverified
     with_supports: int  # of the root: `bodies`, and those of the islands that support them; after a partial rest those
     # of the whole island
     placed: int  # UNMOVED or MOVED while the body may overlap others deeply; else 0
@@ -101,9 +101,9 @@ class Rest(Record):
     end_vx: float  # with joints: the velocity there, which is not that of the parabola
     end_vy: float
     end_spin: float
-    augmentation: float  # of the root: log10 of R in direct solves, see `contacts/relaxation.py`
-    wait: float  # of the root: solves until the next direct one
-    backoff: float  # of the root: solves to wait after its next failure
+    augmentation: float  # of the island's first body by row: log10 of R in direct solves, see `contacts/relaxation.py`
+    wait: float  # likewise: solves until the next direct one
+    backoff: float  # likewise: solves to wait after its next failure
     payable: float  # of the root: cost of the correction up to which losses pay; the rest is external work
     lost: float  # of the root: energy lost in this step; if negative, energy that later intervals have to take out
     until: float  # of the root: instant at which the interval ends

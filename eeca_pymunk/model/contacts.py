@@ -95,22 +95,22 @@ class Row(Record):
     elasticity: float  # of the contact: products of both shapes' values
     friction: float
     target: float  # b: the law is 0 <= lam _|_ u_n - b >= 0
-    # t.(surface velocity of B's shape - that of A's), length/time; on walls that turn (`..contacts.turning`) such that
-    # u_t at the end of the interval is 0 for what sticks.
+    # t.(surface velocity of B's shape - that of A's), length/time; on walls that turn (`..contacts.turning_walls`) such
+    # that u_t at the end of the interval is 0 for what sticks.
     surface: float
-    # Where a wall turns, by the symbols of `..contacts.turning`:
+    # Where a wall turns, by the symbols of `..contacts.turning_walls`:
     turned: float  # c_0, if positive: by so much u_n is less than with the geometry of the start
     swung: float  # (c_0 + c_1) / 2 along t; the velocity surface + swung does work
     unsure: float  # error of u_t
     # Activation velocity: the contact is inactive while u_n without its own impulse is above it; infinite once active.
-    wake: float
+    activation: float
     a_nn: float  # change of u_n and u_t by unit impulses along n and t: 1/mass
     a_nt: float
     a_tt: float
     w_nn: float  # inverse of [[a_nn, a_nt], [a_nt, a_tt]] of contacts with friction; nan where it is singular: mass
     w_nt: float
     w_tt: float
-    key: int  # the pair of shapes, and which of its two points this is (`..contacts.memory.key_of`), across steps
+    key: int  # the pair of shapes, and which of its two points this is (`..contacts.forces.key_of`), across steps
 
 
 class Problem(NamedTuple):
@@ -145,7 +145,7 @@ class BoundedRow(Record):
     high: float
     part: float  # SINGLE, or the place in a disc (`..rows.bounded`)
     now: float  # impulse of the last motion
-    give: float  # change of the velocity along it by a unit impulse
+    a_own: float  # change of the velocity along it by a unit impulse
     cross: float  # of the first row of a disc: by one of the second row
 
 
@@ -197,7 +197,7 @@ class Solved(Record):
 
 
 class Force(Record):
-    """The forces of a contact in the last step, see `..contacts.memory`."""
+    """The forces of a contact in the last step, see `..contacts.forces`."""
 
     normal: float  # force, mass length/time²
     tangential: float

@@ -62,7 +62,7 @@ class Meeting(Record):
     rate: float
     gap: float  # gap at t, less `level`
     touch: float  # largest |gap| with which the shapes count as touching
-    loaded: int  # contacts of both intervals
+    pressing: int  # contacts of both intervals
     crosses: int  # 1 if the paths of both cross before t: the shapes have passed through each other
     crossed: int  # 1 if t was halved since paths crossed, or a body had moved too far: it may be no instant of contact
 

@@ -37,7 +37,7 @@ class BodyStep(Record):
     impulse: Annotated[FloatArray, 3]  # of the joints
     lead: Annotated[FloatArray, 3]  # acceleration by joints that Newton's method begins with
     inertia: Annotated[FloatArray, 3]  # diagonal of the bodies' part of a dual system, scaled; factored, the reciprocal
-    v_kept: Annotated[FloatArray, 3]  # velocities to come back to
+    v_before: Annotated[FloatArray, 3]  # velocities to come back to
     saved_pose: Annotated[FloatArray, 3]  # at the start of the whole step
     saved_velocity: Annotated[FloatArray, 3]
     shift: Annotated[FloatArray, 3]  # how far closing of joints moved it at the start
@@ -65,7 +65,7 @@ class JointStep(Record):
     target: Annotated[FloatArray, 2]  # what the functions g shall be at the end; of bounded joints: the speed
     scale: Annotated[FloatArray, 2]  # 1/sqrt of the diagonal of J M^-1 J^T
     bound: float  # largest force of a bounded joint: max_force, or that of a stalled motor (`..joints.start`)
-    size: float  # unit of g (`..newton.rows.unit_of`): length of the component, 1 for angles, 1/|ratio| for gears
+    unit: float  # of g (`..newton.rows.unit_of`): length of the component, 1 for angles, 1/|ratio| for gears
     measure: float  # of limits what they bound, at the end: length, angle, place in a groove; of springs the mean force
     total: Annotated[FloatArray, 2]  # impulse over all parts of the step
     pushed: Annotated[FloatArray, 2]  # impulse of a correction
@@ -96,7 +96,7 @@ class Progress(Record):
     limit: float  # of `effort`, at which the step of a component gives up what its ladder has before linear rows
     most_epsilon: float  # largest term on the diagonal of redundant rows (`..newton.solve`)
     attempt: int  # at an interval with contacts: FINAL, SHORT or LONG
-    kept: int  # 1 + number of the component of whose last motion in this interval the scratch has factors; or 0
+    factors_of: int  # 1 + number of the component of whose last motion in this interval the scratch has factors; or 0
 
 
 class Newton(Record):
@@ -109,7 +109,7 @@ class Newton(Record):
     iteration: int
     since: int  # the iteration in which it has begun again, with factors FULL
     stalls: int  # iterations without progress
-    factors: int  # KEPT, NEW or FULL
+    factors: int  # OLD, NEW or FULL
     renewed: int  # 1 if those of the iteration before were NEW
     system: int  # the linear system in use
 
@@ -168,9 +168,9 @@ class JointLedger(Record):
 
     stored: float  # change of what springs hold
     damped: float  # loss >= 0 in damped springs
-    limited: float  # loss >= 0 at limits, and all of a step whose joints did not hold
+    limited: float  # loss >= 0 at limits; all of a step whose joints did not hold, or that moved as one
     clamped: float  # loss >= 0 in joints that slip at their max_force
-    projected: float  # loss >= 0 of velocities that violated joints, or of bodies that were made to move as one
+    projected: float  # loss >= 0 of velocities that violated joints
     motors: float  # work of motors, and of joints with a finite max_force where it is positive
     supports: float  # work of bodies that move without being moved
     frame_work: float  # the same by the balance of momentum, of supports that move as one (`..joints.frame`)
@@ -178,14 +178,14 @@ class JointLedger(Record):
     turned_work: float  # with contacts: work of torques beyond that along the angle
     lifted: float  # energy that separating overlapping bodies costs, paid from the losses of contacts
     misfit: float  # largest error of a joint at the start, over its unit, and how much more of it at the end
-    gave: float
+    misfit_added: float
     status: int  # of the step
 
 
 # Status of a component's step: joints hold to round-off; the step was taken in parts, or elastically with errors up to
 # NEARLY_HELD; joints gave way elastically in some part; rows of the start held at mid-velocity in some part (energy
 # conserved, joints to O(h^2)), or all bodies moved as one (`..joints.lock.move_rigidly`).
-EXACT, HALVED, ELASTIC, LINEAR = 0, 1, 2, 3
+EXACT, NEARLY, ELASTIC, UNHELD = 0, 1, 2, 3
 # Attempts at an interval with contacts: no other follows; a shorter one may, also for a LONG one, in which no component
 # is stepped in parts.
 FINAL, SHORT, LONG = 0, 1, 2

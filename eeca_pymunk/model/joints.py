@@ -24,7 +24,7 @@ class Joint(Record):
 
     kind: int  # PIN ... ROTARY_SPRING
     body: Annotated[IntArray, 2]  # rows of its bodies a and b
-    bounded: int  # 1 if max_force is finite: rows of velocity at the end of the step, |lam| <= max_force h
+    finite_force: int  # 1 if max_force is finite: |lam| <= max_force h
     anchor_a: Annotated[FloatArray, 2]  # in the frame of body a, from its centre of mass: length
     anchor_b: Annotated[FloatArray, 2]
     max_force: float  # force or torque; infinite for a joint that holds exactly
@@ -83,16 +83,16 @@ class Component(Record):
     end_joint: int
     unknowns: int  # size and half-width of its matrix
     band: int
-    loops: int  # joints whose rows may depend on those of others (`..joints.plan.cycles`)
-    knots: int  # the same, if bounded rows held exactly
+    cycles: int  # joints whose rows may depend on those of others (`..joints.plan.count_cycles`)
+    cycles_with_bounded: int  # the same, if bounded rows held exactly
     system: int  # WHOLE or CONDENSED
     impulses: int  # number of unknowns beside the matrix
     dual_size: int  # of its matrix in the rows alone: size and half-width
     dual_band: int
-    dual_for: int  # what its dual system is taken for: NOTHING, INSTANTS (POSES, SPEEDS) or STEPS too
+    dual_for: int  # what its dual system is taken for: UNUSED, INSTANTS (POSES, SPEEDS) or STEPS too
     taut: int  # 1 if impulses of the last step pull so hard that this one begins with them (`..joints.step`)
     dependence: int  # of its rows at the present start: UNTESTED, INDEPENDENT, DEPENDENT (`..joints.step.rows_depend`)
-    bounded: int  # most rows of bounded impulses that may act, if few enough to be solved with contacts; else 0
+    bounded_rows: int  # most rows of bounded impulses that may act, if few enough to be solved with contacts; else 0
     bounded_joints: int  # its motors, and joints with a finite max_force
     driven: int  # 1 if it has a motor of unlimited force
     factored: int  # 1 if the present step can begin with the factors in the scratch; or OTHERWISE
@@ -105,7 +105,7 @@ class Component(Record):
 
 # Linear systems: of bodies and rows; of bodies alone (`..newton.condensed`); of rows alone (`..newton.dual`).
 WHOLE, CONDENSED, DUAL = 0, 1, 2
-NOTHING, INSTANTS, STEPS = 0, 1, 2  # uses of a dual one: `Component.dual_for`
+UNUSED, INSTANTS, STEPS = 0, 1, 2  # uses of a dual one: `Component.dual_for`
 UNTESTED, INDEPENDENT, DEPENDENT = 0, 1, 2  # `Component.dependence`; UNTESTED where no joint closes a cycle
 FORCES_ON, TORQUES_ON = 1, 2  # bits: what joints exert on a body
 
@@ -178,9 +178,9 @@ class Joints(NamedTuple):
     hold where they are, sorted. The plan: COMPONENT (components,), with the bodies of each in JOINED and its joints in
     COUPLING; ROOM (6,): see `measure_plan`. Scratch for the largest component: HINGE, LOCAL, of its joints and bodies;
     MATRIX, banded; RIGHT, right sides; PIVOTS; MORE, of linear systems and bounded rows; STIFF (6, 6), derivative of a
-    joint's impulse by the ways of its bodies; PROGRESS; NEWTON; PARTS; AGREEMENT; PART_LEDGER, of a part of the step.
-    OF (n,): the component of a body, -1 for none. KEPT (j,): the joints at the start of an interval. STEPPED
-    (components,): their ledgers in their intervals.
+    joint's impulse by the ways of its bodies; PROGRESS; NEWTON; PARTS; AGREEMENT; RUNG_LEDGER, of the present attempt
+    at a step. OF (n,): the component of a body, -1 for none. AT_START (j,): the joints at the start of an interval.
+    STEPPED (components,): their ledgers in their intervals.
     """
 
     JOINT: Rows[Joint]
@@ -201,17 +201,17 @@ class Joints(NamedTuple):
     NEWTON: Newton
     PARTS: Parts
     AGREEMENT: Agreement
-    PART_LEDGER: JointLedger
+    RUNG_LEDGER: JointLedger
     PIVOTS: IntArray
     OF: IntArray
-    KEPT: Rows[Joint]
+    AT_START: Rows[Joint]
     STEPPED: Rows[JointLedger]
     TALLY: Tally
 
 
 # What a return to an earlier step restores; the rest is scratch that each step writes first.
 OF_JOINTS = (
-    "JOINT", "HINGE", "LOCAL", "STIFF", "PROGRESS", "PARTS", "PART_LEDGER", "PIVOTS", "KEPT", "STEPPED", "TALLY"
+    "JOINT", "HINGE", "LOCAL", "STIFF", "PROGRESS", "PARTS", "RUNG_LEDGER", "PIVOTS", "AT_START", "STEPPED", "TALLY"
 )  # fmt: skip
 
 joints_of = Opener(Joints)

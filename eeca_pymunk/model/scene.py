@@ -30,7 +30,7 @@ class Scene(NamedTuple):
     list of bodies, or in an island. What needs it within another one calls `islands.local.take_places`.
     MEMBER, RESTING (n,): islands, and the state of their solves and rest.
     PUSHED_BY, PUSHED: contacts of the intervals, shapes and impulses, one row each.
-    KEYS, FORCES: hash table of the forces of the last step (`..contacts.memory`).
+    KEYS, FORCES: hash table of the forces of the last step (`..contacts.forces`).
     CORE (2, K, 4): scratch, the placed cores of two shapes.
     SIDE, CORNER: of thin shapes (`..geometry.sides`), empty if there are none.
     MISSED: budgets and tolerances that were not met.  PAR, COUNT: settings and energies, counters and flags.

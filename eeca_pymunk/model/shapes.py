@@ -26,7 +26,7 @@ class Shape(Record):
     bound: float  # radius of that circle: length
 
 
-SURFACE = "elasticity", "friction", "surface_x", "surface_y"
+SURFACE_FIELDS = "elasticity", "friction", "surface_x", "surface_y"
 
 
 class Link(Record):

@@ -43,10 +43,10 @@ class Count(Record):
     closing: int  # 1 if bodies that impulses do not move may move relative to each other, and squeeze others
     budget: int  # largest work of the events of a step no longer than `BUDGET_TIME`, in looks
     work: float  # work of the events so far, in looks: evaluations of a gap in the search for an impact
-    met: int  # bodies of the islands of earlier events of the step, counted in each event
-    met_work: float  # work of these events, and of the predictions that followed
-    meets: int  # bodies of the islands of the present event
-    before: float  # work before it
+    event_bodies: int  # bodies of the islands of earlier events of the step, counted in each event
+    events_work: float  # work of these events, and of the predictions that followed
+    present_bodies: int  # bodies of the islands of the present event
+    work_before: float  # work before it
     event_body: int  # body of the event at which the event loop has stopped
     room: int  # rows of LOG that the impact needs which is to be repeated with more memory
     pushes: int  # rows of PUSHED in use: contacts of intervals

@@ -48,7 +48,7 @@ class ShapeValues(Record):
     friction: float
     surface_x: float  # surface velocity, length/time
     surface_y: float
-    first: int  # of its rows of PLACED: the first, and their number
+    first: int  # of its rows of POINT_PLACED: the first, and their number
     vertices: int
 
 
@@ -65,10 +65,11 @@ class Reading(NamedTuple):
     """A space as pymunk has it, and the rows that are made of it.
 
     BODIES (N,), SHAPES (k,): values, in pymunk's order; OWNER (k,): `owner` of the shapes; POINT (v, 2): the vertices
-    of all shapes. STATES, IDS, EXTRA, ENDS, HOOKED: see `..layout`. Out: PLACED (v, 2), the vertices that differ from
-    the one before, of static shapes in world coordinates, of others about the centre of mass; BODY (moving bodies +
-    1,), SHAPE, LINK (k,), VERTEX (v, 4), whose rows in use come first; ORDER (k + N + 2,), the index in SHAPES of every
-    row of SHAPE, and scratch; TOTALS: counts of what was read. MEASURED: by `..impacts.scene_memory.measure_scene`.
+    of all shapes. STATES, IDS, EXTRA, ENDS, HOOKED: see `..layout`. Out: POINT_PLACED (v, 2), the vertices that differ
+    from the one before, of static shapes in world coordinates, of others about the centre of mass; BODY (moving bodies
+    + 1,), SHAPE, LINK (k,), VERTEX (v, 4), whose rows in use come first; ORDER (k + N + 2,), the index in SHAPES of
+    every row of SHAPE, and scratch; TOTALS: counts of what was read. MEASURED: by
+    `..impacts.scene_memory.measure_scene`.
     """
 
     TOTALS: IntArray
@@ -76,7 +77,7 @@ class Reading(NamedTuple):
     SHAPES: Rows[ShapeValues]
     OWNER: IntArray
     POINT: FloatArray
-    PLACED: FloatArray
+    POINT_PLACED: FloatArray
     STATES: FloatArray
     IDS: IntArray
     EXTRA: FloatArray
@@ -94,4 +95,4 @@ reading_of = Opener(Reading)
 # Places in TOTALS: numbers of single disks; of dynamic bodies; of solid shapes of moving bodies; of rows of VERTEX in
 # use; of bodies whose centre of mass is not the origin; with velocity functions; with position functions.
 DISKS, DYNAMICS, CARRIED, CORNERS, ECCENTRICS, STEERERS, MOVERS = 0, 1, 2, 3, 4, 5, 6
-TOTALS = 7
+TOTALS_KEPT = 7

@@ -14,14 +14,8 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import inlined, nonallocating
 from ..model.joints import CONDENSED, WHOLE, Workspace
 from ..model.parameters.joints import FACTOR_BAND
+from ..rows.inplace import add_multiple
 from .entries import put_condensed, put_rows
-
-
-@nonallocating
-def subtract(row: FloatArray, other: FloatArray, amount: float) -> None:
-    """row -= amount other, over the length of the shorter one."""
-    for j in range(min(len(row), len(other))):
-        row[j] -= amount * other[j]
 
 
 @inlined
@@ -62,7 +56,7 @@ def factor(matrix: FloatArray, size: int, band: int, first: IntArray) -> bool:
                 matrix[to] = below
                 first[i] = min(first[i], k)
                 if band >= FACTOR_BAND:
-                    subtract(matrix[to + 1 : to + reach], matrix[at + 1 : at + reach], below)
+                    add_multiple(matrix[to + 1 : to + reach], matrix[at + 1 : at + reach], -below)
                 else:
                     for j in range(1, reach):
                         matrix[to + j] -= below * matrix[at + j]
@@ -102,14 +96,14 @@ def substitute(
 def freeze_row(W: Workspace, k: int, r: int, slopes: bool) -> None:
     """Store the entries J and G (`slopes`, else J for both) of row r of joint k, scaled by the row's scale and the
     roots of its bodies."""
-    joint = W.J.HINGE[k]
-    G = joint.slopes if slopes else joint.rows
+    hinge = W.J.HINGE[k]
+    G = hinge.slopes if slopes else hinge.rows
     for end in range(2):
         root, at = W.J.LOCAL[W.link[k].body[end]].root, 3 * end
         for c in range(3):
-            factor = joint.scale[r] * root[c]
-            joint.frozen_rows[r, at + c] = factor * joint.rows[r, at + c]
-            joint.frozen_slopes[r, at + c] = factor * G[r, at + c]
+            factor = hinge.scale[r] * root[c]
+            hinge.frozen_rows[r, at + c] = factor * hinge.rows[r, at + c]
+            hinge.frozen_slopes[r, at + c] = factor * G[r, at + c]
 
 
 @inlined

@@ -40,8 +40,8 @@ def put_pairs(W: Workspace, one: int, first: int) -> None:
             m, to = other >> 1, 3 * (other & 1)
             for q in range(link[m].rows):
                 if hinge[m].weight[q] != 0.0:
-                    J = hinge[m].frozen_rows
-                    product = gx * J[q, to] + gy * J[q, to + 1] + gw * J[q, to + 2]
+                    rows = hinge[m].frozen_rows
+                    product = gx * rows[q, to] + gy * rows[q, to + 1] + gw * rows[q, to + 2]
                     matrix[begin + link[m].first_dual + q] += product
             other = link[m].following[other & 1]
 

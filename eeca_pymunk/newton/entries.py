@@ -56,21 +56,21 @@ def interval_of(link: Rows[Coupling], k: int, r: int, bound: float) -> tuple[flo
 
 
 @inlined
-def along(joint: JointStep, r: int, v_a: FloatArray, v_b: FloatArray) -> float:
+def along(hinge: JointStep, r: int, v_a: FloatArray, v_b: FloatArray) -> float:
     """Row J number r of a joint times the velocities v_a and v_b (3,) of its bodies, or their ways."""
     total = 0.0
     for c in range(3):
-        total += joint.rows[r, c] * v_a[c] + joint.rows[r, 3 + c] * v_b[c]
+        total += hinge.rows[r, c] * v_a[c] + hinge.rows[r, 3 + c] * v_b[c]
     return total
 
 
 @nonallocating
-def size_of_terms(joint: JointStep, r: int, v_a: FloatArray, v_b: FloatArray) -> float:
+def size_of_terms(hinge: JointStep, r: int, v_a: FloatArray, v_b: FloatArray) -> float:
     """The sum of the magnitudes of the terms of `along`, whose round-off is relative to it."""
     total = 0.0
     for c in range(3):
-        total += abs(joint.rows[r, c] * v_a[c])
-        total += abs(joint.rows[r, 3 + c] * v_b[c])
+        total += abs(hinge.rows[r, c] * v_a[c])
+        total += abs(hinge.rows[r, 3 + c] * v_b[c])
     return total
 
 

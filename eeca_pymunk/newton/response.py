@@ -102,21 +102,21 @@ def prepare_response(W: Workspace, what: int, h: float) -> bool:
         first_iterate(W, what, h)
     system = first_system(component, what)
     give = W.J.JOINT[link[0].joint].compliance / h**2 if what == STEP else 0.0
-    loops, sure = component.loops > 0 and give == 0.0, component.dependence == INDEPENDENT
+    cyclic, sure = component.cycles > 0 and give == 0.0, component.dependence == INDEPENDENT
     # Of a step an answer is a derivative, for iterations; at an instant it is a change of velocities.
     tally.passes = 1 if give > 0.0 or (sure and what == STEP) else CONDENSED_PASSES
-    epsilon = 0.0 if not loops or (sure and (what == STEP or system == DUAL)) else REDUNDANT_EPSILON
+    epsilon = 0.0 if not cyclic or (sure and (what == STEP or system == DUAL)) else REDUNDANT_EPSILON
     while True:
         for i in range(component.unknowns + component.impulses):
             W.J.RIGHT[i] = 0.0
         assemble(W, what, h, give, True, system, True)
         if decompose(W, what, system, epsilon, give):
             # Poses at an instant are others than those at which rows were found to be independent.
-            if what == STEP or not loops or epsilon > 0.0 or are_independent(W):
+            if what == STEP or not cyclic or epsilon > 0.0 or are_independent(W):
                 tally.answers = system
                 # Newton's matrix, but for bounded rows that are given, and joints that press hard.
-                W.J.PROGRESS.kept = W.s + 1 if what == STEP and component.bounded == 0 else 0
-                tally.refined = RESPONSE_PASSES if loops and epsilon > 0.0 and system != CONDENSED else 0
+                W.J.PROGRESS.factors_of = W.s + 1 if what == STEP and component.bounded_rows == 0 else 0
+                tally.refined = RESPONSE_PASSES if cyclic and epsilon > 0.0 and system != CONDENSED else 0
                 return True
         if epsilon == 0.0:
             epsilon = REDUNDANT_EPSILON

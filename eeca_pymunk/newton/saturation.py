@@ -12,7 +12,7 @@ import numpy as np
 from ..compiled import nonallocating
 from ..model.joints import BOUNDED, CONDENSED, OTHERWISE, WHOLE, Workspace
 from ..model.parameters.joints import REDUNDANT_EPSILON, STIFFEST
-from ..rows.bounded import pulls
+from ..rows.bounded import leaves_half
 from .condensed import freeze_row, put_row
 from .entries import acting_rows, interval_of, put_free, put_rows, weigh
 
@@ -43,7 +43,7 @@ def put_bounded(W: Workspace, k: int, slopes: bool, h: float, system: int, build
     p1 = hinge[k].lam[1] - per * hinge[k].value[1] if rows == 2 else 0.0
     if not slopes:
         bound, low, high = bound * INSIDE, low * INSIDE, high * INSIDE
-    if rows == 2 and pulls(p1, interval_of(link, k, 1, bound)):
+    if rows == 2 and leaves_half(p1, interval_of(link, k, 1, bound)):
         rows, worst = 1, abs(hinge[k].lam[1] * h) / hinge[k].scale[1] ** 2
     for r in range(rows, link[k].rows):
         put_free(W, k, r, system, build)
@@ -58,7 +58,7 @@ def put_bounded(W: Workspace, k: int, slopes: bool, h: float, system: int, build
             weigh(W, k, r, STIFFEST, build)
             if build:
                 put_row(W, k, r, slopes, system)
-                if system == WHOLE and W.J.COMPONENT[W.s].knots > 0:
+                if system == WHOLE and W.J.COMPONENT[W.s].cycles_with_bounded > 0:
                     matrix[(row + r) * width + band] += REDUNDANT_EPSILON
             continue
         p_r = p0 if r == 0 else p1

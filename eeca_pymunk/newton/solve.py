@@ -29,7 +29,7 @@ from .motion import balance_velocities, move
 from .saturation import clamp
 from .systems import apply, back, factorise, first_iterate, first_system, linearise
 
-KEPT, NEW, FULL = 0, 1, 2  # factors of an iteration
+OLD, NEW, FULL = 0, 1, 2  # factors of an iteration
 
 
 @nonallocating
@@ -82,7 +82,7 @@ def accept(W: Workspace, h: float, current: bool) -> None:
     system = W.J.NEWTON.system
     # A wide matrix is expensive to factor: the parts of a step share one while errors fall with it.
     W.J.COMPONENT[W.s].factored = 1 if current and system == CONDENSED else 0
-    W.J.PROGRESS.kept, W.J.TALLY.answers = W.s + 1 if current else 0, system
+    W.J.PROGRESS.factors_of, W.J.TALLY.answers = W.s + 1 if current else 0, system
     clamp(W, h)
     balance_velocities(W, h)
 
@@ -100,9 +100,9 @@ def epsilon_for(W: Workspace, redundant: bool, give: float, worst: float) -> flo
 def begin_solve(W: Workspace) -> None:
     """The record of a solve before its first iteration, with the factors that the component has."""
     N, component = W.J.NEWTON, W.J.COMPONENT[W.s]
-    N.factors = KEPT if component.factored > 0 else NEW
-    N.system = W.J.TALLY.answers if N.factors == KEPT else first_system(component, STEP)
-    component.factored = W.J.PROGRESS.kept = 0
+    N.factors = OLD if component.factored > 0 else NEW
+    N.system = W.J.TALLY.answers if N.factors == OLD else first_system(component, STEP)
+    component.factored = W.J.PROGRESS.factors_of = 0
     N.least = N.last = inf
     N.pace, N.stalls, N.since, N.renewed = 1.0, 0, 0, 0
 
@@ -120,7 +120,7 @@ def note_error(N: Newton) -> None:
 def choose_factors(W: Workspace, h: float, slow: bool, current: bool, redundant: bool) -> None:
     """The factors of an iteration by the table of `solve`."""
     N = W.J.NEWTON
-    if N.factors != KEPT or not (slow or not current):
+    if N.factors != OLD or not (slow or not current):
         return
     N.factors = FULL if N.renewed > 0 and current else NEW
     if N.factors == FULL:  # only nearly singular or long steps come here
@@ -144,11 +144,11 @@ def solve(W: Workspace, h: float, extent: float, redundant: bool, give: float) -
 
     | `factors` | are | of the next iteration |
     |---|---|---|
-    | KEPT | those of an earlier iteration, or part of the step | KEPT; NEW if these are `slow` or not `current` |
-    | NEW | computed now | KEPT; FULL if these are `slow` |
+    | OLD | those of an earlier iteration, or part of the step | OLD; NEW if these are `slow` or not `current` |
+    | NEW | computed now | OLD; FULL if these are `slow` |
     | FULL | computed now, of `component.system` | FULL |
 
-    It begins KEPT if the component has factors, else NEW. They are `current` while no bounded impulse reaches or leaves
+    It begins OLD if the component has factors, else NEW. They are `current` while no bounded impulse reaches or leaves
     its bound, or slides along that of a disc. Entering FULL, redundant rows begin again without impulses.
 
     Impulses of elastic joints that contradict one another are as large as they are stiff, and cancel but for round-off:
@@ -162,9 +162,9 @@ def solve(W: Workspace, h: float, extent: float, redundant: bool, give: float) -
     begin_solve(W)
     sure = component.dependence != DEPENDENT
     for iteration in range(NEWTON_ITERATIONS + 1):
-        built = N.factors != KEPT
+        built = N.factors != OLD
         N.iteration, N.error = iteration, linearise(W, STEP, h, extent, give, False, N.system, built)
-        current = N.factors == KEPT and component.factored != OTHERWISE
+        current = N.factors == OLD and component.factored != OTHERWISE
         left = round_off_of_impulses(W, h, extent) if give > 0.0 and iteration > 1 else 0.0
         if N.error <= left and left > ELASTIC_ROUND_OFF:
             return False
@@ -178,7 +178,7 @@ def solve(W: Workspace, h: float, extent: float, redundant: bool, give: float) -
             return False
         choose_factors(W, h, slow, current, redundant)
         component.factored = 0
-        if N.factors != KEPT:
+        if N.factors != OLD:
             if not built:
                 linearise(W, STEP, h, extent, give, False, N.system, True)
             N.system = factorise(W, STEP, h, extent, give, N.system, epsilon_for(W, redundant, give, N.error))
@@ -188,7 +188,7 @@ def solve(W: Workspace, h: float, extent: float, redundant: bool, give: float) -
             refresh(W)
         passes = CONDENSED_PASSES if N.factors == FULL and not give > 0.0 else 1
         iterate(W, STEP, N.system, passes, h)
-        N.renewed, N.factors = int(N.factors == NEW), FULL if N.factors == FULL else KEPT
+        N.renewed, N.factors = int(N.factors == NEW), FULL if N.factors == FULL else OLD
     return False
 
 

@@ -107,7 +107,7 @@ def assemble(W: Workspace, what: int, h: float, give: float, first: bool, system
     slopes = what == STEP
     band = W.J.COMPONENT[W.s].band
     width = 3 * band + 1 if system == WHOLE else 2 * band + 1
-    W.J.PROGRESS.kept = 0 if build else W.J.PROGRESS.kept
+    W.J.PROGRESS.factors_of = 0 if build else W.J.PROGRESS.factors_of
     if build and system != DUAL:
         for i in range(W.J.COMPONENT[W.s].unknowns * width):
             matrix[i] = 0.0
@@ -139,7 +139,7 @@ def assemble(W: Workspace, what: int, h: float, give: float, first: bool, system
         else:
             off = put_exact(W, what, k, h, give, system, build)
         # What a gear holds are angles: their round-off is that of rad, whatever its ratio.
-        worst = max(worst, off / (max(hinge[k].size, 1.0) if link[k].kind == GEAR else hinge[k].size))
+        worst = max(worst, off / (max(hinge[k].unit, 1.0) if link[k].kind == GEAR else hinge[k].unit))
     return worst
 
 

@@ -2,7 +2,8 @@
 
 Results (t, certain) are functions of the two paths only, from the later `Body.since` on, and equal for (a, b) and
 (b, a). Certain: the shapes meet at t, never if t is infinite. Not certain: they do not meet before t, which is no
-earlier than the horizon. Instants count from the start of the step.
+earlier than the horizon, or than the instant until which the search was asked for, unless the work of the step is
+spent. Instants count from the start of the step.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from ..model.parameters.events import APPROACH_ROUND_OFF, DISTANCE_ROUND_OFF, MI
 from ..model.scene import Scene
 from .circles import circle_circle, circle_outline
 from .roots import disks_meet
-from .turning import general
+from .search import general
 
 
 @nonallocating

@@ -1,8 +1,8 @@
 """The next event of a body on its present path, among the shapes of its lists.
 
-A prediction is a function of the two paths only, not of the instant at which it is made: times count from the later
-start of the two paths. Paths of equal acceleration give times that are valid beyond the step. For other pairs the
-search stops at the end of the step and returns a lower bound; the body is predicted again at that instant.
+A prediction is a function of the two paths and of the horizon only, not of the instant at which it is made: times count
+from the later start of the two paths. Paths of equal acceleration give times that are valid beyond the step. For other
+pairs the search stops at the end of the step and returns a lower bound; the body is predicted again at that instant.
 """
 
 from __future__ import annotations

@@ -62,7 +62,7 @@ def on_disc(
 
 
 @inlined
-def pulls(y: float, half: tuple[float, float]) -> bool:
+def leaves_half(y: float, half: tuple[float, float]) -> bool:
     """Whether the second impulse of a disc is outside the `half` of it (low, high), one of which is 0; never if it is a
     whole one."""
     return (y < 0.0 and half[0] >= 0.0) or (y > 0.0 and half[1] <= 0.0)
@@ -75,7 +75,7 @@ def on_half_disc(
     """`on_disc`, of the half of a disc in which y' is in `half` (or of all of it): if the impulses on the disc are
     outside, the nearest ones by W are on the edge, y' = 0."""
     to, other = on_disc(a, b, c, ux, uy, x, y, bound)
-    if pulls(other, half):
+    if leaves_half(other, half):
         return on_interval(a, ux - b * y, x, -bound, bound), 0.0
     return to, other
 
@@ -129,7 +129,7 @@ def inside_discs(B: Bounded, L: FloatArray, m: int) -> bool:
 def weigh_rows(B: Bounded) -> None:
     """Set what unit impulses of the rows change along them: `give` and `cross`."""
     for i in range(B.NUMBER[0]):
-        B.ROWS[i].give = per_impulse(B, i, i)
+        B.ROWS[i].a_own = per_impulse(B, i, i)
         if B.ROWS[i].part == FIRST_OF_DISC:
             B.ROWS[i].cross = 0.5 * (per_impulse(B, i, i + 1) + per_impulse(B, i + 1, i))
 
@@ -152,14 +152,14 @@ def sweep_bounded(B: Bounded, L: FloatArray, m: int, V: FloatArray) -> float:
         part, low, high = B.ROWS[i].part, B.ROWS[i].low, B.ROWS[i].high
         if part == SECOND_OF_DISC:
             continue
-        a, x = B.ROWS[i].give, L[m + i, 0]
+        a, x = B.ROWS[i].a_own, L[m + i, 0]
         if not a > 0.0:
             continue
         u = B.ROWS[i].speed + bounded_rate(B, i, V)
         if part == SINGLE:
             L[m + i, 0] = on_interval(a, u, x, low, high)
         else:
-            b, c, y = B.ROWS[i].cross, B.ROWS[i + 1].give, L[m + i + 1, 0]
+            b, c, y = B.ROWS[i].cross, B.ROWS[i + 1].a_own, L[m + i + 1, 0]
             if not c > 0.0:
                 continue
             other = B.ROWS[i + 1].speed + bounded_rate(B, i + 1, V)

@@ -34,7 +34,7 @@ def place_row(row: Row, px: float, py: float, POSE: FloatArray, IM: FloatArray, 
     row.k_n, row.k_t = 1.0 / nn, 1.0 / tt
     if row.friction > 0.0:
         invert(row, nn, nt, tt)
-    row.target, row.wake, row.turned, row.swung, row.unsure = 0.0, np.inf, 0.0, 0.0, 0.0
+    row.target, row.activation, row.turned, row.swung, row.unsure = 0.0, np.inf, 0.0, 0.0, 0.0
 
 
 @nonallocating

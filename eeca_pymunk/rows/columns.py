@@ -83,8 +83,8 @@ def breach(problem: JointedProblem, L: FloatArray, V: FloatArray) -> float:
     for i in range(m):
         if C.LEFT_OUT[i] != 0:
             continue
-        if ROWS[i].wake < np.inf:
-            worst = max(worst, ROWS[i].wake - normal_rate(ROWS[i], V))
+        if ROWS[i].activation < np.inf:
+            worst = max(worst, ROWS[i].activation - normal_rate(ROWS[i], V))
             continue
         un = normal_rate(ROWS[i], V) - ROWS[i].target
         state, sign = mode_of(ROWS[i], V, L[i, 0], L[i, 1], ON_CONE)
@@ -94,7 +94,7 @@ def breach(problem: JointedProblem, L: FloatArray, V: FloatArray) -> float:
             worst = max(worst, abs(off) if state == STICK else sign * off)
     for i in range(B.NUMBER[0]):
         row, x = B.ROWS[i], L[m + i, 0]
-        if row.give > 0.0:
+        if row.a_own > 0.0:
             u = row.speed + bounded_rate(B, i, V)
             worst = max(worst, abs(u) if row.low < x < row.high else u if x >= row.high else -u)
     return worst

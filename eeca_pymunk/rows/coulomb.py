@@ -130,7 +130,8 @@ def limited_slip(row: Row, lam: float, beta: float) -> float:
 @inlined
 def lawful(row: Row, V: FloatArray, lam0: float, beta0: float, stays: bool) -> tuple[float, float, bool]:
     """The impulses (lam, beta) of a contact by its law, and whether it slips. All other impulses are given: V (k, 3)
-    are the velocities with these, and with its own (lam0, beta0). An inactive contact (`Row.wake`) becomes active.
+    are the velocities with these, and with its own (lam0, beta0). An inactive contact (`Row.activation`) becomes
+    active.
 
     Where friction alone could separate the surfaces, a_nn < mu |a_nt|, a contact may stick although it would open
     without its impulses. If `stays`, a contact that sticks then remains closed, with u_t = `limited_slip`, as long as
@@ -138,9 +139,9 @@ def lawful(row: Row, V: FloatArray, lam0: float, beta0: float, stays: bool) -> t
     """
     ann, ant, att, mu = row.a_nn, row.a_nt, row.a_tt, row.friction
     short = normal_rate(row, V) - row.target
-    if row.wake < np.inf:
-        if short + row.target - lam0 * ann - beta0 * ant < row.wake:
-            row.wake = np.inf
+    if row.activation < np.inf:
+        if short + row.target - lam0 * ann - beta0 * ant < row.activation:
+            row.activation = np.inf
         else:
             short = np.inf
     if short >= 0.0 and lam0 == 0.0 and beta0 == 0.0:

@@ -67,30 +67,30 @@ def matrix_unjointed(problem: Problem, slope: FloatArray, at: IntArray, kind: In
     """W[i, j] = velocity along unknown i by a unit impulse of unknown j, for N unknowns of contacts `at`, of `kind` 0
     (normal, with its slip) or 1 (tangential). slope (m,): beta / lam of slipping contacts."""
     ROWS, IM, II, _, _, _ = problem
-    J = np.empty((N, 8))  # rows: n or t with arms a, b; then the columns' direction and arms
+    ARMS = np.empty((N, 8))  # rows: n or t with arms a, b; then the columns' direction and arms
     for i in range(N):
         c = at[i]
         row, nx, ny = ROWS[c], ROWS[c].nx, ROWS[c].ny
         if kind[i] == 0:
-            J[i, 0], J[i, 1], J[i, 2], J[i, 3] = nx, ny, row.arm_na, row.arm_nb
-            J[i, 4], J[i, 6] = nx - slope[c] * ny, row.arm_na + slope[c] * row.arm_ta
-            J[i, 5], J[i, 7] = ny + slope[c] * nx, row.arm_nb + slope[c] * row.arm_tb
+            ARMS[i, 0], ARMS[i, 1], ARMS[i, 2], ARMS[i, 3] = nx, ny, row.arm_na, row.arm_nb
+            ARMS[i, 4], ARMS[i, 6] = nx - slope[c] * ny, row.arm_na + slope[c] * row.arm_ta
+            ARMS[i, 5], ARMS[i, 7] = ny + slope[c] * nx, row.arm_nb + slope[c] * row.arm_tb
         else:
-            J[i, 0], J[i, 1], J[i, 2], J[i, 3] = -ny, nx, row.arm_ta, row.arm_tb
+            ARMS[i, 0], ARMS[i, 1], ARMS[i, 2], ARMS[i, 3] = -ny, nx, row.arm_ta, row.arm_tb
             for k in range(4):
-                J[i, 4 + k] = J[i, k]
+                ARMS[i, 4 + k] = ARMS[i, k]
     for i in range(N):
         for j in range(N):
             a, b, w = ROWS[at[i]].a, ROWS[at[i]].b, 0.0
-            along = J[i, 0] * J[j, 4] + J[i, 1] * J[j, 5]
+            along = ARMS[i, 0] * ARMS[j, 4] + ARMS[i, 1] * ARMS[j, 5]
             if a == ROWS[at[j]].a:
-                w += IM[a] * along + II[a] * J[i, 2] * J[j, 6]
+                w += IM[a] * along + II[a] * ARMS[i, 2] * ARMS[j, 6]
             elif a == ROWS[at[j]].b:
-                w -= IM[a] * along + II[a] * J[i, 2] * J[j, 7]
+                w -= IM[a] * along + II[a] * ARMS[i, 2] * ARMS[j, 7]
             if b == ROWS[at[j]].b:
-                w += IM[b] * along + II[b] * J[i, 3] * J[j, 7]
+                w += IM[b] * along + II[b] * ARMS[i, 3] * ARMS[j, 7]
             elif b == ROWS[at[j]].a:
-                w -= IM[b] * along + II[b] * J[i, 3] * J[j, 6]
+                w -= IM[b] * along + II[b] * ARMS[i, 3] * ARMS[j, 6]
             W[i, j] = w
         c = at[i]
         W[i, i] += 1.0 / (PROXIMAL_DENSE * (ROWS[c].k_n if kind[i] == 0 else ROWS[c].k_t))

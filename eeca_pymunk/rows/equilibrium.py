@@ -27,6 +27,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, zeros
+from ..geometry.flight import fastest_point
 from ..model.contacts import EDGE as EDGE_KIND
 from ..model.contacts import ROW, Edge, Problem
 from ..model.parameters.impulses import PROXIMAL_STATICS
@@ -38,25 +39,7 @@ from .inplace import copy
 
 
 @nonallocating
-def point_speed(vx: float, vy: float, spin: float, extent: float) -> float:
-    """Bound of the speed (length/time) of the points of a body, which are within `extent` of its centre of mass."""
-    return abs(vx) + abs(vy) + extent * abs(spin)
-
-
-@nonallocating
-def fastest_point(V: FloatArray, EXTENT: FloatArray, n: int) -> float:
-    """Bound of the speed of all points of n bodies with velocities V (k, 3); inf if one is not finite."""
-    found = 0.0
-    for i in range(n):
-        one = point_speed(V[i, 0], V[i, 1], V[i, 2], EXTENT[i])
-        if not one < np.inf:
-            return np.inf
-        found = max(found, one)
-    return found
-
-
-@nonallocating
-def moves_into_cones(EDGE: Rows[Edge], K: int) -> bool:
+def move_into_cones(EDGE: Rows[Edge], K: int) -> bool:
     """Set x to x + dx, the balancing impulses nearest to the guess, and return whether all are inside the cones. If
     not, move them inside, and set multipliers s from which the iteration starts."""
     mean, least = 0.0, np.inf
@@ -232,7 +215,7 @@ def equilibrium(
         newton_step(edges, EDGE, factor, LEFT, Y, f, V, DY, 0.0, False)
         if unbounded:
             # Without regard to the cones, the nearest balancing impulses need one linear solve: often they are inside.
-            unbounded = moves_into_cones(EDGE, K)
+            unbounded = move_into_cones(EDGE, K)
             for i in range(n if unbounded else 0):  # all but round-off is left in motions that no contact can end
                 for c in range(3):
                     Y[i, c] += DY[i, c]

@@ -28,9 +28,9 @@ def work_of_change(size: int) -> float:
 @kernel
 def start_homotopy(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: bool, discs: bool) -> Tableau:
     """The homotopy's start at impulses L (m + n, 2) of m contacts and n bounded rows with velocities V (k, 3); or, if
-    `anew`, without impulses of contacts, and with rows at a bound. Contacts that are inactive (`Row.wake`) or left out
-    (`Columns.LEFT_OUT`), and rows that joints hold take no part: their impulses stay, and so do those of discs, unless
-    these are replaced by squares (`discs`)."""
+    `anew`, without impulses of contacts, and with rows at a bound. Contacts that are inactive (`Row.activation`) or
+    left out (`Columns.LEFT_OUT`), and rows that joints hold take no part: their impulses stay, and so do those of
+    discs, unless these are replaced by squares (`discs`)."""
     ROWS, C, B, m = problem
     n = B.NUMBER[0]
     size = 2 * m + n
@@ -49,7 +49,7 @@ def start_homotopy(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: 
             T[k, r], T[r, k] = T[r, k], T[k, r]
     C.WORK[0] += HOMOTOPY_WORK
     for i in range(m):
-        if C.LEFT_OUT[i] == 0 and not ROWS[i].wake < np.inf:
+        if C.LEFT_OUT[i] == 0 and not ROWS[i].activation < np.inf:
             tableau.MODE[i] = OPEN
             T[size, 2 * i] = normal_rate(ROWS[i], V) - ROWS[i].target
             tableau.TARGET_T[i] = limited_slip(ROWS[i], L[i, 0], L[i, 1])

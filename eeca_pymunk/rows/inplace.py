@@ -1,4 +1,4 @@
-"""Sorting and copying in place: numpy's own functions, compiled, would allocate arrays."""
+"""Sorting, copying and adding in place: numpy's own functions, compiled, would allocate arrays."""
 
 from __future__ import annotations
 
@@ -12,6 +12,13 @@ def copy(TO: FloatArray, FROM: FloatArray) -> None:
     for i in range(TO.shape[0]):
         for k in range(TO.shape[1]):
             TO[i, k] = FROM[i, k]
+
+
+@nonallocating
+def add_multiple(row: FloatArray, other: FloatArray, amount: float) -> None:
+    """row += amount other, over the length of the shorter one."""
+    for i in range(min(len(row), len(other))):
+        row[i] += amount * other[i]
 
 
 @nonallocating

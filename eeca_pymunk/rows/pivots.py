@@ -12,6 +12,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import inlined, kernel, nonallocating
 from .coulomb import OPEN, SLIP, STICK
+from .inplace import add_multiple
 
 ABSENT, INSIDE, BOUND = 0, 4, 5  # states beside OPEN, STICK, SLIP: none; of bounded rows inside of their bounds, at one
 
@@ -80,13 +81,6 @@ def take_pivot(tableau: Tableau, p: int, j: int) -> None:
         add_multiple(T[j], COLUMN[p], amount)
     if BY[p, 2] != 0.0:
         T[j, k] += BY[p, 2] * T[j, k - 1]
-
-
-@nonallocating
-def add_multiple(row: FloatArray, other: FloatArray, amount: float) -> None:
-    """row += amount other."""
-    for i in range(len(row)):
-        row[i] += amount * other[i]
 
 
 @nonallocating

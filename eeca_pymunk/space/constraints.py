@@ -96,8 +96,8 @@ class ConstraintValues(NamedTuple):
     ratchet: tuple[float, float, float] = (0.0, 0.0, 0.0)  # tooth, tooth_phase, notch
 
     @property
-    def bounded(self) -> bool:
-        """Whether its force is bounded."""
+    def finite_force(self) -> bool:
+        """Whether its max_force is finite."""
         return math.isfinite(self.force[0])
 
     @property
@@ -110,12 +110,12 @@ class ConstraintValues(NamedTuple):
     def plan(self) -> tuple[object, ...]:
         """The values on which the plan of its component depends."""
         (ax, ay), (bx, by) = self.anchor_a, self.anchor_b
-        return self.kind, self.bounded, ax != 0.0, ay != 0.0, bx != 0.0, by != 0.0
+        return self.kind, self.finite_force, ax != 0.0, ay != 0.0, bx != 0.0, by != 0.0
 
     @property
     def reach(self) -> tuple[object, ...]:
         """The values that decide whether it can hold bodies immobile (`..joints.pinned`)."""
-        return self.kind, self.bounded, self.anchor_a, self.anchor_b, self.length, self.limits, self.gear
+        return self.kind, self.finite_force, self.anchor_a, self.anchor_b, self.length, self.limits, self.gear
 
     def is_fine(self) -> bool:
         """Whether all values are valid: the rules of `check_constraint`, in a fifth of its time, as programs that drive
@@ -130,7 +130,7 @@ class ConstraintValues(NamedTuple):
     def put(self, memory: bytearray, j: int, a: int, b: int) -> None:
         """Write the values to row j of JOINT, whose memory is given, as EDITED, for bodies in the rows a and b."""
         _ROW.pack_into(
-            memory, j * joints.Joint.TYPE.itemsize, self.kind, a, b, self.bounded, *self.anchor_a, *self.anchor_b,
+            memory, j * joints.Joint.TYPE.itemsize, self.kind, a, b, self.finite_force, *self.anchor_a, *self.anchor_b,
             *self.force, self.length, *self.limits, *self.groove, *self.spring, 0.0, *self.gear, self.rate,
             *self.ratchet, 0, joints.EDITED,
         )  # fmt: skip

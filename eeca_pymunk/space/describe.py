@@ -61,9 +61,9 @@ def _joints(joints: JointRows) -> str:
         ("limits", np.isin(kind, (SLIDE, GROOVE, ROTARY_LIMIT, RATCHET))),
         ("motors", kind == MOTOR),
         ("springs", np.isin(kind, (SPRING, ROTARY_SPRING))),
-        ("limited forces", (joints.joint["bounded"] != 0) & (kind != MOTOR)),
+        ("limited forces", (joints.joint["finite_force"] != 0) & (kind != MOTOR)),
     ]
-    lossy = (joints.joint["bounded"] != 0) | (kind == MOTOR) | (np.isin(kind, (SPRING, ROTARY_SPRING)) & damped)
+    lossy = (joints.joint["finite_force"] != 0) | (kind == MOTOR) | (np.isin(kind, (SPRING, ROTARY_SPRING)) & damped)
     order = "order 4, 2 in contact and at limits" if not lossy.any() else "order 4 where nothing dissipates, else 2"
     if lossy.all():
         order = "order 2"

@@ -13,13 +13,13 @@ import numpy as np
 import pymunk
 
 from ..arrays import FloatArray, IntArray
-from ..compiled.layouts import COUNT, Layout, Plan
+from ..compiled.layouts import ROWS, Layout, Plan
 from ..compiled.records import Rows, packer
 from ..impacts.scene_memory import measure_scene
 from ..layout import EXTRA_COLUMNS, HOOKED_TABLES, STATE_COLUMNS
 from ..model.bodies import Body
 from ..model.shapes import Link, Shape
-from ..model.values import CORNERS, STATIC, TOTALS, Reading, ShapeValues
+from ..model.values import CORNERS, STATIC, TOTALS_KEPT, Reading, ShapeValues
 from ..world_rows import read_space, write_rows
 from .bodies import Bodies
 from .body_states import BodyStates
@@ -123,11 +123,14 @@ def shape_counts(bodies: Bodies, records: ShapeRecords) -> dict[Any, int]:
 def _arrays() -> Plan[Reading]:
     return Plan(
         Reading,
-        ("TOTALS", "BODY", "SHAPE", "LINK", "VERTEX", "ORDER", "SHAPES", "OWNER", "POINT", "PLACED", "MEASURED"), 6,
+        (
+            "TOTALS", "BODY", "SHAPE", "LINK", "VERTEX", "ORDER", "SHAPES", "OWNER", "POINT", "POINT_PLACED",
+            "MEASURED",
+        ), 6,
         ("BODIES", "STATES", "IDS", "EXTRA", "ENDS", "HOOKED"), {},
         {
-            "VERTEX": (COUNT, 4), "POINT": (COUNT, 2), "PLACED": (COUNT, 2), "STATES": (2, COUNT, STATE_COLUMNS),
-            "IDS": (4, COUNT), "EXTRA": (COUNT, EXTRA_COLUMNS), "HOOKED": (HOOKED_TABLES, COUNT, STATE_COLUMNS),
+            "VERTEX": (ROWS, 4), "POINT": (ROWS, 2), "POINT_PLACED": (ROWS, 2), "STATES": (2, ROWS, STATE_COLUMNS),
+            "IDS": (4, ROWS), "EXTRA": (ROWS, EXTRA_COLUMNS), "HOOKED": (HOOKED_TABLES, ROWS, STATE_COLUMNS),
         },
     )  # fmt: skip
 
@@ -157,8 +160,9 @@ class Packed:
         moving, v = N - bodies.VALUES["kind"].tolist().count(STATIC), len(points) // _POINT
         self._layout = layout = Layout(_arrays()) if past is None else past._layout
         counts = {
-            "TOTALS": TOTALS, "MEASURED": 1, "BODY": moving + 1, "SHAPE": k, "LINK": k, "VERTEX": v, "ORDER": k + N + 2,
-            "BODIES": N, "SHAPES": k, "OWNER": k, "POINT": v, "PLACED": v, "STATES": N, "IDS": N, "EXTRA": N,
+            "TOTALS": TOTALS_KEPT, "MEASURED": 1, "BODY": moving + 1, "SHAPE": k, "LINK": k, "VERTEX": v,
+            "ORDER": k + N + 2, "BODIES": N, "SHAPES": k, "OWNER": k, "POINT": v, "POINT_PLACED": v, "STATES": N,
+            "IDS": N, "EXTRA": N,
             "ENDS": len(states.ENDS), "HOOKED": N,
         }  # fmt: skip
         self.table = layout.lay(

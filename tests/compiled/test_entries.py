@@ -139,7 +139,7 @@ def test_a_layout_lays_what_was_replaced_anew() -> None:
     first = layout.lay({"TOTALS": 3})
     words = None if isinstance(first, Reading) else first.words.tolist()
     other = np.zeros((5, 2))
-    assert reading_of(replaced(first, Reading, "PLACED", other)).PLACED is other
+    assert reading_of(replaced(first, Reading, "POINT_PLACED", other)).POINT_PLACED is other
     again = layout.lay({"TOTALS": 3})
-    assert reading_of(again).PLACED is plan.constant["PLACED"]
+    assert reading_of(again).POINT_PLACED is plan.constant["POINT_PLACED"]
     assert words is None or again.words.tolist() == words

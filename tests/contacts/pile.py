@@ -10,8 +10,8 @@ import numpy as np
 from eeca_pymunk.compiled import table_of
 from eeca_pymunk.compiled.records import columns, rows
 from eeca_pymunk.contacts.correction import correct_penetration
+from eeca_pymunk.contacts.forces import copy_recent
 from eeca_pymunk.contacts.interval import make_contacts, step_island
-from eeca_pymunk.contacts.memory import copy_recent
 from eeca_pymunk.contacts.works import external_work
 from eeca_pymunk.geometry.corners import thin as is_thin
 from eeca_pymunk.impacts.scene import EventLoop

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from eeca_pymunk.compiled.records import row, rows
-from eeca_pymunk.contacts.memory import copy_recent, find, row_for
+from eeca_pymunk.contacts.forces import copy_recent, find, row_for
 from eeca_pymunk.model.contacts import Force
 from eeca_pymunk.model.step import Count
 

@@ -31,7 +31,7 @@ def wedged(seed: int, unit: float) -> tuple[Problem, np.ndarray]:
         turn, x = (np.pi, ends[0, i]) if i < 2 else (tilt, ends[1, i - 2])
         row = ROWS[i]
         row.a, row.b, row.nx, row.ny = 0, 2 if i < 2 else 1, np.sin(turn), np.cos(turn)
-        row.friction, row.wake = MU, np.inf
+        row.friction, row.activation = MU, np.inf
         point = (x * unit, 0.0) if i < 2 else (x * np.cos(tilt) * unit, (0.6 - x * np.sin(tilt)) * unit)
         place_row(row, *point, pose, inverse, moments)
     V = rng.normal(size=(3, 3)) * (unit, unit, 1.0)

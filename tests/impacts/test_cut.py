@@ -15,7 +15,7 @@ from eeca_pymunk.contacts.interval import step_island
 from eeca_pymunk.geometry.flight import move_to
 from eeca_pymunk.impacts.begin import begin, energy_of
 from eeca_pymunk.impacts.intervals import cut_short, start_islands
-from eeca_pymunk.islands.accounting import end_interval
+from eeca_pymunk.islands.accounting import end_rest_or_interval
 from eeca_pymunk.islands.intervals import begin_interval
 from eeca_pymunk.model.scene import Scene
 
@@ -56,7 +56,7 @@ def test_an_island_beyond_the_cut_closes_its_ledger(begun: bool, beyond: int, mo
     if begun:
         move_to(A.BODY, beyond, 0.4 * dt)
     else:
-        end_interval(A, root, 0.4 * dt)
+        end_rest_or_interval(A, root, 0.4 * dt)
         begin_interval(A, root, 0.4 * dt)
         move_to(A.BODY, beyond, 0.5 * dt)
     cut_short(A, J, 0, 0.3 * dt)

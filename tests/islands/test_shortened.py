@@ -10,7 +10,7 @@ import eeca_pymunk as ep
 from eeca_pymunk.compiled.records import rows
 from eeca_pymunk.geometry.flight import move_to
 from eeca_pymunk.islands import shortened
-from eeca_pymunk.islands.shortened import losses, repay, scale_impulses
+from eeca_pymunk.islands.shortened import losses_up_to, repay, scale_impulses
 from eeca_pymunk.model.bodies import Body, Member, Next
 from eeca_pymunk.model.contacts import Pair, Pushed
 from eeca_pymunk.model.shapes import Link
@@ -88,7 +88,7 @@ def test_scaled_impulses_give_no_energy(size: float, t: float) -> None:
     move_to(body, 0, t)
     assert pushed[1].normal == g * h
     assert body[1].ay == 0.0
-    assert sum(losses(scene, 0, t)) == 0.0
+    assert sum(losses_up_to(scene, 0, t)) == 0.0
     assert 0.5 * body[0].vy ** 2 + g * body[0].y == pytest.approx(0.5 * v * v, rel=1e-12)
     if t < 0.4:
         assert body[0].vy == pytest.approx(v - g * t, abs=1e-12 * size)

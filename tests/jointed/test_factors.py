@@ -47,7 +47,7 @@ def solved(monkeypatch: pytest.MonkeyPatch, before: Any = None, left: float = 0.
     for joint in J.JOINT:
         joint.touched, joint.last_step = 0, 0.0  # impulses and accelerations of a step of 1e-9 s are no guess
         joint.led[:] = 0.0
-    J.MATRIX[:], J.PROGRESS.kept = left, int(left > 0.0)
+    J.MATRIX[:], J.PROGRESS.factors_of = left, int(left > 0.0)
     with monkeypatch.context() as patched:
         patched.setattr(component, "take_step", moved)
         patched.setattr(solve, "factorise", factored)
@@ -57,7 +57,7 @@ def solved(monkeypatch: pytest.MonkeyPatch, before: Any = None, left: float = 0.
 
 def test_motions_of_an_interval_share_their_factors(monkeypatch: pytest.MonkeyPatch) -> None:
     def forget(J: Any) -> None:
-        J.PROGRESS.kept = 0
+        J.PROGRESS.factors_of = 0
 
     few, motions, V = solved(monkeypatch)
     many, same, W = solved(monkeypatch, forget)

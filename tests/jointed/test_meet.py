@@ -17,7 +17,7 @@ from eeca_pymunk.jointed.ends import carry, shorten
 from eeca_pymunk.jointed.meet import end_by, locate_impact
 from eeca_pymunk.jointed.paths import passes_through
 from eeca_pymunk.jointed.solve import try_jointed
-from eeca_pymunk.model.joint_steps import LINEAR
+from eeca_pymunk.model.joint_steps import UNHELD
 from eeca_pymunk.model.joints import Joints
 from eeca_pymunk.model.scene import Scene
 
@@ -56,7 +56,7 @@ def test_an_interval_that_would_lead_through_a_wall_ends_before(h: float) -> Non
     """Its body stays on its side, with the energy that it had, until the instant that it is brought to."""
     A, J = falling(2.0 * h, 1.0)
     end_by(A, J, 0, h)
-    assert (J.TALLY.worst == LINEAR) == (h > 0.01)
+    assert (J.TALLY.worst == UNHELD) == (h > 0.01)
     body = A.BODY[0]
     assert (body.since, A.MEMBER[0].open) == (h, 0)
     assert RADIUS <= body.y <= 1.0

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from eeca_pymunk.arrays import FloatArray
-from eeca_pymunk.joints.foresight import DEPTH, PARTS, WEIGHTS
+from eeca_pymunk.joints.foresight import DEPTH, SUZUKI_PARTS, WEIGHTS
 from eeca_pymunk.joints.ladder import SUZUKI
 from scenes import linkages
 
@@ -29,7 +29,7 @@ def functions(parts: int) -> FloatArray:
 def test_weights_foretell_what_they_are_made_for() -> None:
     values = functions(30)
     for k in range(DEPTH, 30):
-        foretold = values[:, k - DEPTH : k][:, ::-1] @ WEIGHTS[k % PARTS]
+        foretold = values[:, k - DEPTH : k][:, ::-1] @ WEIGHTS[k % SUZUKI_PARTS]
         np.testing.assert_allclose(foretold, values[:, k], rtol=0.0, atol=1e-12 * np.abs(values).max())
 
 
@@ -44,9 +44,9 @@ def test_a_step_of_another_length_begins_anew(longer: float) -> None:
         stepper.step(dt * (1.0 + (longer if k == 6 else 0.0)))
         counts.append(stepper.joints.JOINT[0].known_parts)
         assert error(space) < 1e-13
-    assert counts[0] == PARTS
+    assert counts[0] == SUZUKI_PARTS
     assert min(counts[1:6]) >= DEPTH
-    assert counts[6:8] == [PARTS, PARTS]
+    assert counts[6:8] == [SUZUKI_PARTS, SUZUKI_PARTS]
     first = next(iter(space.bodies))
     first.velocity = first.velocity * 1.0001
     stepper.step(dt)

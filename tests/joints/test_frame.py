@@ -15,7 +15,7 @@ import pymunk
 import pytest
 
 import eeca_pymunk as ep
-from eeca_pymunk.model.joint_steps import LINEAR
+from eeca_pymunk.model.joint_steps import UNHELD
 
 from ..programs.joined import HOLDS, apart, join, reach
 from .test_pairs import drawn
@@ -110,7 +110,7 @@ def test_the_work_of_a_support_is_the_same_by_impulses_and_by_the_balance_of_mom
     for _ in range(5):
         assert stepper.step(1 / 60).converged
         assert stepper.event_loop is not None
-        part = stepper.event_loop.joints.PART_LEDGER
+        part = stepper.event_loop.joints.RUNG_LEDGER
         assert abs(part.supports) > 1e-3
         assert part.frame_work == pytest.approx(part.supports, rel=1e-11)
 
@@ -253,7 +253,7 @@ def test_supports_that_tear_joints_apart_do_all_the_work() -> None:
         before = ep.measure(space).kinetic
         report = stepper.step(0.1)
         assert stepper.event_loop is not None
-        linear += stepper.event_loop.joints.TALLY.worst == LINEAR
+        linear += stepper.event_loop.joints.TALLY.worst == UNHELD
         losses += ep.measure(space).kinetic < before
         assert report.ledger.restitution <= 1e-9 * before
     assert min(linear, losses) >= 3

@@ -7,7 +7,7 @@ import pymunk
 import pytest
 
 import eeca_pymunk as ep
-from eeca_pymunk.model.joint_steps import EXACT, LINEAR
+from eeca_pymunk.model.joint_steps import EXACT, UNHELD
 from eeca_pymunk.model.joints import CONDENSED
 from scenes.linkages import body, empty
 
@@ -70,7 +70,7 @@ def test_ledger_of_a_mixture(seed: int) -> None:
         lowest, before, worst = min(lowest, lost), after, max(worst, stepper.status)
     assert all(np.isfinite((*b.position, b.angle, *b.velocity, b.angular_velocity)).all() for b in stepper.space.bodies)
     assert lowest >= -1e-12 * scale
-    assert abs(stepper.unexplained()) < (1e-11 if worst < LINEAR else 1e-9) * scale
+    assert abs(stepper.unexplained()) < (1e-11 if worst < UNHELD else 1e-9) * scale
 
 
 def test_pins_of_a_cloth_give_way_at_their_bounds() -> None:

@@ -15,7 +15,7 @@ from eeca_pymunk.compiled.records import kind_of, zeros
 from eeca_pymunk.joints.ordering import order_unknowns
 from eeca_pymunk.joints.workspace import workspace
 from eeca_pymunk.model.joint_steps import STEP, STIFF_NONE, STIFF_TURNS, BodyStep, JointStep
-from eeca_pymunk.model.joints import NOTHING, STEPS
+from eeca_pymunk.model.joints import STEPS, UNUSED
 from eeca_pymunk.newton.angles import shared_turn
 from eeca_pymunk.newton.banded import back_banded, factor_banded
 from eeca_pymunk.newton.condensed import factor, substitute
@@ -288,7 +288,7 @@ def linked() -> pymunk.Space:
 
 def test_all_systems_step_an_island_alike() -> None:
     ends = []
-    for dual_for in (NOTHING, STEPS):
+    for dual_for in (UNUSED, STEPS):
         space = linked()
         stepper = Driven(space)
         assert stepper.joints.COMPONENT[0].dual_for == STEPS

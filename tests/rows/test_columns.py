@@ -96,12 +96,12 @@ def test_an_inactive_contact_stays_so_whatever_its_own_impulses_are(beta: float)
     )  # fmt: skip
     block.solve(0.0, 1.0)
     for problem in problems(block):
-        problem.ROWS[0].wake = -1.0
+        problem.ROWS[0].activation = -1.0
         assert problem.ROWS[0].a_nt != 0.0
         L, V = np.array([[1.0, beta]]), block.velocity.copy()
         push(problem, L, 1.0, V)
         sweep(problem, L, V)
-        assert problem.ROWS[0].wake == -1.0
+        assert problem.ROWS[0].activation == -1.0
         assert (L == 0.0).all()
         assert pytest.approx(block.velocity, abs=1e-15) == V
 

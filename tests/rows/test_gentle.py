@@ -32,7 +32,7 @@ def corner(unit: float) -> tuple[Problem, Block]:
     block.wall(0, (-1.0, 0.0), 0.0)
     block.wall(0, (0.0, -1.0), 0.0)
     block.solve(0.0, 1.0)
-    block.rows["target"], block.rows["wake"] = 0.0, np.inf
+    block.rows["target"], block.rows["activation"] = 0.0, np.inf
     return Problem(block.rows, block.im, block.ii, pose, 1, 2), block
 
 
@@ -71,7 +71,7 @@ def test_walls_that_approach_each_other_get_gentle_impulses() -> None:
     block = Block(pose, velocity, np.array([1.0, 0.0, 0.0]), np.zeros(3))
     block.contacts += [(0, 1, -1.0, 0.0, 0.0, 0.0), (0, 2, 1.0, 0.0, 0.0, 0.0)]
     block.solve(0.0, 0.0)
-    block.rows["target"], block.rows["wake"] = 0.0, np.inf
+    block.rows["target"], block.rows["activation"] = 0.0, np.inf
     problem = Problem(block.rows, block.im, block.ii, pose, 1, 2)
     L, V = np.full((2, 2), np.inf), velocity.copy()
     unwedge(problem, L, V, velocity.copy(), 1e-13, 1.0, rows(Solved, 1)[0])
@@ -83,7 +83,7 @@ def test_walls_that_approach_each_other_get_gentle_impulses() -> None:
 def test_an_inactive_contact_breaks_its_law_beyond_the_velocity_that_activates_it() -> None:
     """A contact that is active from -1 on, at a speed of -3: broken by 2, and solved once it is active."""
     problem, block = corner(1.0)
-    block.rows["wake"][0] = -1.0
+    block.rows["activation"][0] = -1.0
     L, V = np.zeros((2, 2)), block.velocity.copy()
     columns = as_columns(problem)
     assert breach(columns, L, V) == pytest.approx(2.0, rel=1e-15)

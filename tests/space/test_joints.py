@@ -792,7 +792,7 @@ def test_rows_have_what_constraints_say_field_by_field(kind: str) -> None:
     rows = JointRows(space, {a: 0, b: 1}, 3, None)
     row = rows.joint[rows.row[joint]]
     assert row.body.tolist() == [0, 1]
-    assert (row.bounded, row.side, row.touched) == (1, 0, 1)
+    assert (row.finite_force, row.side, row.touched) == (1, 0, 1)
     assert (row.max_force, row.error_bias, row.max_bias) == (7.0, 0.25, 3.0)
     for ours, theirs in {
         "length": "distance", "stiffness": "stiffness", "damping": "damping", "ratio": "ratio", "rate": "rate",

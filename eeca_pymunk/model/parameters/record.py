@@ -12,7 +12,8 @@ class Parameter(NamedTuple):
 
     kind: "round-off" (a multiple of the error of floating-point arithmetic), "accuracy" (a chosen tolerance), "work" (a
     budget or crossover, which changes costs, and results within tolerances), "heuristic" (changes the motion).
-    scale: the quantity that the value is relative to, or its unit. |a| is `Step.pulled`, the size of a shape its
+    scale: the quantity that the value is relative to, or its unit. |a| is `Step.pulled`, the largest acceleration of a
+    body, of the contacts of an island the largest one of its points (`..contacts`); the size of a shape its
     `Shape.extent`, that of a component the length that `..joints` measures, a width `geometry.widths.half_width`.
     effect: what the parameter decides.
     """

@@ -7,8 +7,8 @@ impulses.
 
 A pair has the geometry now instead if it moves too far in half an interval (an impact at high speed), hardly moves, or
 has another number of contact points at the middle. How far it moves is measured in the frame of a wall that turns
-(`turning.py`) if it has one. Arms are then those now too. In a free island they must be those at the middle, for its
-angular momentum: there the points of the pair are displaced by the mean of the displacements of its two bodies.
+(`turning_walls.py`) if it has one. Arms are then those now too. In a free island they must be those at the middle, for
+its angular momentum: there the points of the pair are displaced by the mean of the displacements of its two bodies.
 """
 
 from __future__ import annotations
@@ -18,14 +18,15 @@ from ..compiled import kernel
 from ..compiled.records import empty
 from ..geometry.manifold import manifold
 from ..geometry.sides import note_side
+from ..geometry.widths import smaller
 from ..model.contacts import CONTACT_POINT
 from ..model.islands import Island, IslandContacts
 from ..model.parameters.intervals import INTERVAL_WAY, MANIFOLD_ROUND_OFF, MIDPOINT_SAME
 from ..model.scene import Scene
 from ..pairs.rules import law
 from ..rows.build import place_row
-from .memory import key_of
-from .turning import follow_rotation, spin_of_wall, way_about
+from .forces import key_of
+from .turning_walls import follow_rotation, spin_of_wall, way_about
 
 
 @kernel
@@ -45,7 +46,7 @@ def gather_contacts(A: Scene, isle: Island, contacts: IslandContacts, REACH: Flo
     m, half, MIDDLE = 0, 0.5 * h, isle.POSE + 0.5 * h * isle.V
     for c in range(len(PAIRS)):
         s, r, a, b = PAIRS[c, 0], PAIRS[c, 1], PAIRS[c, 2], PAIRS[c, 3]
-        small = min(SHAPE[s].extent, SHAPE[r].extent)
+        small = smaller(A, s, r)
         reach = REACH[a] + REACH[b]
         count = manifold(A, s, r, POSE, a, b, reach, MANIFOLD_ROUND_OFF * small, NOW)
         if count == 0:

@@ -1,6 +1,6 @@
 """Contacts of bodies with a wall, a body without mobility, that turns with spin w: by w h in an interval h.
 
-Rows have the geometry of the middle of the interval (`geometry.py`). With it a body that the wall carries along, which
+Rows have the geometry of the middle of the interval (`gathering.py`). With it a body that the wall carries along, which
 has no velocity in the wall's frame, has the relative velocity -c_0 at the start and c_1 at the end of the interval.
 Along the normal both are about -w^2 h (x.n)/2, with x from body a to body b; likewise along the tangent.
 
