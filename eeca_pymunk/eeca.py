@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from .closures.time_of_impact import TimeOfImpact
 from .impacts.taking_over import Kept
-from .reentry import BUSY
+from .reentry import CALLING
 from .runs import RunningStepper
 from .saved import Saved
 from .space.private.spaces import handlers
@@ -48,7 +48,7 @@ class EECA(RunningStepper):
 
     def __getstate__(self) -> dict[str, object]:
         known = bool(handlers(self.space)) if self._world is None else self.event_loop is not None
-        if known and self.space not in BUSY:
+        if known and self.space not in CALLING:
             with suppress(ValueError):  # which the next step raises
                 # What the program has changed since the last step, and what handlers have rejected, which pymunk's
                 # copies lack, so that the copy has it, too.

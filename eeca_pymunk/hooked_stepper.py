@@ -10,7 +10,7 @@ from .energy.ledger import BOOK_AFTER, BOOK_DAMPING
 from .layout import WRITTEN
 from .model.step import ENERGY, EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES
 from .packed_space import TOO_FAR, PackedSpace
-from .reentry import BUSY
+from .reentry import FunctionsCalled
 from .report import Details, Outcome, StepReport
 from .space.joints import JointRows
 from .space.sleeping import Sleep
@@ -65,11 +65,8 @@ class HookedStepper(PackedSpace):
 
     def _hooked_step(self, world: World, dt: float) -> StepReport:
         """A step of a space in which functions of bodies or constraints, or collision handlers, are called."""
-        BUSY.add(self.space)
-        try:
+        with FunctionsCalled(self.space):
             world, report = self._take_hooked(world, dt)
-        finally:
-            BUSY.discard(self.space)
         if world.collisions:
             self._sync.finish_rehearsal(world.rehearsal.left_out)
         elif self.sync or world.hooks.any_body or (world.joints is not None and world.joints.calls_any()):

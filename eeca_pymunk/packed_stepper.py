@@ -27,7 +27,7 @@ from .hooked_stepper import HookedStepper
 from .layout import WRITTEN
 from .model.parameters.rest import WAKE_ALL
 from .model.step import EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES
-from .reentry import BUSY, STEPPING, enter, refuse_within
+from .reentry import CALLING, STEPPING, enter, refuse_within
 from .report import Details, StepReport
 from .space.sleeping import Sleep
 from .space.world import World
@@ -58,7 +58,7 @@ class PackedStepper(HookedStepper):
         del self.space.step
 
     def step(self, dt: float) -> StepReport:
-        if BUSY:
+        if CALLING:
             refuse_within(self.space)
         outermost = enter(self.space)
         try:

@@ -19,6 +19,7 @@ from ..model.contacts import LASTED
 from ..model.parameters.rest import REST_RETRY
 from ..model.scene import Scene
 from ..pairs.rules import checksum, mark_pair
+from .membership import pressed_island
 from .rest import candidate_speed, speed, spins_freely
 
 
@@ -81,9 +82,8 @@ def wake_supported(A: Scene) -> None:
             if root < 0 or MEMBER[root].rest == CHANGED:
                 continue
             for shape in (A.PUSHED_BY[c].a, A.PUSHED_BY[c].b):
-                j = A.LINK[shape].owner
-                other = A.STATE[j].island
-                if A.BODY[j].inv_mass > 0.0 and other >= 0 and MEMBER[other].rest == CHANGED:
+                other = pressed_island(A, c, shape)
+                if other >= 0 and MEMBER[other].rest == CHANGED:
                     MEMBER[root].rest, more = CHANGED, True
 
 

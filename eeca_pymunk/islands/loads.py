@@ -20,7 +20,7 @@ from ..rows.build import place_row
 from ..rows.equilibrium import equilibrium
 from ..rows.sweeps import velocities
 from .local import contact_range, give_places, take_places
-from .membership import members_of
+from .membership import members_of, pressed_island
 from .rest import candidate_speed, spins_freely
 
 
@@ -129,9 +129,7 @@ def remember_forces(A: Scene, c: int) -> None:
 @nonallocating
 def presses_on(A: Scene, c: int, root: int) -> bool:
     """Whether contact c is between an island and a body of another one, of root `root`."""
-    i, j = A.LINK[A.PUSHED_BY[c].a].owner, A.LINK[A.PUSHED_BY[c].b].owner
-    one = A.BODY[i].inv_mass > 0.0 and A.STATE[i].island == root
-    return A.PUSHED_BY[c].root != root and (one or (A.BODY[j].inv_mass > 0.0 and A.STATE[j].island == root))
+    return root in (pressed_island(A, c, A.PUSHED_BY[c].a), pressed_island(A, c, A.PUSHED_BY[c].b))
 
 
 @nonallocating
@@ -139,9 +137,8 @@ def mark_loaded(A: Scene, c: int) -> bool:
     """Mark the islands at rest on which contact c of another one presses; returns whether there are any."""
     found = False
     for shape in (A.PUSHED_BY[c].a, A.PUSHED_BY[c].b):
-        j = A.LINK[shape].owner
-        other = A.STATE[j].island
-        if A.BODY[j].inv_mass > 0.0 and other != A.PUSHED_BY[c].root and other >= 0 and A.MEMBER[other].rest == AT_REST:
+        other = pressed_island(A, c, shape)
+        if other >= 0 and A.MEMBER[other].rest == AT_REST:
             A.MEMBER[other].unverified, found = 1, True
     return found
 

@@ -19,7 +19,7 @@ from ..pairs.rules import mark_pair
 from ..rows.build import normal_rate, tangent_rate
 from ..rows.inplace import sort
 from .candidates import before_end
-from .membership import members_of
+from .membership import members_of, pressed_island
 from .rest import spins_freely
 
 
@@ -193,8 +193,8 @@ def is_last_support(A: Scene, c: int, kept: int) -> bool:
     `loads.renew_support` needs one."""
     a, b, at_rest = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, False
     for shape in (a, b):
-        j = A.LINK[shape].owner
-        at_rest = at_rest or (A.STATE[j].island >= 0 and A.MEMBER[A.STATE[j].island].rest == AT_REST)
+        other = pressed_island(A, c, shape)
+        at_rest = at_rest or (other >= 0 and A.MEMBER[other].rest == AT_REST)
     for k in range(kept if at_rest else 0):
         if A.PUSHED_BY[k].root == ENDED and A.PUSHED_BY[k].a == a and A.PUSHED_BY[k].b == b:
             return False

@@ -69,6 +69,14 @@ def island_size(A: Scene, i: int) -> int:
     return A.MEMBER[A.STATE[i].island].bodies if A.STATE[i].island >= 0 else 0
 
 
+@inlined
+def pressed_island(A: Scene, c: int, shape: int) -> int:
+    """The root of the island on which contact c of another one presses with a shape; -1 if there is none."""
+    j = A.LINK[shape].owner
+    other = A.STATE[j].island
+    return other if A.BODY[j].inv_mass > 0.0 and other != A.PUSHED_BY[c].root else -1
+
+
 @nonallocating
 def largest_island(A: Scene, a: int, b: int) -> int:
     """Number of bodies of the larger of the islands of shapes a and b, 0 for none."""

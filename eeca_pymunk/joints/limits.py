@@ -10,15 +10,18 @@ place on, g reaches the bound at the end of the part, and their work enters the 
 
 A part is solved to the end of the step (`at_end`), or to the instant at which a limit is searched (`at_limit`):
 
-    at_end    a row pulls: it is released                              GOES_ON, to the same instant
-              a limit is passed: it is searched, or lands              GOES_ON, to its instant, or to the end
-              one is left and passed again: held from the start        GOES_ON, to the end
+    at_end    a row pulls: it is released (`release`)                  GOES_ON, to the same instant
+              a limit is passed (`first_bound`): searched, or lands    GOES_ON, to its instant, or to the end
+              one is left and passed again (`hops`): held from the     GOES_ON, to the end
+              start of the part
               none is passed: the part ends (`end_part`)               ENDS, or GOES_ON if time is left
-              one is passed, or passed back, in a step as a `whole`    FAILS
-    at_limit  its gap is not closed yet: the next secant               GOES_ON, to another instant
+              one is passed and passed back (`passed_within`)          GOES_ON, to an instant in between
+              either, in a step as a `whole`                           FAILS
+    at_limit  its gap is not closed yet: the next secant (`seek`)      GOES_ON, to another instant
               another limit is passed before: that is searched first   GOES_ON, to its instant
-              that one is held till then, or there is no work for it   GOES_ON: it stands at once
-              the last solution met it, this one does not              GOES_ON, to the end
+              that one's force acts up to there (`held_till_then`),    GOES_ON: it stands at once
+              or there is no work for its search (`late`)
+              the last solution met it (`foreseen`), this one does not GOES_ON, to the end
               not found after all secants: it lands                    GOES_ON, to the end
               its gap is closed                                        MEETS: `meet_limit`, and the next part
 

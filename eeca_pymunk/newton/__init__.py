@@ -12,9 +12,10 @@ moves bodies by their velocities; `response.py` has the response to impulses, `e
 Symbols: h is the length of a step or of a part of one, v0 and v1 the velocities at its start and end, and x = h v_m = h
 (v0 + v1)/2 the *way* of a body, (length, length, rad). A joint has rows: functions g of the poses, lengths or angles,
 which it keeps at a target; J is a row's discrete gradient over the step, g1 - g0 = J x (`rows`), G = dg1/dx its slope
-at the end (`slopes`). lam is the impulse along a row, J^T lam that on the bodies (`force`, an impulse too). A joint
-*bends* as J turns with the bodies: STIFF = d(J^T lam)/dx at fixed lam, of springs with dlam/dx. M are the masses and
-moments, mobilities their inverses, roots the square roots of mobilities.
+at the end (`slopes`). lam is the impulse along a row, J^T lam that on the bodies (`force`, an impulse too). J turns
+with the bodies, and J^T lam with it: the joint *bends*. STIFF is the derivative of J^T lam by x at fixed lam; for
+springs, whose lam depends on x, the total one. M are the masses and moments, mobilities their inverses, roots the
+square roots of mobilities. Where there is no time, as for POSES and SPEEDS, h is 2, so that x = v0 + v1.
 
 Names of arguments: k a joint of the component, r one of its rows, i a body, c its direction (0 along x, 1 along y, 2
 about its centre of mass). `link`, `hinge`, `local` are the component's COUPLING, HINGE and LOCAL. `what` is solved for:

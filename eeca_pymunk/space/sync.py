@@ -24,7 +24,7 @@ from functools import cached_property, partial
 from typing import TYPE_CHECKING
 from weakref import WeakMethod, ref
 
-from ..reentry import BUSY
+from ..reentry import CALLING
 from .arbiters import ReadTouches, show_contacts
 from .late_shapes import MOST_READ, late_shapes
 from .private import arbiters as private_arbiters
@@ -93,7 +93,7 @@ class Sync:
     def renew(self, read: bool = True) -> None:
         """Make the arbiters of the last EECA step. `read`: whether the program reads them, so that the next step makes
         them too; what else needs them, see `make_arbiters`, costs more than making them."""
-        if self.state != ARBITERS_CURRENT and self.space not in BUSY and self.is_ours():
+        if self.state != ARBITERS_CURRENT and self.space not in CALLING and self.is_ours():
             if self.state == NO_REHEARSAL:
                 go_on = stop_joints(self.space, True)
                 try:
