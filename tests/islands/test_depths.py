@@ -11,7 +11,7 @@ from eeca_pymunk.compiled.records import zeros
 from eeca_pymunk.geometry.gap import gap_at
 from eeca_pymunk.geometry.sides import note_side
 from eeca_pymunk.geometry.widths import depth_limit
-from eeca_pymunk.islands.depths import closes_too_far, deep_at_end, room_of
+from eeca_pymunk.islands.depths import closes_too_far, deep_at_end, closing_allowed
 from eeca_pymunk.model.contacts import ROW
 from eeca_pymunk.model.islands import Island
 from eeca_pymunk.model.parameters.intervals import INTERVAL_RETRY
@@ -88,7 +88,7 @@ def test_contacts_near_the_middle_of_their_shapes_may_close_less(depth: float, p
     assert loop is not None
     gap = -depth * radius
     expected = max(gap, 0.0) + (1.0 if held else part) * depth_limit(loop.scene, 0, 1)
-    assert room_of(loop.scene, 0, 1, gap) == pytest.approx(expected, rel=1e-12)
+    assert closing_allowed(loop.scene, 0, 1, gap) == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
