@@ -12,7 +12,7 @@ import math
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
-from ..model.parameters.detection import CORNER_MEET, SLENDER
+from ..model.parameters.detection import CORNER_MEET, SLENDER, STRAIGHT
 from ..model.shapes import Corner, Link
 
 _SIDES, _MANY = 64, 1 << 16  # pairs whose sides are remembered: of each thin shape that may move; of all, at most
@@ -92,6 +92,8 @@ def note_meeting(LINK: Rows[Link], VERTEX: FloatArray, CORNER: Rows[Corner], s: 
             continue
         scale = sign / (length * size)
         c, z = scale * (ux * vx + uy * vy), scale * (ux * vy - uy * vx)
+        if c > 0.0 and abs(z) <= STRAIGHT:
+            continue  # it lies on s, and would hide the next one
         for turn in range(2):
             row, way = CORNER[4 * s + 2 * e + turn], 1.0 - 2.0 * turn
             if row.other == 0 or before(way * z, c, way * row.sine, row.cosine):

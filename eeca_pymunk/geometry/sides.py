@@ -68,7 +68,8 @@ def side_row(A: Scene, key: int) -> int:
     """Row of a pair in the memory, else a free one for it, if there is any within _PROBES rows, else one to be
     replaced."""
     SIDE, mask = A.SIDE, len(A.SIDE) - 1
-    first = ((key - 1) * _SCATTER >> 3) & mask
+    mixed = (((key - 1) ^ (key - 1 >> 15)) * _SCATTER) & 0xFFFFFFFF
+    first = (mixed ^ mixed >> 13) & mask  # high digits count too: numbers of shapes may be powers of 2
     free = first
     for k in range(_PROBES):
         row = (first + k) & mask

@@ -10,10 +10,22 @@ from ..model.parameters.intervals import INTERVAL_DEPTH, INTERVAL_DEPTH_LEAST, I
 from ..model.scene import Scene
 
 
+@inlined
+def size_of(A: Scene, s: int) -> float:
+    """The extent of a shape, length; infinite for a static one, whose extent is its distance from the origin."""
+    return A.SHAPE[s].extent if A.LINK[s].owner < A.BODY.shape[0] - 1 else math.inf
+
+
+@inlined
+def turns(A: Scene, s: int) -> bool:
+    """Whether shape s moves as its body turns: it is no disk about the centre of mass."""
+    return A.SHAPE[s].extent > A.SHAPE[s].rounding
+
+
 @nonallocating
 def smaller(A: Scene, a: int, b: int) -> float:
-    """The smaller extent of two shapes, length."""
-    return min(A.SHAPE[a].extent, A.SHAPE[b].extent)
+    """The smaller size of two shapes, of which one moves: length."""
+    return min(size_of(A, a), size_of(A, b))
 
 
 @inlined

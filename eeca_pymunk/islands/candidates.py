@@ -10,7 +10,7 @@ from ..compiled.records import Rows
 from ..contacts.forces import shapes_of
 from ..contacts.targets import hardly_bounces
 from ..geometry.flight import fastest, norm
-from ..geometry.widths import smaller
+from ..geometry.widths import smaller, turns
 from ..model.contacts import Row
 from ..model.parameters import intervals
 from ..model.parameters.events import PAIR_LOOKS, RESOLUTION
@@ -131,7 +131,7 @@ def sweeps_of(n: int, t: float) -> int:
 @nonallocating
 def interval_length(A: Scene, found: IntArray, t: float) -> float:
     """Length of an interval from instant t: to the end of the step, or until a normal of the pairs `found` (p, 2) may
-    have rotated by NORMAL_TURN. Normals rotate with polygons and segments, and as circles move around each other. Of
+    have rotated by NORMAL_TURN. Normals rotate with all but centred disks, and as circles move around each other. Of
     more than EXACT_CONTACTS pairs, and once hits make intervals short (`to_end_of_step`), normals do not limit it, as
     each interval costs a solve."""
     BODY, LINK = A.BODY, A.LINK
@@ -143,7 +143,7 @@ def interval_length(A: Scene, found: IntArray, t: float) -> float:
         a, b = found[c, 0], found[c, 1]
         i, j = LINK[a].owner, LINK[b].owner
         for s in (a, b):
-            if LINK[s].vertices > 1:
+            if turns(A, s):
                 rate = max(rate, abs(BODY[LINK[s].owner].spin))
         if LINK[a].vertices == 1 and LINK[b].vertices == 1:
             speed = norm(BODY[j].vx - BODY[i].vx, BODY[j].vy - BODY[i].vy)
@@ -156,11 +156,11 @@ def interval_length(A: Scene, found: IntArray, t: float) -> float:
 @nonallocating
 def way_rate(A: Scene, a: int, b: int, vx: float, vy: float, spin_a: float, spin_b: float) -> float:
     """1/(time in which the bodies of shapes a and b, with relative velocity v and these spins, move relative to each
-    other by INTERVAL_WAY of the size of the smaller one, or one that is not a disk there rotates by that angle)."""
+    other by INTERVAL_WAY of the size of the smaller one, or one that is not a centred disk rotates by that angle)."""
     rate = norm(vx, vy) / smaller(A, a, b)
-    if A.LINK[a].vertices > 1:
+    if turns(A, a):
         rate = max(rate, abs(spin_a))
-    if A.LINK[b].vertices > 1:
+    if turns(A, b):
         rate = max(rate, abs(spin_b))
     return rate / intervals.INTERVAL_WAY
 

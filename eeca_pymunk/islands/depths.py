@@ -13,7 +13,7 @@ from ..contacts.forces import shapes_of
 from ..geometry.flight import norm, opening_rate_at, pose
 from ..geometry.gap import gap_along, gap_at
 from ..geometry.sides import held_side, remembers
-from ..geometry.widths import depth_limit, half_width, smaller
+from ..geometry.widths import depth_limit, half_width, smaller, turns
 from ..model.contacts import Row
 from ..model.islands import Island, IslandContacts
 from ..model.parameters import intervals
@@ -92,11 +92,11 @@ def too_deep(A: Scene, a: int, b: int, gap: float, closing: float) -> float:
 
 @nonallocating
 def turns_corners(A: Scene, isle: Island, END: FloatArray, row: Row, a: int, b: int) -> bool:
-    """Whether shape a or b of a contact has corners and turns by more than NORMAL_TURN until poses END (k, 3): others
-    come near than the contact's points, and these do not move along its row."""
+    """Whether shape a or b of a contact is no centred disk and turns by more than NORMAL_TURN until poses END (k, 3):
+    others come near than the contact's points, and these do not move along its row."""
     for q in (row.a, row.b):
         s = a if A.LINK[a].owner == isle.WHO[q] else b
-        if A.LINK[s].vertices > 1 and abs(END[q, 2] - isle.POSE[q, 2]) > intervals.NORMAL_TURN:
+        if turns(A, s) and abs(END[q, 2] - isle.POSE[q, 2]) > intervals.NORMAL_TURN:
             return True
     return False
 

@@ -17,7 +17,7 @@ from ..compiled import kernel, nonallocating
 from ..contacts.forces import shapes_of
 from ..geometry.flight import fastest, norm
 from ..geometry.sides import pair_of
-from ..geometry.widths import depth_limit, smaller
+from ..geometry.widths import depth_limit, smaller, turns
 from ..islands.candidates import shortest_interval
 from ..islands.depths import closes_too_far, too_deep_at_end
 from ..model.joints import Joints
@@ -70,7 +70,7 @@ def excess_of_body(
     turned = max(abs(turned), _CUBIC * abs(h * (b.spin + V[2]) - 2.0 * turned))
     far = max(norm(x, y), bend) / (INTERVAL_WAY * b.extent)
     for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
-        if A.LINK[s].vertices > 1:
+        if turns(A, s):
             far = max(far, turned / INTERVAL_WAY)
     way = norm(x + h * b.vx, y + h * b.vy) + bend + A.PAR.pulled * h * h + min(turned, math.pi) * b.extent
     return far if far > INTERVAL_RETRY and may_meet_others(A, i, way, t, h, KEY, m) else 0.0
@@ -100,7 +100,7 @@ def within_sagitta(A: Scene, found: IntArray, t: float) -> float:
         small = smaller(A, found[c, 0], found[c, 1])
         for s in (found[c, 0], found[c, 1]):
             wall = A.BODY[A.LINK[s].owner]
-            if wall.inv_mass == 0.0 and A.LINK[s].vertices > 1:
+            if wall.inv_mass == 0.0 and turns(A, s):
                 most = max(most, wall.spin * wall.spin * wall.extent / (8.0 * SAGITTA * small))
     h = A.PAR.dt - t
     return h if most * h * h <= 1.0 else max(1.0 / math.sqrt(most), shortest_interval(A))

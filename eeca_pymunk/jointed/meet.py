@@ -7,6 +7,7 @@ import math
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, zeros
 from ..geometry.gap import gap
+from ..geometry.widths import smaller
 from ..islands.membership import in_large_island, members_of
 from ..islands.rest import speed
 from ..model.islands import MEETING, Meeting
@@ -75,7 +76,7 @@ def begin_meeting(A: Scene, J: Joints, a: int, b: int, t: float, SEARCH: Rows[Me
     S.a, S.b, S.t = a, b, t
     S.roots[0], S.roots[1] = A.STATE[i].island, A.STATE[j].island if A.BODY[j].inv_mass > 0.0 else -1
     S.least, S.latest = instants_between(A, i, j, (S.roots[0], S.roots[1]), t)
-    S.small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
+    S.small = smaller(A, a, b)
     S.start, rate = gap_and_rate(A, J, a, b, S.least, False)
     # Closing by round-off, as after an impact, does not count: an impact would not change it.
     slow = CLOSES * max(speed(A, i), speed(A, j))

@@ -15,7 +15,7 @@ from ..model.parameters.impulses import ON_CONE
 from ..model.parameters.joints import DISC_WORK, SLIP_WORK, SWEEP_ENTRY_WORK, SWEEP_WORK
 from .bounded import FIRST_OF_DISC, bounded_rate, inside_discs, push_row, room_for_rows, sweep_bounded
 from .build import normal_rate, tangent_rate
-from .coulomb import OPEN, STICK, lawful, limited_slip, mode_of
+from .coulomb import OPEN, STICK, activate, lawful, limited_slip, mode_of
 
 
 @inlined
@@ -114,6 +114,8 @@ def sweep_jointed(problem: JointedProblem, L: FloatArray, V: FloatArray) -> floa
     for i in range(m):
         if C.LEFT_OUT[i] != 0:
             continue
+        if ROWS[i].activation < np.inf:
+            activate(ROWS, m, i, V, L)
         lam, beta, slips = lawful(ROWS[i], V, L[i, 0], L[i, 1], True)
         C.WORK[0] += SLIP_WORK if slips else 0.0
         dn, dt = lam - L[i, 0], beta - L[i, 1]

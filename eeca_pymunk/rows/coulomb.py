@@ -127,23 +127,32 @@ def limited_slip(row: Row, lam: float, beta: float) -> float:
     return lossless_slip(row, lam, beta) if limits_slip(row, lam, beta) else 0.0
 
 
+@nonallocating
+def activate(ROWS: Rows[Row], m: int, i: int, V: FloatArray, L: FloatArray) -> None:
+    """Let the inactive contact i (`Row.activation`) become active if it closes faster than its activation velocity
+    without its own impulse; and with it those after it, up to m, of the same two bodies that do, as both corners of a
+    face: if it acted first, they would part."""
+    j = i
+    while j < m and ROWS[j].a == ROWS[i].a and ROWS[j].b == ROWS[i].b:
+        row = ROWS[j]
+        if normal_rate(row, V) - L[j, 0] * row.a_nn - L[j, 1] * row.a_nt < row.activation:
+            row.activation = np.inf
+        elif j == i:
+            return
+        j += 1
+
+
 @inlined
 def lawful(row: Row, V: FloatArray, lam0: float, beta0: float, stays: bool) -> tuple[float, float, bool]:
     """The impulses (lam, beta) of a contact by its law, and whether it slips. All other impulses are given: V (k, 3)
-    are the velocities with these, and with its own (lam0, beta0). An inactive contact (`Row.activation`) becomes
-    active.
+    are the velocities with these, and with its own (lam0, beta0). An inactive contact (`activate`) has none.
 
     Where friction alone could separate the surfaces, a_nn < mu |a_nt|, a contact may stick although it would open
     without its impulses. If `stays`, a contact that sticks then remains closed, with u_t = `limited_slip`, as long as
     its friction is inside the cone.
     """
     ann, ant, att, mu = row.a_nn, row.a_nt, row.a_tt, row.friction
-    short = normal_rate(row, V) - row.target
-    if row.activation < np.inf:
-        if short + row.target - lam0 * ann - beta0 * ant < row.activation:
-            row.activation = np.inf
-        else:
-            short = np.inf
+    short = normal_rate(row, V) - row.target if row.activation == np.inf else np.inf
     if short >= 0.0 and lam0 == 0.0 and beta0 == 0.0:
         return 0.0, 0.0, False
     if mu <= 0.0:

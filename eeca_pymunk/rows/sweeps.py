@@ -3,12 +3,14 @@ of the others fixed; with inverse masses, or the response of jointed components 
 
 from __future__ import annotations
 
+import numpy as np
+
 from ..arrays import FloatArray
 from ..compiled import Choice, nonallocating
 from ..model.contacts import AnyProblem, Problem
 from .build import push_contact
 from .columns import push_jointed, sweep_jointed
-from .coulomb import lawful
+from .coulomb import activate, lawful
 from .inplace import copy
 
 
@@ -18,6 +20,8 @@ def sweep_unjointed(problem: Problem, L: FloatArray, V: FloatArray) -> float:
     ROWS, IM, II, _, _, m = problem
     worst = 0.0
     for i in range(m):
+        if ROWS[i].activation < np.inf:
+            activate(ROWS, m, i, V, L)
         lam, beta, _ = lawful(ROWS[i], V, L[i, 0], L[i, 1], False)
         dn, dt = lam - L[i, 0], beta - L[i, 1]
         if dn == 0.0 and dt == 0.0:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from random import Random
 
 import numpy as np
 import pymunk
@@ -11,9 +12,10 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk.compiled.records import rows
-from eeca_pymunk.geometry.corners import find_corners, thin
-from eeca_pymunk.geometry.sides import corner_of
-from eeca_pymunk.model.shapes import Corner, Link
+from eeca_pymunk.geometry.corners import find_corners, side_rows, thin
+from eeca_pymunk.geometry.sides import corner_of, side_key, side_of, side_row
+from eeca_pymunk.model.shapes import Corner, Link, Shape, Side
+from tests.packed import scene_with
 
 G = 9.81
 
@@ -250,3 +252,46 @@ def test_a_rod_that_a_program_nudges_stays_on_its_side(grows: bool) -> None:
                 walls(space, space.static_body, ((50, 0), (60, 0)))
         stepper.step(1 / 60)
         assert (body.velocity.y == pytest.approx(0.0, abs=1e-9)) == stays
+
+
+@pytest.mark.parametrize("again", ["walls twice", "tiles"])
+def test_walls_that_lie_on_one_another_hide_no_corner(again: str) -> None:
+    """Needles stay in a room whose walls the program has added twice, or in overlapping tiles, as in one of single
+    walls."""
+    for seed in range(4):
+        rng, space, half = Random(seed), pymunk.Space(), 1.5
+        space.gravity = 0.0, -10.0
+        corners = [(-half, -half), (half, -half), (half, half), (-half, half)]
+        walls = list(zip(corners, [*corners[1:], corners[0]], strict=True))
+        for p, q in list(walls):
+            end = q if again == "walls twice" else (0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1]))
+            walls.append((p, end))
+        for p, q in walls:
+            wall = pymunk.Segment(space.static_body, p, q, 0.0)
+            wall.friction = 0.5
+            space.add(wall)
+        needles = []
+        for _ in range(4):
+            body = pymunk.Body(1.0, 0.1)
+            body.position, body.angle = (rng.uniform(-0.6, 0.6), rng.uniform(-0.6, 0.6)), rng.uniform(0.0, 6.0)
+            body.velocity, body.angular_velocity = (rng.uniform(-9.0, 9.0), rng.uniform(-9.0, 9.0)), rng.uniform(-9, 9)
+            needle = pymunk.Segment(body, (-0.5, 0.0), (0.5, 0.0), 0.0)
+            needle.friction = rng.choice([0.0, 0.5])
+            space.add(body, needle)
+            needles.append(needle)
+        stepper = ep.EECA(space)
+        for _ in range(100):
+            stepper.step(1 / 60)
+        ends = [needle.body.local_to_world(end) for needle in needles for end in (needle.a, needle.b)]
+        assert max(max(abs(x), abs(y)) for x, y in ends) < half + 1e-3, seed
+
+
+@pytest.mark.parametrize("shapes", [4095, 4096, 6144, 8192])
+def test_sides_are_remembered_whatever_the_number_of_shapes(shapes: int) -> None:
+    """Keys of pairs are their numbers times that one: of a power of 2, up to seven of eight had been lost."""
+    A = scene_with(SHAPE=rows(Shape, shapes), SIDE=rows(Side, side_rows(shapes - 1, shapes)))
+    for a in range(shapes - 1):
+        key = side_key(A, a, shapes - 1)
+        side = A.SIDE[side_row(A, key)]
+        side.key, side.nx, side.ny = key, 0.0, -1.0
+    assert all(side_of(A, a, shapes - 1) == (0.0, -1.0) for a in range(shapes - 1))

@@ -11,7 +11,7 @@ from eeca_pymunk.compiled.records import zeros
 from eeca_pymunk.geometry.gap import gap_at
 from eeca_pymunk.geometry.sides import note_side
 from eeca_pymunk.geometry.widths import depth_limit
-from eeca_pymunk.islands.depths import closes_too_far, deep_at_end, closing_allowed
+from eeca_pymunk.islands.depths import closes_too_far, closing_allowed, deep_at_end
 from eeca_pymunk.model.contacts import ROW
 from eeca_pymunk.model.islands import Island
 from eeca_pymunk.model.parameters.intervals import INTERVAL_RETRY

@@ -318,3 +318,25 @@ def test_a_wheel_pinned_at_its_middle_at_the_origin_holds_what_it_carries(place:
     for _ in range(10):
         assert stepper.step(0.02).converged
     assert box.position.y == pytest.approx(1.5, abs=1e-9)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.5])
+@pytest.mark.parametrize("feet", [False, True])
+def test_what_lands_flat_does_not_turn(feet: bool, friction: float) -> None:
+    """Both corners of a box without elasticity, or both its feet, meet the floor at once, also in one solve with joints
+    (here one that never acts). The first one alone had stopped it, and turned it at up to 9 rad/s."""
+    for height in (0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2):
+        space = pymunk.Space()
+        space.gravity = 0.0, -10.0
+        floor = pymunk.Segment(space.static_body, (-9.0, 0.0), (9.0, 0.0), 0.0)
+        box, other = pymunk.Body(1.0, 0.1), pymunk.Body(1.0, 0.1)
+        box.position, other.position = (0.0, height), (3.0, 9.0)
+        shapes = [pymunk.Circle(box, 0.1, (x, -0.2)) for x in (-0.3, 0.3)]
+        space.add(floor, box, other, *(shapes if feet else [pymunk.Poly.create_box(box, (0.6, 0.6))]))
+        space.add(pymunk.Circle(other, 0.3), pymunk.SlideJoint(box, other, (0.0, 0.0), (0.0, 0.0), 0.0, 100.0))
+        for shape in space.shapes:
+            shape.friction = friction
+        stepper = ep.EECA(space)
+        for _ in range(30):
+            stepper.step(1 / 60)
+            assert abs(box.angular_velocity) < 1e-6, height  # velocities agree to 1e-6 (AGREE)
