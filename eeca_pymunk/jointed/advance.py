@@ -167,10 +167,13 @@ def separation(row: Row, PLACE: FloatArray) -> tuple[float, float]:
 
 
 @nonallocating
-def join_points(row: Row, along: float, across: float) -> None:
-    """Change the arms of a contact so that its points, whose `separation` this is, become one: the middle, or the point
-    of a disk (arm_n = 0), on which the normal impulse still exerts no torque."""
-    part = 0.0 if row.arm_na == 0.0 else 1.0 if row.arm_nb == 0.0 else 0.5
+def join_points(row: Row, along: float, across: float, of_disks: float) -> None:
+    """Change the arms of a contact so that its points, whose `separation` this is, become one: the middle, or, if one
+    of the shapes is a disk (arm_n = 0), its point, on which the normal impulse still exerts no torque. of_disks: the
+    part of the way that the point on body a goes if both arms are 0."""
+    part = of_disks
+    if row.arm_na != 0.0 or row.arm_nb != 0.0:
+        part = 0.0 if row.arm_na == 0.0 else 1.0 if row.arm_nb == 0.0 else 0.5
     row.arm_na += part * across
     row.arm_ta += part * along
     row.arm_nb -= (1.0 - part) * across
@@ -202,7 +205,7 @@ def align(interval: Interval) -> float:
     for i in range(interval.m):
         along, across, off = points_apart(interval, i)
         worst = max(worst, off)
-        join_points(interval.ROWS[i], along, across)
+        join_points(interval.ROWS[i], along, across, 0.5)
     return worst
 
 
@@ -244,6 +247,6 @@ def advance_aligned(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: B
         if turn > 0 and square > 0.0:
             weight *= -change / square
         for i in range(m):
-            join_points(interval.ROWS[i], weight * OFF[i, 0], weight * OFF[i, 1])
+            join_points(interval.ROWS[i], weight * OFF[i, 0], weight * OFF[i, 1], 0.5)
         copy(BEFORE, OFF)
     return worst

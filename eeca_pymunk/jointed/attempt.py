@@ -21,7 +21,7 @@ from ..model.islands import IslandContacts
 from ..model.joint_steps import FINAL, LONG, SHORT
 from ..model.joints import Joints
 from ..model.parameters.intervals import REACH_ROUND_OFF, UNSOLVED_PART
-from ..model.parameters.joints import COLUMN_CONTACTS, INTERVAL_SHARE, SPACING
+from ..model.parameters.joints import COLUMN_CONTACTS, INTERVAL_SHARE, LOSS_ROUND_OFF, SPACING
 from ..model.scene import Scene
 from ..model.step import CONTACTS
 from ..rows.bounded import room_for_rows
@@ -38,7 +38,7 @@ from .groups import find_groups
 from .iteration import solve_contacts
 from .ledger import has_work_for, work_left
 from .lengths import excess, forced_deeper, too_deep_on_way
-from .losses import slip_of
+from .losses import slip_of, work_error
 from .projection import project_velocities
 from .settling import GIVEN_UP, SOLVED
 
@@ -167,7 +167,9 @@ def take_attempt(A: Scene, J: Joints, tried: Attempt, root: int, MINE: IntArray)
     # Corrected at the end of the interval: within a short one, paths would be steep.
     WHERE, HELD = motion.END.copy(), np.zeros(m)
     if not conserves(ROWS, m):
-        lift_island(A, J, interval, contacts.L, root)
+        lift_island(
+            A, J, interval, contacts.L, root, work_error(interval, contacts.L, tried.slow, tried.pull, LOSS_ROUND_OFF)
+        )
         HELD = project_velocities(A, J, interval, contacts.L, tried.slow + tried.pull * h)
     local.clear_places(A, MINE)
     local.open_interval(A, root, isle, contacts, motion.V, m, t, h)

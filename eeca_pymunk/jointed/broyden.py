@@ -3,9 +3,10 @@
 Columns are linear responses about one motion, without the rotation of joints that press hard. With d the change of all
 impulses between two motions, and e the change of velocities that the columns do not explain,
 
-    Y <- Y + e d^T / (d.d)
+    Y <- Y + e (W d)^T / (d.W d)
 
-for each component with the impulses on it: the smallest change of the columns that explains e. Iterations then converge
+for each component with the impulses on it: the smallest change of the columns that explains e, where W d.d, with W the
+mobilities along the impulses, is an energy, as impulses and angular impulses have no common unit. Iterations converge
 superlinearly without new columns. The update fails if a contact would no longer be moved by its own impulse.
 """
 
@@ -48,12 +49,13 @@ def update_columns(
     SQUARE = np.zeros(len(groups.COMPONENT) + 1)  # d.d of each group; one more, for GROUP -1
     for i in range(m):
         a, b = groups.GROUP[ROWS[i].a] + 1, groups.GROUP[ROWS[i].b] + 1
-        SQUARE[a] += D[i, 0] ** 2 + D[i, 1] ** 2
-        SQUARE[b] += D[i, 0] ** 2 + D[i, 1] ** 2 if b != a else 0.0
+        square = (D[i, 0] ** 2 + D[i, 1] ** 2) * ROWS[i].a_nn
+        SQUARE[a] += square
+        SQUARE[b] += square if b != a else 0.0
     for i in range(n):
         change = B.ROWS[i].now - NOW[i]
         push_row(B, i, -change, ERROR)
-        SQUARE[groups.GROUP[B.BODY[B.AT[i]]] + 1] += change**2
+        SQUARE[groups.GROUP[B.BODY[B.AT[i]]] + 1] += change**2 * B.ROWS[i].a_own
     clear_round_off(interval, ERROR)
     for i in range(m):
         for w in range(C.AT[i], C.AT[i + 1]):
@@ -62,13 +64,13 @@ def update_columns(
             if groups.COMPONENT[groups.GROUP[q]] < 0 or not square > 0.0:
                 continue
             for c in range(3):
-                C.N[w, c] += ERROR[q, c] * D[i, 0] / square
-                C.T[w, c] += ERROR[q, c] * D[i, 1] / square
+                C.N[w, c] += ERROR[q, c] * D[i, 0] * ROWS[i].a_nn / square
+                C.T[w, c] += ERROR[q, c] * D[i, 1] * ROWS[i].a_nn / square
     for i in range(n):
         for w in range(B.AT[i], B.AT[i + 1]):
             square = SQUARE[groups.GROUP[B.BODY[w]] + 1]
             for c in range(3 if square > 0.0 else 0):
-                B.N[w, c] += ERROR[B.BODY[w], c] * (B.ROWS[i].now - NOW[i]) / square
+                B.N[w, c] += ERROR[B.BODY[w], c] * (B.ROWS[i].now - NOW[i]) * B.ROWS[i].a_own / square
     for i in range(m):
         if C.LEFT_OUT[i] == 0 and not is_movable(groups, ROWS[i], column_rate(C, ROWS, i, C.N, False)):
             return False

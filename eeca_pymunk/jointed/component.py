@@ -32,9 +32,11 @@ def step_in_scratch(J: Joints, s: int, h: float, extent: float, untouched: bool)
 
 @inlined
 def size_joints(W: Workspace, extent: float) -> None:
-    """Units of the joints' functions in a component of size `extent`."""
+    """Units of the joints' functions in a component of size `extent`, whose targets are 0: the scratch has those of
+    the component that was stepped last."""
     for k in range(W.joints):
         W.J.HINGE[k].unit = unit_of(W.J.JOINT[W.link[k].joint], extent)
+        W.J.HINGE[k].target[0] = W.J.HINGE[k].target[1] = 0.0
 
 
 @nonallocating

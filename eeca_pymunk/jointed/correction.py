@@ -60,10 +60,12 @@ def fill_at_end(A: Scene, J: Joints, interval: Interval, C: Columns, g: int, ROW
 
 
 @kernel
-def lift_island(A: Scene, J: Joints, interval: Interval, L: FloatArray, root: int) -> None:
-    """Correct penetration at the end of an island's motion under impulses L (m, 2) of its contacts."""
+def lift_island(A: Scene, J: Joints, interval: Interval, L: FloatArray, root: int, error: float) -> None:
+    """Correct penetration at the end of an island's motion under impulses L (m, 2) of its contacts. error: round-off of
+    the energy that these lose (`losses.work_error`)."""
     isle, groups, ROWS, motion, _, m, n, _, _, _ = interval
     loss = lost(interval, L)
+    loss = loss if abs(loss) > error else 0.0
     budget, payable = payment(A, isle, ROWS, L, motion.V, n, m, loss, A.RESTING[root].lost, False, True)
     spent = correct_overlaps(A, J, interval, L, budget)
     for s in groups.JOINTED:
@@ -209,7 +211,10 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, L: FloatArray, bud
         for g in range(n):
             if mark_group(GROUP, g, ONE):
                 keep_centre(D, isle.IM, ONE)
-    round_off = CORRECTION_ROUND_OFF * work_of_forces(np.abs(isle.ACC), isle.IM, isle.II, n, np.abs(D))
+    FORCE = np.abs(isle.ACC)
+    round_off = CORRECTION_ROUND_OFF * work_of_forces(FORCE, isle.IM, isle.II, n, np.abs(D))
+    # The cost is that of differences of places.
+    of_places = CORRECTION_ROUND_OFF * work_of_forces(FORCE, isle.IM, isle.II, n, np.abs(END))
     part = part_within(isle, n, D, budget, size, round_off)
     if lifts_through(A, isle, END, part * D, n, t + h):
         return 0.0
@@ -220,7 +225,7 @@ def correct_overlaps(A: Scene, J: Joints, interval: Interval, L: FloatArray, bud
         spent -= work_of_forces(isle.ACC, isle.IM, isle.II, n, NEW - END)
         gained, square = unturn_groups(NEW, NEW - END, V, isle.IM, isle.II, GROUP, ONE, NONE, TURN)
         spent += gained + square
-        if spent <= budget + round_off * part and math.isfinite(spent):
+        if spent <= budget + round_off * part + of_places and math.isfinite(spent):
             turn_groups(NEW, GROUP, ONE, TURN, V, 0)
             for g in range(len(groups.COMPONENT)):
                 s = groups.COMPONENT[g]

@@ -53,11 +53,14 @@ def mark_edited(A: Scene, J: Joints, STATES: FloatArray, IDS: IntArray) -> None:
 @nonallocating
 def joint_budget(A: Scene, J: Joints, dt: float) -> float:
     """Operations that a step of length dt may spend on joints: STEP_WORK + STEP_WORK_BODY (n - 2 c/3), times `growth`,
-    with n bodies, of which the largest component has c. These count by a third, as what ends a step early is not in
-    this budget: some motions of a component."""
+    with n bodies, of which joints move c of the largest component. These count by a third, as what ends a step early is
+    not in this budget: some motions of a component."""
     largest = 0
     for s in range(J.TALLY.components):
-        largest = max(largest, J.COMPONENT[s].end_body - J.COMPONENT[s].first_body)
+        moved = 0
+        for i in range(J.COMPONENT[s].first_body, J.COMPONENT[s].end_body):
+            moved += 1 if J.JOINED[i].freedoms > 0 else 0
+        largest = max(largest, moved)
     return float((STEP_WORK + STEP_WORK_BODY * (A.BODY.shape[0] - 2.0 / 3.0 * largest)) * growth(A, dt))
 
 

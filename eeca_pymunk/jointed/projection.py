@@ -81,7 +81,8 @@ def stop_closing(A: Scene, J: Joints, interval: Interval, PUSHING: IntArray, fin
     for i in range(pushing):
         KEEP[i] = ROWS[PUSHING[i]]
         along, across = separation(KEEP[i], motion.END)
-        join_points(KEEP[i], along, across)  # which have moved apart
+        # They have moved apart. A body that is fixed is the second one.
+        join_points(KEEP[i], along, across, 0.5 if isle.IM[KEEP[i].b] > 0.0 else 0.0)
     C = make_columns(groups, KEEP, pushing)
     fill_unjointed(groups, C, KEEP, isle.IM, isle.II, pushing)
     HIT = find_hit(groups, KEEP, pushing)

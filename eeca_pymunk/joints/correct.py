@@ -114,8 +114,9 @@ def restore_speeds(W: Workspace) -> None:
 
 @nonallocating
 def release(W: Workspace, what: int) -> bool:
-    """Release the limit that pulls most, lam side > 0; False if none pulls. STEP: by its impulse. SPEEDS: by that of
-    a projection, by more than round-off, and unless it was released in this part of the step already."""
+    """Release the limit that pulls most, lam side > 0, by impulses over the scales of their rows, whose squares are
+    energies; False if none pulls. STEP: by its impulse. SPEEDS: by that of a projection, by more than round-off, and
+    unless it was released in this part of the step already."""
     hinge, link = W.J.HINGE, W.link
     which, most = -1, 0.0
     for k in range(W.joints):
@@ -123,8 +124,9 @@ def release(W: Workspace, what: int) -> bool:
         if side == 0 or link[k].bounded != 0 or (what == SPEEDS and link[k].let_go == side):
             continue
         pull = side * (hinge[k].pushed[last] if what == SPEEDS else hinge[k].lam[last])
-        if pull > max(most, noise(W, k, last) if what == SPEEDS else 0.0):
-            which, most = k, pull
+        weighed = pull / hinge[k].scale[last] if hinge[k].scale[last] > 0.0 else pull
+        if weighed > most and pull > (noise(W, k, last) if what == SPEEDS else 0.0):
+            which, most = k, weighed
     if which >= 0 and what == STEP:
         link[which].let_go = link[which].side
         hinge[which].lam[link[which].rows - 1] = 0.0

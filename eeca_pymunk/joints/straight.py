@@ -152,7 +152,8 @@ def hold_chains(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, spins: 
                 if still[i] < 0 or not straight(X, first, p, LENGTH[p]):
                     continue
                 if still[i] > 0 or kinds[i] != FREE:
-                    found += fix_chain(joint, X, FROM, p, first, spins, kinds)
+                    # Pivots that repeat one another at one point let bodies turn; none of them is singular.
+                    found += 0 if in_one_place(X, first, p) else fix_chain(joint, X, FROM, p, first, spins, kinds)
                     continue
                 q = HEAD[i]
                 while q >= 0:

@@ -166,3 +166,26 @@ def test_what_a_pin_holds_on_a_floor_is_solved_at_once(
     assert max(stepper.works, default=0.0) < 0.05
     for k, body in enumerate(space.bodies):
         assert math.hypot(body.position.x - 2.0 * k, body.position.y - 0.6) <= 1e-10
+
+
+def test_bodies_that_joints_cannot_move_take_no_part_of_the_budget() -> None:
+    """A body on a thousand springs, each to a static body of its own: steps had no work at all, and ended early."""
+    space = pymunk.Space()
+    held = pymunk.Body(1.0, 0.1)
+    held.position = 0.3, 0.0
+    space.add(held, pymunk.Circle(held, 0.05))
+    for i in range(1000):
+        anchor = pymunk.Body(body_type=pymunk.Body.STATIC)
+        anchor.position = pymunk.Vec2d(1.0, 0.0).rotated(2.0 * math.pi * i / 1000)
+        space.add(pymunk.DampedSpring(anchor, held, (0.0, 0.0), (0.0, 0.0), 0.0, 1e-3, 0.0))
+    pair = []
+    for x, v in ((5.0, 3.0), (5.5, 0.0)):
+        body = pymunk.Body(1.0, 0.1)
+        body.position, body.velocity = (x, 0.0), (v, 0.0)
+        space.add(body, pymunk.Circle(body, 0.1))
+        pair.append(body)
+    space.add(pymunk.DampedSpring(*pair, (0.0, 0.0), (0.0, 0.0), 0.2, 5.0, 0.0))
+    stepper = ep.EECA(space)
+    for _ in range(20):
+        assert all(one.name != "solves" for one in stepper.step(1 / 60).unmet)
+    assert 0.5 * (pair[0].position.x + pair[1].position.x) == pytest.approx(5.25 + 1.5 / 3.0, abs=1e-9)

@@ -101,8 +101,8 @@ def test_a_rope_that_is_taut_at_rest_is_solved() -> None:
 
 @pytest.mark.parametrize("unit", [1.0, 1e-14])
 def test_columns_answer_as_the_last_motion_did(unit: float) -> None:
-    """Y' d = Y d + e, Y' x = Y x for x across d: Broyden's update, of two bodies of one component and one that is
-    free. What may be round-off is not fitted."""
+    """Y' d = Y d + e, Y' x = Y x for x across W d: Broyden's update, of two bodies of one component and one that is
+    free. What may be round-off is not taken."""
     rng = np.random.default_rng(1)
     groups = Groups(
         np.array([0, 0, 1]), np.array([0, 2, 3]), np.array([0, 1, 2]), np.array([0, -1]), np.array([0]), np.zeros(2)
@@ -114,7 +114,7 @@ def test_columns_answer_as_the_last_motion_did(unit: float) -> None:
     contacts, bodies = make_contacts(2, 3), np.zeros((3, 3))
     mean, before = unit * rng.normal(size=(2, 3, 3))
     motion = Motion(bodies, mean, bodies, bodies, bodies[:, :2], bodies)
-    contacts.ROWS["a"][:2], contacts.ROWS["b"][:2] = (0, 1), (2, 2)
+    contacts.ROWS["a"][:2], contacts.ROWS["b"][:2], contacts.ROWS["a_nn"][:2] = (0, 1), (2, 2), (1.0, 4.0)
     isle = Island(*[bodies] * 6, np.ones(3), np.ones(3), np.empty((0, 4), np.int64))
     interval = Interval(isle, groups, contacts.ROWS, motion, columns, 2, 3, 0.0, 1.0, True)
     old, new = unit * rng.normal(size=(2, 2, 2))

@@ -200,7 +200,7 @@ def test_elastic_joints_hold_worse_if_they_are_softer_and_more_than_twice_as_far
     """Those that contradict one another are as far apart in an interval of any length."""
     J = SimpleNamespace(
         COMPONENT=zeros(1, kind_of(Component)), COUPLING=zeros(1, kind_of(Coupling)), JOINT=zeros(1, kind_of(Joint)),
-        KEPT=zeros(1, kind_of(Joint)), STEPPED=zeros(1, kind_of(JointLedger)),
+        AT_START=zeros(1, kind_of(Joint)), STEPPED=zeros(1, kind_of(JointLedger)),
     )  # fmt: skip
     J.COMPONENT[0].end_joint = 1
     J.AT_START[0].touched, J.AT_START[0].compliance, J.JOINT[0].compliance = GIVES_WAY, 1e-9, compliance

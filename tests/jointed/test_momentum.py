@@ -254,3 +254,23 @@ def test_an_impulse_acts_at_one_place_of_bodies_that_turn_fast(spin: float) -> N
     for one in (*hinge[0].shapes, *hinge[1].shapes):
         one.filter = pymunk.ShapeFilter(group=1)
     keep(space, 1.0, 1)
+
+
+def test_disks_that_press_on_each_other_in_flight_turn_alike() -> None:
+    """Whatever their order: arms that do not meet in one point, an error of the first order in dt, are divided."""
+    spins = []
+    for order in ((0, 1), (1, 0)):
+        space, disks = pymunk.Space(), []
+        for x, v in ((-0.5, -1.0), (0.5, 1.0)):
+            body = pymunk.Body(1.0, 0.125)
+            body.position, body.velocity = (x, 0.0), (0.0, v)
+            disks.append((body, pymunk.Circle(body, 0.5)))
+        for i in order:
+            space.add(*disks[i])
+        bodies = [body for body, _ in disks]
+        space.add(pymunk.DampedSpring(*bodies, (0.0, 0.0), (0.0, 0.0), 0.2, 20.0, 0.0))
+        stepper = ep.EECA(space)
+        for _ in range(40):
+            stepper.step(1 / 60)
+        spins += [body.angular_velocity for body in bodies]
+    assert spins == pytest.approx([spins[0]] * 4, abs=1e-9)

@@ -391,3 +391,20 @@ def test_what_hangs_on_the_origin_swings_as_elsewhere(x: float) -> None:
     for _ in range(20):
         stepper.step(DT)
     assert [*space.bodies][2].angle > 0.3
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.5])
+def test_a_wheel_on_two_equal_pivots_turns_as_on_one(friction: float) -> None:
+    """By a torque T = 1 for 1 s from 3 rad/s: 3 + T t / I = 5 rad/s."""
+    space = pymunk.Space()
+    wheel = pymunk.Body(2.0, 0.5)
+    wheel.angular_velocity = 3.0
+    rim = pymunk.Circle(wheel, 0.5)
+    rim.friction = friction
+    space.add(wheel, rim, *(pymunk.PivotJoint(space.static_body, wheel, (0.0, 0.0)) for _ in range(2)))
+    stepper = ep.EECA(space)
+    for _ in range(60):
+        wheel.torque = 1.0
+        stepper.step(1 / 60)
+    assert wheel.angular_velocity == pytest.approx(5.0, abs=1e-9)
+    assert wheel.position.length < 1e-12

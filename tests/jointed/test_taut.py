@@ -272,7 +272,7 @@ def test_arms_are_brought_to_one_point() -> None:
         put_arms(ROWS, middle + away, arm_n, arm_t)
     before = arms(ROWS, "arm_na", "arm_ta") + arms(ROWS, "arm_nb", "arm_tb")
     for i in range(4):
-        advance.join_points(ROWS[i], *advance.separation(ROWS[i], END))
+        advance.join_points(ROWS[i], *advance.separation(ROWS[i], END), 0.5)
     a, b = arms(ROWS, "arm_na", "arm_ta"), arms(ROWS, "arm_nb", "arm_tb")
     assert np.abs(END[P, :2] + a - END[Q, :2] - b).max() < 1e-14
     assert np.abs(a + b - before).max() < 1e-14

@@ -142,7 +142,7 @@ def test_errors_are_a_contradiction_if_they_are_in_balance_and_do_not_arise_from
     _, J = two_bodies(gear, gear)
     J.PARTS.left = left
     misfits = iter((end, (start, 0.0, 1.0)))
-    monkeypatch.setattr(ladder, "misfit", lambda W, h: next(misfits))
+    monkeypatch.setattr(ladder, "errors_of", lambda W, h: next(misfits))
     assert ladder.contradicts(workspace(J, 0), STEP) == found
 
 
