@@ -9,6 +9,8 @@ from contextlib import contextmanager
 from dataclasses import fields
 from pathlib import Path
 from typing import Any, ClassVar, TypeAlias, TypeVar
+from zipfile import BadZipFile
+from zlib import error as zlib_error
 
 import numpy as np
 import numpy.typing as npt
@@ -73,7 +75,9 @@ class ArrayFile:
                 parts[part][field] = found.pop(name)
             found |= {name: kind(**parts[name]) for name, kind in cls._PARTS.items()} | {"parameters": parameters}
             return cls(**found)
-        except (KeyError, TypeError, AttributeError, ValueError) as error:
+        except (FileNotFoundError, PermissionError, IsADirectoryError):
+            raise
+        except (KeyError, TypeError, AttributeError, ValueError, EOFError, OSError, BadZipFile, zlib_error) as error:
             raise ValueError(f"{path} is not a file that {cls.__name__}.save wrote ({error})") from error
 
 

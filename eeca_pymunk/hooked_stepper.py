@@ -13,6 +13,7 @@ from .packed_space import TOO_FAR, PackedSpace
 from .reentry import FunctionsCalled
 from .report import Details, Outcome, StepReport
 from .space.joints import JointRows
+from .space.private import spaces as private
 from .space.sleeping import Sleep
 from .space.world import World
 from .unmet import Unmet, of_missed
@@ -106,7 +107,7 @@ class HookedStepper(PackedSpace):
         | change the end: by damping 0, post_solve and separate of handlers, position functions | `_alter_end` |
         | write the states, and call `post_solve` of constraints | `_write_hooked_end` |
         """
-        world = self._start_hooked(world)
+        world, waiting = self._start_hooked(world), private.waiting(self.space)
         half_damping = world.half_damping(dt)
         try:
             if world.joints is not None:
@@ -116,6 +117,9 @@ class HookedStepper(PackedSpace):
                     world.gather()
             if world.hooks.steered:
                 world.set_accelerations(world.hooks.velocity_changes(dt), dt)
+                if self._sleep is not None and self._sleep.woken():
+                    world = self._reread_awoken(world)
+                world.gather_changes()
             if world.collisions:
                 known = self._sleep is None and not self.decisions.laws
                 if (status := world.rehearsal.run(dt, half_damping, self._sync, known)) < 0:
@@ -133,12 +137,14 @@ class HookedStepper(PackedSpace):
             bits, lost = self._alter_end(world, dt) if alters else (world.write_whole(), 0.0)
             if changed or status & FORCES or hooks.any_body or world.joints is not None:
                 world.reset_forces()
+                hooks.push()
             status = status & EVENTS | bits
             self._write_hooked_end(world, dt, status)
             if changed:
                 # Changes by functions count as edits in the next step.
                 world.keep_unaltered()
         except BaseException:
+            private.let_wait(self.space, waiting)  # the step will be repeated, and ask for the same again
             self._undo(world, world.start)
             raise
         return world, self._finish(world, dt, status, outcome, lost)
@@ -148,9 +154,15 @@ class HookedStepper(PackedSpace):
         bits, lost = world.alter_end(world.damping == 0.0)
         if bits < 0:
             self._raise_failure(world, dt, bits)
-        if world.hooks.moved:
-            if not world.hooks.positions(world.state, world.STATES[WRITTEN], dt):
+        hooks, end = world.hooks, world.STATES[WRITTEN]
+        if world.collisions and world.rehearsal.after:
+            hooks.note_forces(end)
+        if hooks.moved:
+            start = world.state.copy()
+            if not hooks.positions(start, end, dt, world.gather, world.state):
+                world.state[:] = start
                 world.bodies.check_finite(world.ended(), TOO_FAR)
+            world.state[:] = start
             bits = world.write_whole()
         return bits, lost
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import sys
+from operator import index
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +18,7 @@ from .recording import Recording
 from .report import StepReport
 from .runs import RunningStepper
 from .space.bodies import ANGLE, ANGULAR_VELOCITY, POSITION, VELOCITY, Bodies, moving
+from .space.edits import clock
 from .space.outlines import Outlines
 from .stepper import Stepper, check_dt
 
@@ -61,6 +63,7 @@ def record(
     Raises:
         ValueError: also if a body that is not static is added during the run; for all others see `Stepper.step`.
     """
+    every, duration, dt = index(every), float(duration), float(dt)
     if every < 1:
         raise ValueError(f"every = {every}: give a whole number >= 1")
     count = step_count(duration, dt)
@@ -135,7 +138,7 @@ class _Moments:
 
     def _read(self) -> None:
         """Find the rows of the recorded bodies in the present space."""
-        self.bodies = Bodies(self.space)
+        self.bodies, self._clock = Bodies(self.space), clock()
         self.present: IntArray = np.array([i for i, b in enumerate(self.kept) if b in self.bodies.row], np.intp)
         self.rows: IntArray = np.array([self.bodies.row[self.kept[i]] for i in self.present], np.intp)
 
@@ -148,7 +151,7 @@ class _Moments:
     def store(self, i: int) -> None:
         """Write the present state of the space as moment i."""
         state = self.bodies.gather()
-        if state is None:
+        if state is None or clock() != self._clock:  # other bodies, or other masses
             self._read()
             state = self.bodies.gather()
             assert state is not None  # read from these very bodies

@@ -61,8 +61,9 @@ def refuse_within(space: pymunk.Space) -> None:
         if STEPPING.get(space, get_ident()) != get_ident():
             raise of_another_thread(space)
         raise RuntimeError(
-            f"step, run or set_state was called for {space} from within its own step, by a collision handler or a "
-            "function of a body or constraint: step it when that step has returned, or in space.add_post_step_callback"
+            f"step, run, get_state or set_state was called for {space} from within its own step, by a collision "
+            "handler or a function of a body or constraint: step it when that step has returned, or in "
+            "space.add_post_step_callback"
         )
 
 

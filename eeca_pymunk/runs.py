@@ -101,8 +101,9 @@ class RunningStepper(PackedStepper):
         If some bodies sleep, the results of earlier steps are left out: paths then agree up to round-off.
 
         Raises:
-            RuntimeError: another thread steps the space.
+            RuntimeError: called by a function within a step, or while another thread steps the space.
         """
+        refuse_within(self.space)
         with Entered(self.space):
             return get_state(self)
 

@@ -95,11 +95,14 @@ def _recall(stepper: RunningStepper, state: IntArray) -> None:
         )
     everyone = _everyone(space)
     N = len(everyone)
+    states = parts.take(np.float64, (N, STATE_COLUMNS))
+    if not np.isfinite(states).all():
+        raise ValueError("this state is not finite: it was taken of bodies with a pose or velocity that is not")
     stepper.wake()
     world = stepper.current()
     at, whole = _rows(world), world.state.copy()
     moves = ~world.bodies.static
-    whole[at] = parts.take(np.float64, (N, STATE_COLUMNS))
+    whole[at] = states
     whole[~moves] = world.state[~moves]
     world.bodies.scatter(whole, unchanged=True)
     stepper.time = float(parts.take(np.float64, (1,))[0])
@@ -203,6 +206,9 @@ def _fingerprint(space: pymunk.Space, loop: EventLoop | None) -> int:
     hashed: list[object] = [type(loop).__name__, None if loop is None else loop.together]
     hashed += [(name, kind.itemsize) for name, kind in sorted(RECORD_TYPES.items())]
     hashed += [body.body_type for body in bodies]
-    hashed += [(type(s).__name__, bodies.get(s.body, -1), s.sensor) for s in space.shapes if s.body is not None]
+    for s in space.shapes:
+        if s.body is not None:
+            corners = len(s.get_vertices()) if hasattr(s, "get_vertices") else 0
+            hashed.append((type(s).__name__, bodies.get(s.body, -1), s.sensor, corners))
     hashed += [(type(c).__name__, bodies.get(c.a, -1), bodies.get(c.b, -1)) for c in space.constraints]
     return int.from_bytes(hashlib.sha256(repr(hashed).encode()).digest()[:8], "little", signed=True)

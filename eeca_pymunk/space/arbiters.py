@@ -73,16 +73,18 @@ class Touches:
         return {frozenset((key(touch.a), key(touch.b))): touch for touch in touches_of(*self._made_of)}
 
     @cached_property
-    def _of(self) -> dict[pymunk.Body | None, dict[frozenset[int], Touch]]:
-        found: dict[pymunk.Body | None, dict[frozenset[int], Touch]] = {}
+    def _of(self) -> dict[int, dict[frozenset[int], Touch]]:
+        """By the id of the body: a body that is gone must not be kept."""
+        found: dict[int, dict[frozenset[int], Touch]] = {}
         for key, touch in self.all.items():
             for body in (touch.a.body, touch.b.body):
-                found.setdefault(body, {})[key] = touch
+                if body is not None:
+                    found.setdefault(body.id, {})[key] = touch
         return found
 
     def of(self, body: pymunk.Body) -> dict[frozenset[int], Touch]:
         """The pairs of a body."""
-        return self._of.get(body, {})
+        return self._of.get(body.id, {})
 
 
 ReadTouches = Callable[[], "Touches | None"]

@@ -116,6 +116,14 @@ class BodyStates:
         """See `transfer.read_states`."""
         return read_states.bind(self.STATES, self.IDS, self.EXTRA, self.BODY)
 
+    def gather_changes(self) -> None:
+        """Read the states again after functions of the program within a step: these may have pushed or moved any body.
+        Static ones count as moved in the next step."""
+        still = self.bodies.static
+        known = self.state[still]
+        self.gather()
+        self.state[still] = known
+
     def reset_forces(self) -> None:
         """Write the forces and torques at the end of the step (table RESET_FORCES), reset as pymunk does."""
         self._write[layout.RESET_FORCES]()

@@ -59,10 +59,13 @@ class ConstraintImpulses:
         self._joint["struck"] = 0.0
         self.show(items, stamp)
 
-    def read(self, j: int) -> float | None:
-        """The impulse of row j, mass length/time; of rotary joints mass length²/time. That of springs has a sign
-        (positive pushes the bodies apart), others are >= 0. None if pymunk has taken a step since."""
-        space = self._space()
+    def read(self, item: pymunk.Constraint, j: int) -> float | None:
+        """The impulse of a constraint, in row j, mass length/time; of rotary joints mass length²/time. That of springs
+        has a sign (positive pushes the bodies apart), others are >= 0. None if pymunk has taken a step since, or the
+        bodies are in another space by now."""
+        space, present = self._space(), item.a.space or item.b.space
+        if present is not None and present is not space:
+            return None
         if space is not None and private.timestamp(space)() != self._stamp:
             return None
         (first, second), (x, y) = self._joint[j].impulse, self._joint[j].struck
@@ -79,7 +82,7 @@ _native_impulse: Any = pymunk.Constraint.impulse
 
 def _impulse(self: pymunk.Constraint) -> float:
     impulses, row = _shown.get(self, _NATIVE)
-    value = None if impulses is None else impulses.read(row)
+    value = None if impulses is None else impulses.read(self, row)
     return float(_native_impulse.fget(self)) if value is None else value
 
 

@@ -59,7 +59,13 @@ class Rules:
                 continue
             own = _own_law(world.SHAPE, *pair)
             mu = 0.0 if world.frictionless else arbiter.friction
-            law = (arbiter.restitution, mu, *_surface(arbiter, own[2:], a < b))
+            surface = _surface(arbiter, own[2:], a < b)
+            if not (0.0 <= mu < math.inf and math.isfinite(arbiter.restitution + sum(surface))):
+                raise ValueError(
+                    f"a collision handler has set friction {mu}, restitution {arbiter.restitution}, surface velocity "
+                    f"{surface} of the shapes {arbiter.shapes}: give finite numbers, friction >= 0"
+                )
+            law = (max(arbiter.restitution, 0.0), mu, *surface)
             if law != own:
                 changed[pair] = law
         return cls(frozenset(ignored), changed)

@@ -12,8 +12,9 @@ from .world import World
 
 def describe(world: World) -> str:
     """The features of the present space that are modelled."""
-    world.gather()
-    state, bodies = world.state, world.bodies
+    bodies = world.bodies
+    state = bodies.gather()  # not into the arrays of the world: a function of the program may ask within a step
+    state = world.state if state is None else state
     owner = world.LINK["owner"]
     moving = owner < len(world.BODY) - 1
     disks = int(np.count_nonzero(world.centred & (owner < world.dynamic)))

@@ -10,6 +10,7 @@ changed. So do the methods by which pymunk adds and removes things. Getters, and
 
 from __future__ import annotations
 
+import threading
 import weakref
 from collections import deque
 from collections.abc import Callable
@@ -36,12 +37,16 @@ _METHODS: tuple[tuple[type, tuple[str, ...]], ...] = (
     (pymunk.Space, (*private.CONTENTS, *private.LINKS)),
 )
 _VALUES = (*_SURFACE, "mass", "moment")  # these do not change sizes
+_OF_MASS = "mass", "density"
 SLEEP = ("sleep", "sleep_with_group")
 _KEPT = 4096  # number of edits that are kept, the last ones
 _wrapped = False
 _clock = _type_changes = 0
 # The last edits, in any space or outside: the shape or body, and the property or method.
 _edited: deque[tuple[weakref.ref[Any], str]] = deque(maxlen=_KEPT)
+
+
+_edits = threading.Lock()
 
 
 class Counts(list[int]):
@@ -106,7 +111,9 @@ def edited_since(time: int) -> Edited | None:
     if _clock - time > len(_edited):
         return None
     reshaped, others, values = set[Any](), set[Any](), True
-    for thing, name in islice(reversed(_edited), _clock - time):
+    with _edits:
+        recent = list(islice(reversed(_edited), _clock - time))
+    for thing, name in recent:
         values = values and name in _VALUES
         if name not in SLEEP:
             (others if name in _SURFACE else reshaped).add(thing())
@@ -127,8 +134,9 @@ def record(thing: Any, name: str) -> None:
             count[2] += 1
             count[3] += name in private.CONTENTS
         return
-    _clock += 1
-    _edited.append((weakref.ref(thing), name))
+    with _edits:  # other threads may edit spaces of their own
+        _clock += 1
+        _edited.append((weakref.ref(thing), name))
     space = thing.space
     count = None if space is None else _counts.get(space)
     if count is None:
@@ -145,7 +153,8 @@ def _property(name: str, native: Any) -> property:
         write(self, value)
         if kept:
             private_versions.forget_function(self, name, value)
-        if read is None or read(self) != before:
+        # A mass of a shape that is set again counts, too: pymunk computes that of its body anew.
+        if read is None or read(self) != before or (name in _OF_MASS and isinstance(self, pymunk.Shape)):
             record(self, name)
 
     return property(read, set_and_record, native.fdel, native.__doc__)
@@ -154,9 +163,14 @@ def _property(name: str, native: Any) -> property:
 def _method(native: Callable[..., Any]) -> Callable[..., Any]:
     @wraps(native)
     def call_and_record(self: Any, *args: Any, **kwargs: Any) -> Any:
+        # A shape with a mass changes that of the body that it has, and may have another one afterwards.
+        heavy = args[0] if args and isinstance(args[0], pymunk.Shape) and args[0].mass > 0.0 else None
+        body = None if heavy is None else heavy.body
         try:
             return native(self, *args, **kwargs)
         finally:
             record(self, native.__name__)
+            if body is not None:
+                record(body, "mass")
 
     return call_and_record

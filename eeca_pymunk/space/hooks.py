@@ -42,6 +42,7 @@ class Hooks:
         self.space, self.bodies, self.joints = space, bodies, joints
         self.steered, self.moved, self.any_body = steered, moved, steered + moved > 0
         self.late: list[Callable[[], None]] = []
+        self._pushes: list[tuple[pymunk.Body, list[float]]] = []
 
     def none_within_steps(self) -> bool:
         """Whether steps of pymunk would call no function of a body or constraint, and could change no velocity of a
@@ -57,8 +58,8 @@ class Hooks:
             collisions = bool(private.handlers(self.space))
             with private.locked(self.space), private_joints.TimeStep(self.space, dt):
                 for item in self.joints.before:
-                    if not collisions or item.a.space is None:
-                        assert item.pre_solve is not None
+                    # Another function may have taken it away.
+                    if (not collisions or item.a.space is None) and item.pre_solve is not None:
                         item.pre_solve(item, self.space)
         self.__dict__.pop("_settings", None)  # the functions may have changed them
 
@@ -66,8 +67,8 @@ class Hooks:
         """Call `post_solve` of the constraints, then the delayed calls of handlers."""
         with private.locked(self.space), private_joints.TimeStep(self.space, dt):
             for item in () if self.joints is None else self.joints.after:
-                assert item.post_solve is not None
-                item.post_solve(item, self.space)
+                if item.post_solve is not None:
+                    item.post_solve(item, self.space)
             late, self.late = self.late, []
             for call in late:
                 call()
@@ -95,15 +96,31 @@ class Hooks:
         """Gravity and damping of the space; the properties are slow."""
         return self.space.gravity, self.space.damping
 
-    def positions(self, state: FloatArray, end: FloatArray, dt: float) -> bool:
+    def note_forces(self, changes: FloatArray) -> None:
+        """Note forces and torques (N, 9)[:, 6:] that functions after the motion give: they act in the next step, and
+        `push` writes them once those of this step are reset."""
+        given = zip(self.bodies.items, changes[:, 6:].tolist(), strict=True)
+        self._pushes += [(body, force) for body, force in given if any(force)]
+
+    def push(self) -> None:
+        """Exert the forces of `note_forces`."""
+        pushes, self._pushes = self._pushes, []
+        for body, (x, y, torque) in pushes:
+            body.force, body.torque = pymunk.Vec2d(x, y) + body.force, body.torque + torque
+
+    def positions(
+        self, state: FloatArray, end: FloatArray, dt: float, gather: Callable[[], object], now: FloatArray
+    ) -> bool:
         """Call the position functions of the bodies at `state` (N, 9), each with the mean velocity that leads to `end`
-        (N, 9) within dt, and write the resulting poses to `end`; returns whether these are finite."""
+        (N, 9) within dt, and write the resulting poses to `end`, and what else they have changed of any body: with
+        `gather` present states are read into `now`. Returns whether poses are finite."""
         items, finite = self._moved, True
+        gather()
+        before = now.copy()
         # A rehearsal leaves corrections of overlaps that this step did not have; `update_position` would apply them.
         private_shapes.forget_corrections(private.pointers(items))
         for row, body in zip(self.bodies.position_hooks, items, strict=True):
-            function = private.position_function(body)
-            assert function is not None
+            function = private.position_function(body) or pymunk.Body.update_position
             x, y, angle = state[row, :3].tolist()
             to_x, to_y, to_angle = end[row, :3].tolist()
             way_x, way_y = to_x - x, to_y - y
@@ -115,10 +132,21 @@ class Hooks:
             if (*body.position, body.angle) != (x, y, angle):
                 # A rehearsal of collisions has moved the body as pymunk does.
                 body.angle, body.position = angle, (x, y)
+            body.force, body.torque, mean = (0.0, 0.0), 0.0, (*body.velocity, body.angular_velocity)
             with private.locked(self.space), private_joints.TimeStep(self.space, dt):
                 function(body, dt)
             end[row, :3] = pose = (*body.position, body.angle)
             finite = finite and math.isfinite(sum(pose))
+            given = *body.velocity, body.angular_velocity
+            if given != mean:
+                end[row, 3:6] += [new - old for new, old in zip(given, mean, strict=True)]
+        gather()
+        changes = now - before
+        changes[self.bodies.static] = 0.0
+        changes[self.bodies.position_hooks, :6] = 0.0
+        changes[self.bodies.position_hooks, 6:] = now[self.bodies.position_hooks, 6:]
+        end[:, :6] += changes[:, :6]
+        self.note_forces(changes)
         return finite
 
     @cached_property

@@ -58,7 +58,8 @@ class JointRows(Listing):
         self.still[n:] = self.partners.still
         self._edits, self._timestamp = ConstraintEdits(self.row), private.timestamp(space)
         self._clock = clock()
-        self.rates: dict[pymunk.Constraint, Rate] = {} if past is None else past.rates
+        rates = {} if past is None else past.rates
+        self.rates: dict[pymunk.Constraint, Rate] = {item: rates[item] for item in self.items if item in rates}
         self.parted: frozenset[tuple[pymunk.Body, pymunk.Body]] | None = None
 
     def _number(self, row: Mapping[pymunk.Body, int], n: int, others: Sequence[pymunk.Body]) -> None:

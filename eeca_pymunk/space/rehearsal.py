@@ -156,8 +156,9 @@ class Rehearsal:
                 setattr(handler, phase, watched)
             self._step(dt)
         finally:
-            for handler, phase, function, _ in self._wrapped:
-                setattr(handler, phase, function)
+            for handler, phase, function, watched in self._wrapped:
+                if getattr(handler, phase) is watched:  # else a function has set another one
+                    setattr(handler, phase, function)
         if self.failure is not None:
             raise self.failure
         if self._stage >= 0:  # else nothing was read meanwhile

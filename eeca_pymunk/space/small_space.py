@@ -6,6 +6,8 @@ from collections.abc import Iterator
 
 import pymunk
 
+from .private import versions as private_versions
+
 _ROUNDS = 10  # Python 3.11 specialises the code of a function at its eighth call
 
 
@@ -16,7 +18,7 @@ def small_space() -> pymunk.Space:
     floor = pymunk.Segment(space.static_body, (-9.0, 0.0), (9.0, 0.0), 0.1)
     floor.friction = 0.5
     space.add(floor)
-    space.on_collision(1, 2, pre_solve=lambda *_: None)
+    private_versions.handle(space, 1, 2, lambda *_: None)
     return space
 
 

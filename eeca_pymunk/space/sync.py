@@ -86,6 +86,7 @@ class Sync:
         if dt != self._dt:
             self._dt = dt
             private.set_time_step(self.space, dt)
+        private.forget_removed(self.space)
         self.state, shapes = NO_REST_STEP, self._shapes
         self.stamp = shapes.stamp = self._rested
         shapes.read, shapes.late, shapes.sync = False, True, self._reference
@@ -113,6 +114,7 @@ class Sync:
 
     def accept(self) -> None:
         """Count the steps that pymunk has taken until now as parts of EECA steps."""
+        private.forget_removed(self.space)
         self.stamp, self._shapes.sync = self._timestamp(), self._reference
 
     def finish_rehearsal(self, left_out: int) -> None:
@@ -121,6 +123,7 @@ class Sync:
         shapes = self._shapes
         self.stamp = shapes.stamp = self._timestamp()
         if left_out:
+            private.forget_removed(self.space)
             self.state = NO_REHEARSAL
         else:
             self.state, self.arbiters_read = ARBITERS_CURRENT, False

@@ -73,9 +73,10 @@ def silent_joints(rehearsal: Rehearsal, joints: JointRows) -> Iterator[None]:
         for item in joints.before:
             before, after = item.pre_solve, item.post_solve
             if item not in silenced and before is not None:
-                stack.callback(private_joints.replace_functions, item, before, after)
                 nothing = None if after is None else lambda *_: None
-                private_joints.replace_functions(item, Watched(rehearsal, before, "", 0), nothing)
+                watched = Watched(rehearsal, before, "", 0)
+                private_joints.replace_functions(item, watched, nothing)
+                stack.callback(private_joints.restore_functions, item, (watched, nothing), (before, after))
         yield
 
 

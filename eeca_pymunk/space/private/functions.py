@@ -32,7 +32,8 @@ def velocity_changes(
         c: Any = body._body
         old_velocity, old_spin = velocity(c), spin(c)
         try:
-            body._velocity_func(body, gravity, damping, dt)  # type: ignore[misc]
+            # Another function may have taken it away.
+            (body._velocity_func or pymunk.Body.update_velocity)(body, gravity, damping, dt)
             new = velocity(c)
             found.append((new.x - old_velocity.x, new.y - old_velocity.y, spin(c) - old_spin))
         finally:

@@ -52,6 +52,13 @@ def replace_functions(
     constraint.__dict__[PRE_SOLVE], constraint.__dict__[POST_SOLVE] = before, after
 
 
+def restore_functions(constraint: pymunk.Constraint, put: tuple[Any, Any], old: tuple[Any, Any]) -> None:
+    """Undo `replace_functions` by `put`, but for what a function has set meanwhile."""
+    for name, mine, before in zip((PRE_SOLVE, POST_SOLVE), put, old, strict=True):
+        if constraint.__dict__[name] is mine:
+            constraint.__dict__[name] = before
+
+
 def law_of(spring: Any) -> Callable[[Any, float], float] | None:
     """The force or torque function of a spring, None if none was ever set, and for other constraints."""
     for kind, name in ((pymunk.DampedSpring, FORCE_FUNCTION), (pymunk.DampedRotarySpring, TORQUE_FUNCTION)):

@@ -182,6 +182,11 @@ def finish_step(space: pymunk.Space) -> None:
         callback(space)
 
 
+def forget_removed(space: pymunk.Space) -> None:
+    """Let the shapes be freed that were removed since pymunk's last step, which keeps them for callbacks."""
+    space._removed_shapes.clear()
+
+
 def watch(space: pymunk.Space, edits: list[int], known: list[int]) -> Callable[[], bool]:
     """A function that returns whether the settings and contents of the space are still as they are now.
 
@@ -207,6 +212,16 @@ def set_time_step(space: pymunk.Space, dt: float) -> None:
     """Set `space.current_time_step`, which is that of pymunk's last step, and with which its next one scales what it
     has stored of impulses."""
     lib.cpSpaceSetCurrentTimeStep(space._space, dt)
+
+
+def waiting(space: pymunk.Space) -> list[Any]:
+    """Copies of the callbacks, additions and removals that wait, for `let_wait`."""
+    return [kept.copy() for kept in (space._post_step_callbacks, space._add_later, space._remove_later)]
+
+
+def let_wait(space: pymunk.Space, kept: list[Any]) -> None:
+    """Let these wait, and what has come since no longer."""
+    space._post_step_callbacks, space._add_later, space._remove_later = kept
 
 
 def waits(space: pymunk.Space) -> bool:

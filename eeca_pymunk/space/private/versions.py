@@ -32,6 +32,14 @@ DEFAULTS = {"velocity_func": pymunk.Body.update_velocity, "position_func": pymun
 _IGNORED, _CACHED = 2, 3
 
 
+def handle(space: pymunk.Space, a: int, b: int, before: Callable[..., Any]) -> None:
+    """Let `before` be the `pre_solve` of these collision types; what it returns does not matter."""
+    if BY_RETURN:
+        space.add_collision_handler(a, b).pre_solve = lambda *given: bool((before(*given), True)[1])  # type: ignore[attr-defined]
+    else:
+        space.on_collision(a, b, pre_solve=before)
+
+
 def processed(arbiter: pymunk.Arbiter) -> bool:
     """Whether a collision of pymunk's last step takes place, False if a handler has rejected it or made a sensor of a
     shape.

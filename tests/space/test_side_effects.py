@@ -1,0 +1,318 @@
+"""What functions of a program do besides what they are for: as under pymunk."""
+
+from __future__ import annotations
+
+import gc
+import math
+import weakref
+from collections.abc import Callable
+from typing import Any
+
+import pymunk
+import pytest
+
+import eeca_pymunk as ep
+from eeca_pymunk.space.private import versions
+
+DT = 0.1
+Step = Callable[[float], object]
+
+
+def ball(space: pymunk.Space, x: float, mass: float = 1.0) -> pymunk.Body:
+    body = pymunk.Body(mass, mass)
+    body.position = x, 0.0
+    circle = pymunk.Circle(body, 0.5)
+    circle.elasticity = 1.0
+    space.add(body, circle)
+    return body
+
+
+def both(play: Callable[[pymunk.Space, Step], Any]) -> list[Any]:
+    """What a program returns under pymunk, and under EECA."""
+    found = []
+    for native in (True, False):
+        space = pymunk.Space()
+        stepper: list[ep.EECA] = []
+
+        def step(dt: float, space: pymunk.Space = space, native: bool = native, made: list[ep.EECA] = stepper) -> None:
+            if native:
+                space.step(dt)
+                return
+            if not made:
+                made.append(ep.EECA(space))
+            made[0].step(dt)
+
+        found.append(play(space, step))
+    return found
+
+
+@pytest.mark.parametrize("what", ["force", "impulse", "place", "kinematic"])
+def test_velocity_functions_may_push_and_move_other_bodies(what: str) -> None:
+    def play(space: pymunk.Space, step: Step) -> list[float]:
+        one, other = ball(space, 0.0), ball(space, 5.0)
+        if what == "kinematic":
+            other.body_type = pymunk.Body.KINEMATIC
+        times = [0]
+
+        def push(body: pymunk.Body, gravity: Any, damping: float, dt: float) -> None:
+            pymunk.Body.update_velocity(body, gravity, damping, dt)
+            times[0] += 1
+            if what == "force":
+                other.apply_force_at_world_point((1.0, 0.0), other.position)
+            elif what == "impulse" and times[0] == 2:
+                other.apply_impulse_at_world_point((1.0, 0.0), other.position)
+            elif what == "place" and times[0] == 2:
+                other.position = 8.0, 0.0
+            elif what == "kinematic" and times[0] == 1:
+                other.velocity = 1.0, 0.0
+
+        one.velocity_func = push
+        for _ in range(10):
+            step(DT)
+        return [other.velocity.x, other.position.x]
+
+    native, ours = both(play)
+    assert ours[0] == pytest.approx(native[0], abs=1e-9)
+    assert ours[1] == pytest.approx(native[1], abs=DT)  # pymunk moves with the velocities of the step before
+
+
+@pytest.mark.parametrize("what", ["thrust", "turn back", "impulse", "other", "platform"])
+def test_position_functions_may_push_and_move_bodies(what: str) -> None:
+    def play(space: pymunk.Space, step: Step) -> list[float]:
+        one, other = ball(space, 0.0), ball(space, 20.0)
+        one.velocity = (5.0, 0.0) if what == "turn back" else (0.0, 0.0)
+        if what == "platform":
+            one.body_type = pymunk.Body.KINEMATIC
+        times = [0]
+
+        def move(body: pymunk.Body, dt: float) -> None:
+            pymunk.Body.update_position(body, dt)
+            times[0] += 1
+            if what == "thrust" and times[0] < 10:
+                body.apply_force_at_world_point((1.0, 0.0), body.position)
+            elif what == "turn back" and body.position.x > 2.0 and body.velocity.x > 0.0:
+                body.velocity = -body.velocity
+            elif what == "impulse" and times[0] == 2:
+                body.apply_impulse_at_world_point((1.0, 0.0), body.position)
+            elif what == "other" and times[0] == 2:
+                other.position = 30.0, 0.0
+            elif what == "platform":
+                body.velocity = 1.0, 0.0
+
+        one.position_func = move
+        for _ in range(10):
+            step(DT)
+        return [one.velocity.x, other.position.x, one.position.x]
+
+    native, ours = both(play)
+    assert ours[:2] == pytest.approx(native[:2], abs=1e-9)
+    assert ours[2] == pytest.approx(native[2], abs=DT)  # pymunk moves with the velocities of the step before
+
+
+def handled(space: pymunk.Space, **functions: Callable[..., Any]) -> None:
+    """Functions for the collisions of types 1 and 2."""
+    if versions.BY_RETURN:
+        handler = space.add_collision_handler(1, 2)  # type: ignore[attr-defined]
+        for phase, function in functions.items():
+            result = True if phase in ("begin", "pre_solve") else None
+            setattr(handler, phase, lambda *given, f=function, r=result: (f(*given), r)[1])
+    else:
+        space.on_collision(1, 2, **functions)
+
+
+@pytest.mark.parametrize("phase", ["post_solve", "separate"])
+def test_forces_of_handlers_after_the_motion_act_in_the_next_step(phase: str) -> None:
+    """A ball bounces once off a wall: F dt/m of the force."""
+    space = pymunk.Space()
+    body, wall = ball(space, 0.0), pymunk.Segment(space.static_body, (2.0, -9.0), (2.0, 9.0), 0.0)
+    wall.elasticity, body.velocity = 1.0, (5.0, 0.0)
+    wall.collision_type, next(iter(body.shapes)).collision_type = 2, 1
+    space.add(wall)
+    calls = []
+
+    def push(*_: Any) -> None:
+        calls.append(1)
+        body.force = 0.0, 60.0
+
+    handled(space, **{phase: push})
+    stepper = ep.EECA(space)
+    for _ in range(12):
+        stepper.step(DT)
+    assert calls == [1]
+    assert body.velocity == pytest.approx((-5.0, 6.0), abs=1e-9)
+
+
+def test_functions_of_kinematic_bodies_are_called_while_all_sleep() -> None:
+    space = pymunk.Space()
+    space.gravity, space.sleep_time_threshold = (0.0, -10.0), 0.5
+    space.add(pymunk.Segment(space.static_body, (-9.0, 0.0), (9.0, 0.0), 0.0))
+    box = pymunk.Body(1.0, 1.0)
+    box.position = 0.0, 0.5
+    platform = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    platform.position = 5.0, 5.0
+    calls = [0]
+
+    def drive(body: pymunk.Body, *_: Any) -> None:
+        calls[0] += 1
+        body.velocity = (1.0, 0.0) if calls[0] > 60 else (0.0, 0.0)
+
+    platform.velocity_func = drive
+    space.add(box, pymunk.Poly.create_box(box, (1.0, 1.0)), platform, pymunk.Circle(platform, 0.2))
+    stepper = ep.EECA(space)
+    for _ in range(120):
+        stepper.step(1 / 60)
+    assert box.is_sleeping
+    assert calls[0] == 120
+    assert platform.position.x == pytest.approx(6.0, abs=0.02)
+
+
+def test_handlers_and_joints_may_replace_their_functions_within_a_step() -> None:
+    space = pymunk.Space()
+    space.gravity = 0.0, -10.0
+    body, floor = ball(space, 0.0), pymunk.Segment(space.static_body, (-9.0, -0.5), (9.0, -0.5), 0.0)
+    floor.collision_type, next(iter(body.shapes)).collision_type = 2, 1
+    space.add(floor)
+    joint = pymunk.PinJoint(space.static_body, body, (0.0, 5.0))
+    space.add(joint)
+    told: list[str] = []
+
+    def second(*_: Any) -> None:
+        told.append("second")
+
+    def first(*_: Any) -> None:
+        told.append("first")
+        handled(space, pre_solve=second)
+
+    def once(joint: pymunk.Constraint, space: pymunk.Space) -> None:
+        told.append("once")
+        joint.pre_solve = lambda *_: told.append("again")
+
+    handled(space, pre_solve=first)
+    joint.pre_solve = once
+    stepper = ep.EECA(space)
+    for _ in range(5):
+        stepper.step(1 / 60)
+    assert (told.count("first"), told.count("once"), told.count("again")) == (1, 1, 4)
+    assert told.count("second") >= 4
+
+
+def test_functions_may_end_those_of_other_bodies() -> None:
+    space = pymunk.Space()
+    space.gravity = 0.0, -10.0
+    one, other = ball(space, 0.0), ball(space, 5.0)
+
+    def end(body: pymunk.Body, gravity: Any, damping: float, dt: float) -> None:
+        pymunk.Body.update_velocity(body, gravity, damping, dt)
+        other.velocity_func = pymunk.Body.update_velocity
+        other.position_func = pymunk.Body.update_position
+
+    one.velocity_func = end
+    other.velocity_func = lambda body, *_: None
+    other.position_func = lambda body, dt: None
+    stepper = ep.EECA(space)
+    for _ in range(10):
+        stepper.step(DT)
+    assert other.velocity.y == pytest.approx(one.velocity.y, abs=10.0 * DT + 1e-9)
+
+
+@pytest.mark.parametrize("sync", [True, False])
+def test_removed_shapes_are_freed(sync: bool) -> None:
+    space = pymunk.Space()
+    ball(space, -50.0)
+    stepper, shapes = ep.EECA(space, sync=sync), []
+    for k in range(20):
+        body = ball(space, float(k))
+        shapes.append(weakref.ref(next(iter(body.shapes))))
+        stepper.step(0.01)
+        space.remove(body, *body.shapes)
+        del body
+    for _ in range(3):
+        stepper.step(0.01)
+    gc.collect()
+    assert sum(shape() is not None for shape in shapes) == 0
+
+
+@pytest.mark.parametrize("how", ["moved", "returns", "set again"])
+def test_masses_follow_those_of_shapes(how: str) -> None:
+    """dv = F dt / m, with the mass that pymunk gives the body."""
+
+    def play(space: pymunk.Space, step: Step) -> list[float]:
+        bodies = [pymunk.Body(), pymunk.Body()]
+        circles = []
+        for k, body in enumerate(bodies):
+            body.position = 10.0 * k, 0.0
+            circle = pymunk.Circle(body, 0.5)
+            circle.mass = 2.0
+            circles.append(circle)
+            space.add(body, circle)
+        more = pymunk.Circle(bodies[0], 0.2)
+        more.mass = 3.0
+        space.add(more)
+        step(DT)
+        if how == "moved":
+            space.remove(more)
+            more.body = bodies[1]
+            space.add(more)
+        elif how == "returns":
+            bodies[1].mass = 8.0
+            space.remove(circles[1])
+            space.add(circles[1])
+        else:
+            bodies[1].mass = 8.0
+            circles[1].mass = 2.0
+        for body in bodies:
+            body.force = 1.0, 0.0
+        step(DT)
+        return [body.velocity.x for body in bodies]
+
+    native, ours = both(play)
+    assert ours == pytest.approx(native, rel=1e-9)
+
+
+@pytest.mark.parametrize(("name", "value"), [("friction", math.inf), ("friction", -1.0), ("restitution", math.nan)])
+def test_values_that_make_no_sense_are_refused(name: str, value: float) -> None:
+    space = pymunk.Space()
+    space.gravity = 0.0, -10.0
+    body, floor = ball(space, 0.0), pymunk.Segment(space.static_body, (-9.0, -0.5), (9.0, -0.5), 0.0)
+    floor.collision_type, next(iter(body.shapes)).collision_type = 2, 1
+    space.add(floor)
+    handled(space, pre_solve=lambda arbiter, *_: setattr(arbiter, name, value))
+    with pytest.raises(ValueError, match=f"{name} {value}"):
+        ep.EECA(space).step(DT)
+
+
+def test_what_a_step_that_failed_has_asked_for_is_asked_for_once() -> None:
+    space = pymunk.Space()
+    one, fails = ball(space, 0.0), [True]
+
+    def add(body: pymunk.Body, gravity: Any, damping: float, dt: float) -> None:
+        if len(space.bodies) == 1:
+            more = pymunk.Body(1.0, 1.0)
+            space.add(more, pymunk.Circle(more, 0.1))
+        if fails.pop() if fails else False:
+            raise ZeroDivisionError
+
+    one.velocity_func = add
+    stepper = ep.EECA(space)
+    with pytest.raises(ZeroDivisionError):
+        stepper.step(DT)
+    stepper.step(DT)
+    assert len(space.bodies) == 2
+
+
+def test_a_state_is_not_asked_for_within_a_step() -> None:
+    space = pymunk.Space()
+    space.gravity = 0.0, -10.0
+    body = ball(space, 0.0)
+    stepper = ep.EECA(space)
+
+    def ask(body: pymunk.Body, gravity: Any, damping: float, dt: float) -> None:
+        pymunk.Body.update_velocity(body, gravity, damping, dt)
+        assert "gravity" in stepper.model
+        with pytest.raises(RuntimeError, match="get_state"):
+            stepper.get_state()
+
+    body.velocity_func = ask
+    for _ in range(10):
+        stepper.step(DT)
+    assert (body.position.y, body.velocity.y) == pytest.approx((-5.0, -10.0))
