@@ -173,6 +173,17 @@ def test_corners_are_found_where_segments_of_one_body_meet() -> None:
     assert [angles[k] for k in (8, 9)] == pytest.approx([90.0, -90.0])
 
 
+def test_a_wall_that_lies_on_another_one_is_no_corner() -> None:
+    lines = [((0, 0), (5, 0)), ((0, 0), (0, 5)), ((0, 0), (3, 0))]
+    LINK = rows(Link, len(lines))
+    LINK["first"], LINK["vertices"] = 2 * np.arange(len(lines)), 2
+    VERTEX = np.zeros((2 * len(lines), 4))
+    VERTEX[:, :2] = np.array(lines, float).reshape(-1, 2)
+    CORNER = rows(Corner, 4 * len(lines))
+    find_corners(LINK, VERTEX, CORNER)
+    assert [corner.other - 1 for corner in CORNER[:2]] == [1, 1]  # at the first end of the floor
+
+
 def test_planks_are_thin_and_boxes_are_not() -> None:
     space = pymunk.Space()
     body = pymunk.Body(1.0, 1.0)
