@@ -496,7 +496,7 @@ MUTATIONS = (
              "closures/test_midstep.py", "kinematic_floor"),
     Mutation("joints: an interval that has ended ends again", "jointed/ends.py",
              "A.MEMBER[root].open, A.RESTING[root].until = 0, math.inf", "A.MEMBER[root].open = 0",
-             "jointed/test_impacts.py", "just_before[1e-10]"),
+             "jointed/test_impacts.py", "bounces_just_before"),
     Mutation("hits: shapes close as at the start of the step", "islands/hits.py", "vx, vy, spin = rate(A.BODY, i, t)",
              "vx, vy, spin = one.vx, one.vy, one.spin", "islands/test_ways.py", "how_deep"),
     Mutation("chains: cycles of joints of length 0", "joints/straight.py", "SEEN[q] = SEEN[q ^ 1] = stamp",

@@ -171,9 +171,8 @@ def join_points(row: Row, along: float, across: float, of_disks: float) -> None:
     """Change the arms of a contact so that its points, whose `separation` this is, become one: the middle, or, if one
     of the shapes is a disk (arm_n = 0), its point, on which the normal impulse still exerts no torque. of_disks: the
     part of the way that the point on body a goes if both arms are 0."""
-    part = of_disks
-    if row.arm_na != 0.0 or row.arm_nb != 0.0:
-        part = 0.0 if row.arm_na == 0.0 else 1.0 if row.arm_nb == 0.0 else 0.5
+    one = 0.0 if row.arm_na == 0.0 else 1.0 if row.arm_nb == 0.0 else 0.5
+    part = of_disks if row.arm_na == 0.0 and row.arm_nb == 0.0 else one
     row.arm_na += part * across
     row.arm_ta += part * along
     row.arm_nb -= (1.0 - part) * across
@@ -196,16 +195,13 @@ def points_apart(interval: Interval, i: int) -> tuple[float, float, float]:
 @nonallocating
 def align(interval: Interval) -> float:
     """Join the two points of each contact of a free island at the mean places of its bodies. Returns how far they were
-    apart at most (`points_apart`).
-
-    An impulse p spread over a step changes the angular momentum of a body by (x + r) x p, with x its mean place: the
-    two changes only cancel if both points are one.
-    """
+    apart at most (`points_apart`). An impulse p spread over a step changes the angular momentum of a body by
+    (x + r) x p, with x its mean place: the two changes only cancel if both points are one."""
     worst = 0.0
     for i in range(interval.m):
         along, across, off = points_apart(interval, i)
-        worst = max(worst, off)
         join_points(interval.ROWS[i], along, across, 0.5)
+        worst = max(worst, off)
     return worst
 
 
