@@ -117,7 +117,7 @@ def fix_chain(
 
 @kernel
 def hold_chains(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, spins: IntArray, kinds: IntArray) -> int:
-    """Hold the bodies of straight chains between fixed points, which are still or kinds; how many there are.
+    """Hold the bodies of straight chains between fixed points, which are still or held; how many there are.
 
     A chain does not lead through a body whose points on it are in one place, if joints may turn it about that.
 
@@ -135,7 +135,7 @@ def hold_chains(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, spins: 
     list_points(bodies, joint, X, HEAD, NEXT)
     total, found = 0, 1
     while found > 0:
-        # Bodies kinds in one round hold others in the next.
+        # Bodies held in one round hold others in the next.
         found, stamp = 0, -1
         SEEN[:] = -1
         for first in range(points):
@@ -160,7 +160,7 @@ def hold_chains(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, spins: 
                     length = LENGTH[p] + math.sqrt((X[q, 0] - X[p, 0]) ** 2 + (X[q, 1] - X[p, 1]) ** 2)
                     leads = SEEN[q] < stamp and not (spins[i] == FREE and in_one_place(X, p, q))
                     if leads and straight(X, first, q, length):
-                        SEEN[q] = SEEN[q ^ 1] = stamp  # joints of length 0 may form a cycle
+                        SEEN[q] = SEEN[q ^ 1] = stamp  # 2^n chains of n doubled joints, else
                         FROM[q], FROM[q ^ 1], LENGTH[q ^ 1] = p, q, length + reach(joint[q // 2])
                         STACK[room] = q ^ 1
                         room += 1

@@ -381,6 +381,22 @@ def test_bars_that_meet_in_one_point_are_held_whatever_the_order_of_their_joints
         assert max(body.velocity.length for body in [*space.bodies][:2]) == 0.0
 
 
+def test_wheels_that_hold_one_another_twice_in_one_point_turn() -> None:
+    """Each by two joints of length 0 on the next one, the first and the last on an axle: 2^30 chains, if those that
+    differ by which of two joints they use are all followed."""
+    space = pymunk.Space()
+    wheels = [pymunk.Body(1.0, 1.0) for _ in range(30)]
+    space.add(*wheels)
+    for a, b in [(space.static_body, wheels[0]), *itertools.pairwise(wheels), (space.static_body, wheels[-1])]:
+        space.add(*(pymunk.PivotJoint(a, b, (0.0, 0.0)) for _ in range(2)))
+    for k, wheel in enumerate(wheels):
+        wheel.angular_velocity = k - 0.5
+    stepper = ep.EECA(space)
+    for _ in range(3):
+        assert stepper.step(DT).converged
+    assert [wheel.angle for wheel in wheels] == pytest.approx([3.0 * DT * (k - 0.5) for k in range(30)], abs=1e-14)
+
+
 @pytest.mark.parametrize("x", [0.0, 0.125, 1.0])
 def test_what_hangs_on_the_origin_swings_as_elsewhere(x: float) -> None:
     """Round-off of a point at the origin is that of the numbers whose sum it is."""
