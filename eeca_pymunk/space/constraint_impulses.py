@@ -63,8 +63,8 @@ class ConstraintImpulses:
         """The impulse of a constraint, in row j, mass length/time; of rotary joints mass length²/time. That of springs
         has a sign (positive pushes the bodies apart), others are >= 0. None if pymunk has taken a step since, or the
         bodies are in another space by now."""
-        space, present = self._space(), item.a.space or item.b.space
-        if present is not None and present is not space:
+        space = self._space()
+        if any(_space_of(body) not in (None, space) for body in (item.a, item.b)):
             return None
         if space is not None and private.timestamp(space)() != self._stamp:
             return None
@@ -72,6 +72,14 @@ class ConstraintImpulses:
         if self._joint[j].kind in (SPRING, ROTARY_SPRING):
             return float(first)
         return math.hypot(first + x, second + y)
+
+
+def _space_of(body: pymunk.Body) -> pymunk.Space | None:
+    """`body.space`, and None also for the static body of a space that is gone, where pymunk 6 raises an error."""
+    try:
+        return body.space
+    except ReferenceError:
+        return None
 
 
 # The impulses of each constraint, and its row there; _NATIVE for constraints that no EECA step has moved.
