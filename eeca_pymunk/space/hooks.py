@@ -16,6 +16,7 @@ from collections.abc import Callable
 from functools import cached_property, partial
 from typing import Any
 
+import numpy as np
 import pymunk
 
 from ..arrays import FloatArray
@@ -141,7 +142,8 @@ class Hooks:
             if given != mean:
                 end[row, 3:6] += [new - old for new, old in zip(given, mean, strict=True)]
         gather()
-        changes = now - before
+        # A rehearsal may have thrown other bodies to infinity.
+        changes = np.subtract(now, before, out=np.zeros_like(now), where=np.isfinite(before))
         changes[self.bodies.static] = 0.0
         changes[self.bodies.position_hooks, :6] = 0.0
         changes[self.bodies.position_hooks, 6:] = now[self.bodies.position_hooks, 6:]

@@ -13,6 +13,7 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk.space.private import versions
+from tests.programs import varied
 
 DT = 0.1
 Step = Callable[[float], object]
@@ -316,3 +317,8 @@ def test_a_state_is_not_asked_for_within_a_step() -> None:
     for _ in range(10):
         stepper.step(DT)
     assert (body.position.y, body.velocity.y) == pytest.approx((-5.0, -10.0))
+
+
+def test_bodies_that_a_rehearsal_throws_to_infinity_stay_where_eeca_moves_them() -> None:
+    """pymunk's own step, in which handlers are called, leads a stiff rotary spring of this scene to infinity."""
+    varied.Varied(66029138, True).play(3)
