@@ -159,10 +159,10 @@ class HookedStepper(PackedSpace):
             hooks.note_forces(end)
         if hooks.moved:
             start = world.state.copy()
-            if not hooks.positions(start, end, dt, world.gather, world.state):
-                world.state[:] = start
-                world.bodies.check_finite(world.ended(), TOO_FAR)
+            finite = hooks.positions(start, end, dt, world.gather, world.state)
             world.state[:] = start
+            if not finite:
+                world.bodies.check_finite(world.ended(), TOO_FAR)
             bits = world.write_whole()
         return bits, lost
 

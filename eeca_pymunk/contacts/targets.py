@@ -7,7 +7,7 @@ bounce is e max(-u, 0) for e < 1, -u for e = 1.
 * e < 1 and the bounce below (1/2) max(-a_n h, A_nn lam_w): it would return within the interval. The contact persists:
   its bounce is 0 (the rest of the bounces enters the ledger as restitution at once).
 * e = 1 with a gap, or u < -2 |a| h: an impact. b is the bounce, if the gap would close without it: the contact is
-  inactive while u_n+ is above its activation velocity `wake`, with which the gap is just closed at the end.
+  inactive while u_n+ is above its activation velocity `activation`, with which the gap is just closed at the end.
 * Else the surfaces meet softly at the end of the interval: b = min(bounce, -u - 2 max(g, 0)/h).
 
 Where a wall turns (`turning_walls.py`, c = c_0), u is less by c than with the geometry of the start, and u+ more by c
@@ -36,7 +36,7 @@ def hardly_bounces(e: float, u: float, press: float) -> bool:
 
 @nonallocating
 def target(ROWS: Rows[Row], m: int, ACC: FloatArray, EXPECTED: FloatArray, pull: float, h: float) -> None:
-    """Set the targets and activation velocities (`target`, `wake`) of m rows, from their gaps and velocities u_n.
+    """Set the targets and activation velocities (`target`, `activation`) of m rows, from their gaps and velocities u_n.
 
     Args:
         ACC: (k, 3) accelerations without impulses.  pull: |a|, the largest of them.  h: length of the interval.

@@ -63,7 +63,7 @@ def measure_scene(reading: Table) -> None:
 @kernel
 def begin_scene(table: Table, limit: int, disks: int, together: int, budget: int, lossy: int) -> int:
     """Write to the arrays of a new scene, which contain zeros, what is not 0 in it: of bodies, of CORNER, of KEYS,
-    these fields of ROWS, and PAR.share. Returns what `begin_lists` does."""
+    these fields of COUNT, and PAR.share. Returns what `begin_lists` does."""
     A = scene_of(table)
     A.COUNT.limit, A.COUNT.disks, A.COUNT.together = limit, disks, together
     A.COUNT.budget, A.COUNT.lossy = budget, lossy
@@ -136,7 +136,7 @@ class SceneMemory:
 
     def scene(self, laid: Laid, limit: int, together: bool, budget: int) -> Table:
         """The table of a scene that has taken no step; the arrays given are kept, not copied. The numbers are fields of
-        ROWS."""
+        COUNT."""
         BODY, SHAPE, LINK, VERTEX, disks, (moving, vertices, self.thin, lossy) = laid
         n, k = len(BODY), len(LINK)
         room = _CONTACTS
@@ -167,7 +167,7 @@ class SceneMemory:
         return self._words
 
     def records(self) -> tuple[memoryview, memoryview, memoryview]:
-        """PAR as numbers, ROWS and LOG as integers, of the last scene."""
+        """PAR as numbers, COUNT and LOG as integers, of the last scene."""
         layout = self._layout
         return layout.floats("PAR"), layout.integers("COUNT"), layout.integers("LOG")
 

@@ -60,7 +60,7 @@ def tie_components(table: Table, joints: Table) -> None:
     """Make a ring of the bodies of each component. Predictions by earlier components are void; where bodies have lost
     theirs, islands are built in the next step, even if no component remains."""
     A, OF = scene_of(table), joints_of(joints).OF
-    MEMBER, BODY, ROWS = A.MEMBER, A.BODY, A.COUNT
+    MEMBER, BODY, COUNT = A.MEMBER, A.BODY, A.COUNT
     first, last = np.full(OF.shape[0], -1, np.int64), np.full(OF.shape[0], -1, np.int64)
     for i in range(MEMBER.shape[0]):
         BODY[i].due = min(BODY[i].due, -1.0)
@@ -68,7 +68,7 @@ def tie_components(table: Table, joints: Table) -> None:
         if MEMBER[i].rest == AT_REST:
             MEMBER[A.STATE[i].island].rest = CHANGED  # joints may hold it otherwise now
         if MEMBER[i].tied >= 0 and s < 0:
-            ROWS.any_placed = max(ROWS.any_placed, 1)
+            COUNT.any_placed = max(COUNT.any_placed, 1)
         MEMBER[i].tied, MEMBER[i].next_tied = -1, -1
         if s >= 0:
             first[s] = i if first[s] < 0 else first[s]

@@ -127,7 +127,7 @@ def inside_discs(B: Bounded, L: FloatArray, m: int) -> bool:
 
 @nonallocating
 def weigh_rows(B: Bounded) -> None:
-    """Set what unit impulses of the rows change along them: `give` and `cross`."""
+    """Set what unit impulses of the rows change along them: `a_own` and `cross`."""
     for i in range(B.NUMBER[0]):
         B.ROWS[i].a_own = per_impulse(B, i, i)
         if B.ROWS[i].part == FIRST_OF_DISC:

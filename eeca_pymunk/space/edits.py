@@ -44,9 +44,7 @@ _wrapped = False
 _clock = _type_changes = 0
 # The last edits, in any space or outside: the shape or body, and the property or method.
 _edited: deque[tuple[weakref.ref[Any], str]] = deque(maxlen=_KEPT)
-
-
-_edits = threading.Lock()
+_lock = threading.Lock()  # of both: other threads may edit spaces of their own
 
 
 class Counts(list[int]):
@@ -111,7 +109,7 @@ def edited_since(time: int) -> Edited | None:
     if _clock - time > len(_edited):
         return None
     reshaped, others, values = set[Any](), set[Any](), True
-    with _edits:
+    with _lock:
         recent = list(islice(reversed(_edited), _clock - time))
     for thing, name in recent:
         values = values and name in _VALUES
@@ -134,7 +132,7 @@ def record(thing: Any, name: str) -> None:
             count[2] += 1
             count[3] += name in private.CONTENTS
         return
-    with _edits:  # other threads may edit spaces of their own
+    with _lock:
         _clock += 1
         _edited.append((weakref.ref(thing), name))
     space = thing.space

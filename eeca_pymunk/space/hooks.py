@@ -114,8 +114,8 @@ class Hooks:
     ) -> bool:
         """Call the position functions of the bodies at `state` (N, 9), each with the mean velocity that leads to `end`
         (N, 9) within dt, and write the resulting poses to `end`, and what else they have changed of any body: with
-        `gather` present states are read into `now`. Returns whether poses are finite."""
-        items, finite = self._moved, True
+        `gather` present states are read into `now`. Returns whether `end` is finite."""
+        items = self._moved
         gather()
         before = now.copy()
         # A rehearsal leaves corrections of overlaps that this step did not have; `update_position` would apply them.
@@ -136,8 +136,7 @@ class Hooks:
             body.force, body.torque, mean = (0.0, 0.0), 0.0, (*body.velocity, body.angular_velocity)
             with private.locked(self.space), private_joints.TimeStep(self.space, dt):
                 function(body, dt)
-            end[row, :3] = pose = (*body.position, body.angle)
-            finite = finite and math.isfinite(sum(pose))
+            end[row, :3] = (*body.position, body.angle)
             given = *body.velocity, body.angular_velocity
             if given != mean:
                 end[row, 3:6] += [new - old for new, old in zip(given, mean, strict=True)]
@@ -149,7 +148,7 @@ class Hooks:
         changes[self.bodies.position_hooks, 6:] = now[self.bodies.position_hooks, 6:]
         end[:, :6] += changes[:, :6]
         self.note_forces(changes)
-        return finite
+        return bool(np.isfinite(end[:, :6]).all())
 
     @cached_property
     def silent(self) -> private_functions.WithoutFunctions:

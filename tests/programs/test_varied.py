@@ -413,3 +413,8 @@ def test_what_others_press_and_turn_does_not_turn_through_a_wall() -> None:
     """A triangle between bodies up to 1600 times heavier and a corner of walls turns by half a radian in an interval of
     many contacts: those that it has at its start do not tell that another corner goes through the wall."""
     Varied(57010091).play(30)
+
+
+def test_position_functions_do_not_add_what_a_rehearsal_throws_to_infinity() -> None:
+    """pymunk's own step, in which handlers are called, leads a stiff rotary spring of this scene to infinity."""
+    Varied(66029138, True).play(3)

@@ -12,8 +12,6 @@ import pymunk
 import pytest
 
 import eeca_pymunk as ep
-from eeca_pymunk.space.private import versions
-from tests.programs import varied
 
 DT = 0.1
 Step = Callable[[float], object]
@@ -110,17 +108,6 @@ def test_position_functions_may_push_and_move_bodies(what: str) -> None:
     assert ours[2] == pytest.approx(native[2], abs=DT)  # pymunk moves with the velocities of the step before
 
 
-def handled(space: pymunk.Space, **functions: Callable[..., Any]) -> None:
-    """Functions for the collisions of types 1 and 2."""
-    if versions.BY_RETURN:
-        handler = space.add_collision_handler(1, 2)  # type: ignore[attr-defined]
-        for phase, function in functions.items():
-            result = True if phase in ("begin", "pre_solve") else None
-            setattr(handler, phase, lambda *given, f=function, r=result: (f(*given), r)[1])
-    else:
-        space.on_collision(1, 2, **functions)
-
-
 @pytest.mark.parametrize("phase", ["post_solve", "separate"])
 def test_forces_of_handlers_after_the_motion_act_in_the_next_step(phase: str) -> None:
     """A ball bounces once off a wall: F dt/m of the force."""
@@ -135,7 +122,7 @@ def test_forces_of_handlers_after_the_motion_act_in_the_next_step(phase: str) ->
         calls.append(1)
         body.force = 0.0, 60.0
 
-    handled(space, **{phase: push})
+    space.on_collision(1, 2, **{phase: push})
     stepper = ep.EECA(space)
     for _ in range(12):
         stepper.step(DT)
@@ -182,13 +169,13 @@ def test_handlers_and_joints_may_replace_their_functions_within_a_step() -> None
 
     def first(*_: Any) -> None:
         told.append("first")
-        handled(space, pre_solve=second)
+        space.on_collision(1, 2, pre_solve=second)
 
     def once(joint: pymunk.Constraint, space: pymunk.Space) -> None:
         told.append("once")
         joint.pre_solve = lambda *_: told.append("again")
 
-    handled(space, pre_solve=first)
+    space.on_collision(1, 2, pre_solve=first)
     joint.pre_solve = once
     stepper = ep.EECA(space)
     for _ in range(5):
@@ -277,7 +264,7 @@ def test_values_that_make_no_sense_are_refused(name: str, value: float) -> None:
     body, floor = ball(space, 0.0), pymunk.Segment(space.static_body, (-9.0, -0.5), (9.0, -0.5), 0.0)
     floor.collision_type, next(iter(body.shapes)).collision_type = 2, 1
     space.add(floor)
-    handled(space, pre_solve=lambda arbiter, *_: setattr(arbiter, name, value))
+    space.on_collision(1, 2, pre_solve=lambda arbiter, *_: setattr(arbiter, name, value))
     with pytest.raises(ValueError, match=f"{name} {value}"):
         ep.EECA(space).step(DT)
 
@@ -319,6 +306,17 @@ def test_a_state_is_not_asked_for_within_a_step() -> None:
     assert (body.position.y, body.velocity.y) == pytest.approx((-5.0, -10.0))
 
 
-def test_bodies_that_a_rehearsal_throws_to_infinity_stay_where_eeca_moves_them() -> None:
-    """pymunk's own step, in which handlers are called, leads a stiff rotary spring of this scene to infinity."""
-    varied.Varied(66029138, True).play(3)
+@pytest.mark.parametrize("speed", [math.inf, math.nan])
+def test_a_velocity_that_is_not_finite_is_refused_also_of_another_body(speed: float) -> None:
+    space = pymunk.Space()
+    one, other = ball(space, 0.0), ball(space, 20.0)
+
+    def move(body: pymunk.Body, dt: float) -> None:
+        pymunk.Body.update_position(body, dt)
+        other.velocity = speed, 0.0
+
+    one.position_func = move
+    with pytest.raises(ValueError, match=r"velocity\.x"):
+        ep.EECA(space).step(DT)
+    assert other.position == (20.0, 0.0)
+    assert other.velocity == (0.0, 0.0)

@@ -32,14 +32,6 @@ DEFAULTS = {"velocity_func": pymunk.Body.update_velocity, "position_func": pymun
 _IGNORED, _CACHED = 2, 3
 
 
-def handle(space: pymunk.Space, a: int, b: int, before: Callable[..., Any]) -> None:
-    """Let `before` be the `pre_solve` of these collision types; what it returns does not matter."""
-    if BY_RETURN:
-        space.add_collision_handler(a, b).pre_solve = lambda *given: bool((before(*given), True)[1])  # type: ignore[attr-defined]
-    else:
-        space.on_collision(a, b, pre_solve=before)
-
-
 def processed(arbiter: pymunk.Arbiter) -> bool:
     """Whether a collision of pymunk's last step takes place, False if a handler has rejected it or made a sensor of a
     shape.
@@ -101,11 +93,12 @@ def to_return(value: Any, function: Callable[..., Any]) -> bool | None:
     return True
 
 
-def add_handler(space: pymunk.Space) -> Any:
-    """A collision handler of a space, for pairs of all types."""
+def add_handler(space: pymunk.Space, a: int | None = None, b: int | None = None) -> Any:
+    """The first collision handler of a space, for pairs of these two types, or of all."""
     if BY_RETURN:
-        return space.add_default_collision_handler()  # type: ignore[attr-defined]
-    space.on_collision(begin=lambda arbiter, space, data: None)
+        older: Any = space
+        return older.add_default_collision_handler() if a is None else older.add_collision_handler(a, b)
+    space.on_collision(a, b, begin=lambda arbiter, space, data: None)
     return next(iter(space._handlers.values()))
 
 
