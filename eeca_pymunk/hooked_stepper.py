@@ -7,7 +7,7 @@ from functools import partial
 from math import isfinite
 
 from .energy.ledger import BOOK_AFTER, BOOK_DAMPING
-from .layout import WRITTEN
+from .layout import CHANGES_AFTER, WRITTEN
 from .model.step import ENERGY, EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES
 from .packed_space import TOO_FAR, PackedSpace
 from .reentry import FunctionsCalled
@@ -108,18 +108,18 @@ class HookedStepper(PackedSpace):
         | write the states, and call `post_solve` of constraints | `_write_hooked_end` |
         """
         world, waiting = self._start_hooked(world), private.waiting(self.space)
-        half_damping = world.half_damping(dt)
+        half_damping, moved = world.half_damping(dt), False
         try:
             if world.joints is not None:
                 world.joints.refresh()
                 if world.joints.before:
                     world.hooks.before(dt)
-                    world.gather()
+                    moved = world.gather_changes()
             if world.hooks.steered:
                 world.set_accelerations(world.hooks.velocity_changes(dt), dt)
                 if self._sleep is not None and self._sleep.woken():
                     world = self._reread_awoken(world)
-                world.gather_changes()
+                moved = world.gather_changes() or moved
             if world.collisions:
                 known = self._sleep is None and not self.decisions.laws
                 if (status := world.rehearsal.run(dt, half_damping, self._sync, known)) < 0:
@@ -132,7 +132,7 @@ class HookedStepper(PackedSpace):
                 self._raise_failure(world, dt, status)
             outcome = self._outcome(world, dt)
             hooks = world.hooks
-            changed = hooks.moved > 0 or (world.collisions and world.rehearsal.after)
+            changed = moved or hooks.moved > 0 or (world.collisions and world.rehearsal.after)
             alters = changed or world.damping == 0.0
             bits, lost = self._alter_end(world, dt) if alters else (world.write_whole(), 0.0)
             if changed or status & FORCES or hooks.any_body or world.joints is not None:
@@ -158,11 +158,16 @@ class HookedStepper(PackedSpace):
         if world.collisions and world.rehearsal.after:
             hooks.note_forces(end)
         if hooks.moved:
-            start = world.state.copy()
-            finite = hooks.positions(start, end, dt, world.gather, world.state)
-            world.state[:] = start
-            if not finite:
-                world.bodies.check_finite(world.ended(), TOO_FAR)
+            start, changes = world.state.copy(), world.HOOKED[CHANGES_AFTER]
+            hooks.prepare_positions()
+            world.before_call()
+            hooks.positions(start, end, dt)
+            world.after_call(late=True)
+            changes[world.bodies.position_hooks, :6] = 0.0  # which `positions` has written
+            end[:, :6] += changes[:, :6]
+            hooks.note_forces(changes)
+            changes[:], world.state[:] = 0.0, start
+            world.bodies.check_finite(end[:, :6], TOO_FAR)
             bits = world.write_whole()
         return bits, lost
 
@@ -179,6 +184,7 @@ class HookedStepper(PackedSpace):
         now.copy_start()
         rows = [world.bodies.row[body] for body in now.bodies.items]
         now.EXTRA[:], now.HOOKED[:] = world.EXTRA[rows], world.HOOKED[:, rows]
+        now.HOOKED[CHANGES_AFTER, now.bodies.static] = 0.0  # its rows have their new places
         now.hooks.late = world.hooks.late
         return now
 

@@ -214,19 +214,23 @@ def place_for_rehearsal(
 @kernel
 def record_changes(table: Table, late: int) -> int:
     """Add the differences of STATES[READ] from HOOKED[BEFORE_CALL], which is updated, to HOOKED[CHANGES_BEFORE], or if
-    `late` to HOOKED[CHANGES_AFTER]; 1 if there are any.
+    `late`, and of static bodies always, to HOOKED[CHANGES_AFTER].
 
     pymunk sets spins of bodies of infinite moment that gears hold to nan: nan counts as unchanged.
+
+    Returns:
+        the sum of 1 if there are any in HOOKED[CHANGES_BEFORE], and 2 if in HOOKED[CHANGES_AFTER].
     """
     R = reading_of(table)
     now, last, found = R.STATES[layout.READ], R.HOOKED[layout.BEFORE_CALL], 0
-    changes = R.HOOKED[layout.CHANGES_AFTER if late > 0 else layout.CHANGES_BEFORE]
     for i in range(now.shape[0]):
+        after = late > 0 or R.IDS[layout.BODY_ROW, i] < 0
+        changes = R.HOOKED[layout.CHANGES_AFTER if after else layout.CHANGES_BEFORE]
         for c in range(layout.STATE_COLUMNS):
             before = last[i, c]
             if now[i, c] != before:
                 if before == before:
                     changes[i, c] += now[i, c] - before
-                    found = 1
+                    found |= 2 if after else 1
                 last[i, c] = now[i, c]
     return found

@@ -17,7 +17,7 @@ from ..compiled import Table
 from ..compiled.records import Rows
 from ..model.bodies import Body
 from ..model.step import FORCES, TURNS
-from ..rehearsing import accept_rounding, alter_end, copy_start
+from ..rehearsing import accept_rounding, alter_end, copy_start, record_changes
 from ..transfer import accept_static, read_states, write_ends
 from .bodies import STATE_FIELDS, Bodies
 from .private import batch as private_batch
@@ -35,7 +35,7 @@ _IDS = 2 * layout.STATE_COLUMNS
 _EXTRA = _IDS + 4
 _HOOKED = _EXTRA + layout.EXTRA_COLUMNS
 _ENDS = _HOOKED + layout.HOOKED_TABLES * layout.STATE_COLUMNS
-_KERNELS = copy_start, write_ends, alter_end, accept_rounding, accept_static
+_KERNELS = copy_start, write_ends, alter_end, record_changes, accept_rounding, accept_static
 
 
 class _Writers(dict[int, Callable[[], None]]):
@@ -104,7 +104,8 @@ class BodyStates:
     def bind(self, reading: Table, bound: Callable[..., list[Callable[..., Any]]]) -> None:
         """Set `reading` and `bound`, and make the functions that use kernels on these arrays."""
         self.reading, self.bound = reading, bound
-        self.copy_start, self.write_ends, self._alter_end, self.accept_rounding, self.accept_static = bound(*_KERNELS)
+        self.copy_start, self.write_ends, self._alter_end, self._record_changes, *accept = bound(*_KERNELS)
+        self.accept_rounding, self.accept_static = accept
 
     def load(self) -> None:
         """Read the present states into BODY."""
@@ -116,13 +117,28 @@ class BodyStates:
         """See `transfer.read_states`."""
         return read_states.bind(self.STATES, self.IDS, self.EXTRA, self.BODY)
 
-    def gather_changes(self) -> None:
-        """Read the states again after functions of the program within a step: these may have pushed or moved any body.
-        Static ones count as moved in the next step."""
+    def gather_changes(self) -> bool:
+        """Read the states again after functions before the motion: these may have pushed or moved any body. Static ones
+        move at the end of the step (HOOKED[CHANGES_AFTER]); returns whether there are any."""
         still = self.bodies.static
         known = self.state[still]
         self.gather()
+        moved = self.state[still] - known
+        if not moved.any():
+            return False
+        self.HOOKED[layout.CHANGES_AFTER, still] += moved
         self.state[still] = known
+        return True
+
+    def before_call(self) -> None:
+        """Read the states before a call of a function whose changes are recorded (`after_call`)."""
+        self.gather()
+        self.HOOKED[layout.BEFORE_CALL] = self.STATES[layout.READ]
+
+    def after_call(self, late: bool) -> int:
+        """Read the states, and record the changes since `before_call` (`rehearsing.record_changes`)."""
+        self.gather()
+        return int(self._record_changes(int(late)))
 
     def reset_forces(self) -> None:
         """Write the forces and torques at the end of the step (table RESET_FORCES), reset as pymunk does."""

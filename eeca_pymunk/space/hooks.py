@@ -16,7 +16,6 @@ from collections.abc import Callable
 from functools import cached_property, partial
 from typing import Any
 
-import numpy as np
 import pymunk
 
 from ..arrays import FloatArray
@@ -109,18 +108,17 @@ class Hooks:
         for body, (x, y, torque) in pushes:
             body.force, body.torque = pymunk.Vec2d(x, y) + body.force, body.torque + torque
 
-    def positions(
-        self, state: FloatArray, end: FloatArray, dt: float, gather: Callable[[], object], now: FloatArray
-    ) -> bool:
+    def prepare_positions(self) -> None:
+        """Before `positions`: forces that a function gives are seen if there are none, and `update_position` must not
+        apply the corrections of overlaps of a rehearsal."""
+        private_shapes.forget_corrections(private.pointers(self._moved))
+        for body in self._moved:
+            body.force, body.torque = (0.0, 0.0), 0.0
+
+    def positions(self, state: FloatArray, end: FloatArray, dt: float) -> None:
         """Call the position functions of the bodies at `state` (N, 9), each with the mean velocity that leads to `end`
-        (N, 9) within dt, and write the resulting poses to `end`, and what else they have changed of any body: with
-        `gather` present states are read into `now`. Returns whether `end` is finite."""
-        items = self._moved
-        gather()
-        before = now.copy()
-        # A rehearsal leaves corrections of overlaps that this step did not have; `update_position` would apply them.
-        private_shapes.forget_corrections(private.pointers(items))
-        for row, body in zip(self.bodies.position_hooks, items, strict=True):
+        (N, 9) within dt, and write the resulting poses to `end`, and by how much they change these velocities."""
+        for row, body in zip(self.bodies.position_hooks, self._moved, strict=True):
             function = private.position_function(body) or pymunk.Body.update_position
             x, y, angle = state[row, :3].tolist()
             to_x, to_y, to_angle = end[row, :3].tolist()
@@ -133,22 +131,13 @@ class Hooks:
             if (*body.position, body.angle) != (x, y, angle):
                 # A rehearsal of collisions has moved the body as pymunk does.
                 body.angle, body.position = angle, (x, y)
-            body.force, body.torque, mean = (0.0, 0.0), 0.0, (*body.velocity, body.angular_velocity)
+            mean = *body.velocity, body.angular_velocity
             with private.locked(self.space), private_joints.TimeStep(self.space, dt):
                 function(body, dt)
             end[row, :3] = (*body.position, body.angle)
             given = *body.velocity, body.angular_velocity
             if given != mean:
                 end[row, 3:6] += [new - old for new, old in zip(given, mean, strict=True)]
-        gather()
-        # A rehearsal may have thrown other bodies to infinity.
-        changes = np.subtract(now, before, out=np.zeros_like(now), where=np.isfinite(before))
-        changes[self.bodies.static] = 0.0
-        changes[self.bodies.position_hooks, :6] = 0.0
-        changes[self.bodies.position_hooks, 6:] = now[self.bodies.position_hooks, 6:]
-        end[:, :6] += changes[:, :6]
-        self.note_forces(changes)
-        return bool(np.isfinite(end[:, :6]).all())
 
     @cached_property
     def silent(self) -> private_functions.WithoutFunctions:

@@ -21,10 +21,10 @@ import numpy as np
 
 from ..arrays import IntArray
 from ..compiled.records import Rows, rows
-from ..layout import BEFORE_CALL, CHANGES_BEFORE, READ, REHEARSAL_START
+from ..layout import CHANGES_BEFORE, READ, REHEARSAL_START
 from ..model.shapes import HandledShape
 from ..model.step import TURNS
-from ..rehearsing import place_for_rehearsal, record_changes
+from ..rehearsing import place_for_rehearsal
 from .decisions import NO_RULES, Decisions, Rules
 from .edits import type_changes
 from .handled_pairs import HandledPairs
@@ -75,7 +75,7 @@ class Rehearsal:
         self.forget_old_handlers()
         if self._pairs is not None:
             self._pairs.type_changes = -1  # so that pairs are found again, in the rows of this world
-        self._place, (self._record_changes,) = self._bound(None), world.bound(record_changes)
+        self._place = self._bound(None)
         return undecided
 
     def forget(self, reshaped: bool) -> None:
@@ -109,14 +109,13 @@ class Rehearsal:
     def before_call(self, stage: int) -> None:
         """Before a function is called: read the bodies, if pymunk has reached another stage."""
         if self._stage != stage:
-            self.world.gather()
-            self.world.HOOKED[BEFORE_CALL] = self.world.STATES[READ]
+            self.world.before_call()
             self._stage = stage
 
     def after_call(self, stage: int) -> None:
         """After a function was called: record its changes in HOOKED[CHANGES_BEFORE] or HOOKED[CHANGES_AFTER]."""
-        self.world.gather()
-        self._changed[stage > 0] |= self._record_changes(stage > 0) > 0
+        changed = self.world.after_call(stage > 0)
+        self._changed = [self._changed[0] or changed & 1 > 0, self._changed[1] or changed & 2 > 0]
 
     def run(self, dt: float, half_damping: float, sync: Sync, known: bool) -> int:
         """Take pymunk's step; STATES then has the start of the EECA step, with the changes by begin and pre_solve. An
@@ -137,9 +136,9 @@ class Rehearsal:
         self.failure, self.decided, self._stage, self._sync = None, False, -1, sync if known else None
         if not (continues := sync.continues()):
             self._decision_steps = max(self._decision_steps, 1.0)
-        if True in self._changed:
-            world.forget_changes()
-            self._changed = [False, False]
+        if self._changed[0]:
+            world.HOOKED[CHANGES_BEFORE] = 0.0
+        self._changed = [False, False]
         if self._untested > 0:
             self._untested -= 1
         elif known and continues and self._calls_none(status > 0):

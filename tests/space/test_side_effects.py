@@ -320,3 +320,62 @@ def test_a_velocity_that_is_not_finite_is_refused_also_of_another_body(speed: fl
         ep.EECA(space).step(DT)
     assert other.position == (20.0, 0.0)
     assert other.velocity == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("by", [
+    "velocity_func", "position_func", "pre_solve", "post_solve", "joint.pre_solve", "joint.post_solve",
+])  # fmt: skip
+def test_what_rests_on_a_floor_that_a_function_moves_falls_from_the_next_step_on(by: str) -> None:
+    """A trap door: whatever function opens it, as if it had been moved between the steps."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -10.0
+    floor, box = pymunk.Body(body_type=pymunk.Body.STATIC), pymunk.Body(1.0, 1.0)
+    box.position = 0.0, 1.0
+    space.add(floor, pymunk.Segment(floor, (-5.0, 0.0), (5.0, 0.0), 0.5))
+    space.add(box, pymunk.Poly.create_box(box, (1.0, 1.0)))
+    one, other = ball(space, 50.0), ball(space, 50.5)
+    for body, kind in ((one, 1), (other, 2)):
+        next(iter(body.shapes)).collision_type = kind
+    spring = pymunk.DampedSpring(one, other, (0.0, 0.0), (0.0, 0.0), 0.5, 10.0, 0.0)
+    space.add(spring)
+    calls = [0]
+
+    def move(*_: object) -> None:
+        calls[0] += 1
+        if calls[0] == 5:
+            floor.position = 0.0, -3.0
+
+    def after(own: Callable[..., None]) -> Callable[..., None]:
+        return lambda *given: (own(*given), move())[0]
+
+    if by == "velocity_func":
+        one.velocity_func = after(pymunk.Body.update_velocity)
+    elif by == "position_func":
+        one.position_func = after(pymunk.Body.update_position)
+    elif by.startswith("joint."):
+        setattr(spring, by.removeprefix("joint."), move)
+    else:
+        space.on_collision(1, 2, **{by: move})
+    stepper, heights = ep.EECA(space), list[float]()
+    for _ in range(10):
+        stepper.step(0.01)
+        heights.append(box.position.y)
+    assert floor.position == (0.0, -3.0)
+    exact = [1.0 - 5.0 * (0.01 * max(k - 4, 0)) ** 2 for k in range(10)]
+    assert heights == pytest.approx(exact, abs=1e-12)
+
+
+def test_bodies_whose_position_functions_push_one_another_are_pushed() -> None:
+    space = pymunk.Space()
+    pair = [ball(space, 0.0), ball(space, 20.0)]
+    for one, other in (pair, pair[::-1]):
+
+        def move(body: pymunk.Body, dt: float, other: pymunk.Body = other) -> None:
+            pymunk.Body.update_position(body, dt)
+            other.apply_force_at_world_point((0.0, 1.0), other.position)
+
+        one.position_func = move
+    stepper = ep.EECA(space)
+    for _ in range(3):
+        stepper.step(DT)
+    assert [body.velocity.y for body in pair] == pytest.approx([2.0 * DT, 2.0 * DT], abs=1e-14)
