@@ -379,3 +379,31 @@ def test_bodies_whose_position_functions_push_one_another_are_pushed() -> None:
     for _ in range(3):
         stepper.step(DT)
     assert [body.velocity.y for body in pair] == pytest.approx([2.0 * DT, 2.0 * DT], abs=1e-14)
+
+
+def test_a_floor_that_is_moved_while_a_sleeper_is_woken_moves_once() -> None:
+    """A step that reads what has woken gathers the floor where it was put; its displacement is not added again."""
+    space = pymunk.Space()
+    space.gravity, space.sleep_time_threshold = (0.0, -10.0), 0.2
+    floor, box, falling = (pymunk.Body(body_type=pymunk.Body.STATIC), pymunk.Body(1.0, 1.0), pymunk.Body(1.0, 1.0))
+    box.position, falling.position = (0.0, 1.0), (3.0, 8.0)
+    circle = pymunk.Circle(falling, 0.5)
+    circle.collision_type = 1
+    space.add(floor, pymunk.Segment(floor, (-1.0, 0.0), (1.0, 0.0), 0.5), box, pymunk.Poly.create_box(box, (1.0, 1.0)))
+    wall = pymunk.Segment(space.static_body, (2.0, 0.0), (4.0, 0.0), 0.5)
+    space.add(falling, circle, wall)
+    asleep = []
+
+    def open_trap(*_: object) -> None:
+        if not asleep:
+            asleep.append(box.is_sleeping)
+            floor.position = 0.0, -3.0
+            box.velocity = 0.0, 0.0
+
+    space.on_collision(1, 0, post_solve=open_trap)
+    stepper = ep.EECA(space)
+    for _ in range(200):
+        stepper.step(0.01)
+    assert asleep == [True]
+    assert floor.position == (0.0, -3.0)
+    assert box.position == pytest.approx((0.0, -2.0), abs=1e-9)
