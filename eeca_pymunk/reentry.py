@@ -1,5 +1,5 @@
 """Re-entry: functions of the program that are called within a step of a space cannot step that space, nor can another
-thread step it meanwhile."""
+thread step it meanwhile, or while its rollouts are computed."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 
 CALLING: set[pymunk.Space] = set()  # spaces within whose step functions are being called
 STEPPING: dict[pymunk.Space, int] = {}  # spaces that are being stepped, by which thread
+_CALLS = "step, run, rollout, get_state or set_state"
 
 
 class FunctionsCalled:
@@ -50,8 +51,8 @@ class Entered:
 def of_another_thread(space: pymunk.Space) -> RuntimeError:
     """The error of a thread that steps a space while another one does."""
     return RuntimeError(
-        f"step, run, get_state or set_state was called for {space} while another thread steps it: give each thread a "
-        "space and a stepper of its own, or let them wait for each other"
+        f"{_CALLS} was called for {space} while another thread steps it: give each thread a space and a stepper of its "
+        "own, or let them wait for each other"
     )
 
 
@@ -61,9 +62,8 @@ def refuse_within(space: pymunk.Space) -> None:
         if STEPPING.get(space, get_ident()) != get_ident():
             raise of_another_thread(space)
         raise RuntimeError(
-            f"step, run, get_state or set_state was called for {space} from within its own step, by a collision "
-            "handler or a function of a body or constraint: step it when that step has returned, or in "
-            "space.add_post_step_callback"
+            f"{_CALLS} was called for {space} from within its own step, by a collision handler or a function of a body "
+            "or constraint: step it when that step has returned, or in space.add_post_step_callback"
         )
 
 

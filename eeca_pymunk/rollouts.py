@@ -18,7 +18,7 @@ from .datasets import Rollouts
 from .errors import UnsupportedFeature
 from .events import Events
 from .recorder import versions
-from .reentry import refuse_within
+from .reentry import Entered, refuse_within
 from .rolling import Copy, Job, Rolling, roll_in_python
 from .runs import RunningStepper
 from .space.bodies import moving
@@ -67,6 +67,7 @@ def rollout(
     Raises:
         ValueError: a shape of an array is wrong, or a number is or would become infinite or NaN.
         UnsupportedFeature: functions are called within steps, and the space cannot be copied, see below.
+        RuntimeError: called by a function within a step, or while another thread steps the space or rolls it out.
 
     If `stepper.run` is a Python loop, so is this, in one thread: on the space itself, whose state is restored
     afterwards, or, if functions are called within steps, on a copy of it by pickle. So it is with ratchets, as each
@@ -99,7 +100,8 @@ def rollout(
     job = Job(
         start, push, T * every, every, dt, np.zeros((K, T, b, 6)), np.zeros((K, T, 6)), np.zeros(K, np.int64), full
     )
-    with tqdm(total=K, desc="rollout", unit="rollout", disable=not progress) as bar:
+    bar = tqdm(total=K, desc="rollout", unit="rollout", disable=not progress)
+    with bar, Entered(stepper.space):  # for all rollouts together: they share copies, or step the space itself
         if stepper.compiles() and not ratchets_of(stepper.space):
             events = _on_threads(stepper, job, min(count, max(K, 1)), bar.update)
         else:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import threading
+
 import numpy as np
 import pymunk
 import pytest
 
 import eeca_pymunk as ep
+from eeca_pymunk import rollouts
 from eeca_pymunk.compiled.kernels import prepare
 from tests.bitwise import CASES, CLOSURES
 from tests.test_states import moving, poses
@@ -155,6 +158,42 @@ def test_functions_are_called_on_a_copy() -> None:
     stepper.space.on_collision(pre_solve=lambda *_: None)
     with pytest.raises(ep.UnsupportedFeature, match="give functions that stand in a module"):
         ep.rollout(stepper, states, 30, 1 / 60)
+
+
+@pytest.mark.parametrize("compiled", [True, False])
+def test_a_space_is_held_by_one_thread_until_all_its_rollouts_are_computed(
+    compiled: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stepper, bodies = gas()
+    if not compiled:
+        bodies[0].center_of_gravity = (0.05, 0.0)  # the rollouts are a Python loop on the space itself
+    states = poses(stepper.space)[None].repeat(3, axis=0)
+    assert stepper.compiles() == compiled
+    kept, told = stepper.get_state(), []
+    expected = ep.rollout(stepper, states, 3, 1 / 60, threads=1)
+
+    def come() -> None:
+        for call in (
+            lambda: ep.rollout(stepper, states, 3, 1 / 60), lambda: stepper.step(1 / 60),
+            lambda: stepper.run(2, 1 / 60), stepper.get_state, lambda: stepper.set_state(kept),
+        ):  # fmt: skip
+            with pytest.raises(RuntimeError, match="rollout.*while another thread"):
+                call()
+            told.append(call)
+
+    class Bar(rollouts.tqdm):  # type: ignore[type-arg]
+        def update(self, n: float | None = 1) -> bool | None:  # in between
+            other = threading.Thread(target=come)
+            other.start()
+            other.join()
+            return super().update(n)
+
+    monkeypatch.setattr(rollouts, "tqdm", Bar)
+    found = ep.rollout(stepper, states, 3, 1 / 60, threads=1)
+    assert len(told) == (5 if compiled else 5 * len(states))  # compiled: one call for all three
+    np.testing.assert_array_equal(found, expected)
+    np.testing.assert_array_equal(stepper.get_state(), kept)
+    stepper.step(1 / 60)  # it is free again
 
 
 def test_bad_arguments_are_named() -> None:
