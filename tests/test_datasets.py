@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import threading
+from contextlib import suppress
 from dataclasses import fields
 from pathlib import Path
 
@@ -12,6 +14,7 @@ import pytest
 
 import eeca_pymunk as ep
 from comparisons.exact import Gas
+from eeca_pymunk.files import check_writable, whole_file
 from tests.test_rollouts import gas
 from tests.test_states import poses
 
@@ -53,6 +56,78 @@ def test_a_file_whose_content_was_changed_is_refused(tmp_path: Path) -> None:
     np.savez(tmp_path / "films.npz", **found)
     with pytest.raises(ValueError, match=r"is not a file that Rollouts\.save wrote"):
         ep.Rollouts.load(tmp_path / "films.npz")
+
+
+def test_each_writer_of_a_file_has_its_own_temporary_file(tmp_path: Path) -> None:
+    """Two at once: the second begins while the first is not done, and ends before it."""
+    path = tmp_path / "same.npz"
+    with whole_file(path) as first:
+        first.write_text("first")
+        with whole_file(path) as second:
+            assert second != first
+            second.write_text("second")
+        assert path.read_text() == "second"
+        assert first.read_text() == "first"
+    assert path.read_text() == "first"
+    with pytest.raises(FileNotFoundError), whole_file(path):
+        (tmp_path / "none").read_text()
+    assert [one.name for one in tmp_path.iterdir()] == ["same.npz"]
+    with pytest.raises(OSError, match="too long"):
+        check_writable(tmp_path / ("a" * 300 + ".npz"))
+
+
+def test_writers_of_one_file_leave_a_whole_one(tmp_path: Path) -> None:
+    rollouts = [made()[1], made()[1]]
+    rollouts[1].frames = rollouts[1].frames[:, :7].copy()
+    path = tmp_path / "same.npz"
+    for _ in range(5):
+        threads = [threading.Thread(target=one.save, args=(path,)) for one in rollouts]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        assert ep.Rollouts.load(path).frames.shape[1] in (7, 60)
+    assert [one.name for one in tmp_path.iterdir()] == ["same.npz"]
+
+
+@pytest.mark.parametrize("suffix", ["npz", "h5"])
+def test_damaged_files_are_refused(tmp_path: Path, suffix: str) -> None:
+    if suffix == "h5":
+        pytest.importorskip("h5py")
+    path = tmp_path / f"films.{suffix}"
+    rollouts = made()[1]
+    rollouts.save(path)
+    whole = path.read_bytes()
+    # The first name of zip's last part, with the version, flag and compression that it needs; bytes from everywhere.
+    last = whole.find(b"PK\x01\x02")
+    places = {*range(last, last + 60 if last > 0 else last), *range(0, len(whole), max(len(whole) // 300, 1))}
+    for place in sorted(places):
+        for change in (1, 0xFF):
+            damaged = bytearray(whole)
+            damaged[place] ^= change
+            path.write_bytes(damaged)
+            with suppress(ValueError):
+                np.testing.assert_array_equal(ep.Rollouts.load(path).frames, rollouts.frames)
+    for text in (b"", whole[:100], whole[:-100]):
+        path.write_bytes(text)
+        with pytest.raises(ValueError, match=r"is not a file that Rollouts\.save wrote"):
+            ep.Rollouts.load(path)
+    with pytest.raises(FileNotFoundError):
+        ep.Rollouts.load(tmp_path / f"none.{suffix}")
+
+
+def test_parameters_that_users_add(tmp_path: Path) -> None:
+    rollouts, path = made()[1], tmp_path / "films.npz"
+    rollouts.parameters |= {"seed": np.int64(3), "mass": np.float32(0.5), "warm": np.bool_(True), "nested": {"a": [1]}}
+    rollouts.save(path)
+    found = ep.Rollouts.load(path).parameters
+    assert (found["seed"], found["mass"], found["warm"], found["nested"]) == (3, 0.5, True, {"a": [1]})
+    before = path.read_bytes()
+    for bad in (np.arange(3), {1, 2}, {"of": pymunk.Space}, np.complex128(1j), np.longdouble(1.0)):
+        rollouts.parameters["units"] = bad
+        with pytest.raises(TypeError, match=r"parameters\['units'\] is .*: give numbers"):
+            rollouts.save(path)
+        assert path.read_bytes() == before
 
 
 def test_two_files_of_the_same_films_have_the_same_hash(tmp_path: Path) -> None:

@@ -177,7 +177,7 @@ def test_a_space_is_held_by_one_thread_until_all_its_rollouts_are_computed(
             lambda: ep.rollout(stepper, states, 3, 1 / 60), lambda: stepper.step(1 / 60),
             lambda: stepper.run(2, 1 / 60), stepper.get_state, lambda: stepper.set_state(kept),
         ):  # fmt: skip
-            with pytest.raises(RuntimeError, match="rollout.*while another thread"):
+            with pytest.raises(RuntimeError, match=r"rollout.*while another thread"):
                 call()
             told.append(call)
 
