@@ -42,6 +42,8 @@ class EECA(RunningStepper):
     def __init__(
         self, space: pymunk.Space, closure: Closure | None = None, *, sync: bool = True, ignore: Sequence[str] = ()
     ) -> None:
+        if closure is not None and (isinstance(closure, type) or not hasattr(closure, "prepare")):
+            raise TypeError(f"closure = {closure!r}: give an instance, such as TimeOfImpact(), or None")
         self.closure: Closure = TimeOfImpact() if closure is None else closure
         self._saved: Saved | None = None  # in a copy, until its first step
         super().__init__(space, sync=sync, ignore=ignore)

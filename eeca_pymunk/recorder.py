@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import functools
+import math
 import sys
-from operator import index
 from typing import TYPE_CHECKING
 
 import numpy as np
 from tqdm import tqdm
 
+from .arguments import check_count, check_finite
 from .arrays import FloatArray, IntArray
 from .energy.invariants import traces
 from .energy.ledger import LedgerTrace, as_array
@@ -20,11 +21,12 @@ from .runs import RunningStepper
 from .space.bodies import ANGLE, ANGULAR_VELOCITY, POSITION, VELOCITY, Bodies, moving
 from .space.edits import clock
 from .space.outlines import Outlines
-from .stepper import Stepper, check_dt
+from .stepper import Stepper
 
 if TYPE_CHECKING:
     import pymunk
 
+_MOST_STEPS = 1e15  # of which every one counts in floating point
 _PER_BODY = 6 * 8  # bytes for a body and moment: position, angle, velocity, spin
 _PER_MOMENT = 11 * 8  # further bytes for a moment: time, energies (2), momentum (2), ledger (6)
 MEMORY = 2.0**30  # bytes that a recording may take by default
@@ -40,9 +42,10 @@ def versions() -> dict[str, str]:
 
 def step_count(duration: float, dt: float) -> int:
     """Number of steps of dt whose sum is nearest to the duration, at least 1; ValueError unless both are positive and
-    finite."""
-    if check_dt(dt) == 0.0 or check_dt(duration) == 0.0:
-        raise ValueError(f"duration = {duration}, dt = {dt}: give numbers > 0")
+    finite, and for more than `_MOST_STEPS`."""
+    duration, dt = check_finite("duration", duration), check_finite("dt", dt)
+    if duration / dt > _MOST_STEPS:
+        raise ValueError(f"duration = {duration}, dt = {dt}: {duration / dt:.3g} steps, give {_MOST_STEPS:.0g} at most")
     return max(1, round(duration / dt))
 
 
@@ -63,17 +66,17 @@ def record(
     Raises:
         ValueError: also if a body that is not static is added during the run; for all others see `Stepper.step`.
     """
-    every, duration, dt = index(every), float(duration), float(dt)
-    if every < 1:
-        raise ValueError(f"every = {every}: give a whole number >= 1")
-    count = step_count(duration, dt)
+    every, count, dt = check_count("every", every, 1), step_count(duration, dt), float(dt)
+    if not memory > 0:
+        raise ValueError(f"memory = {memory}: give a number of bytes > 0")
     kept = moving(stepper.space)
     moments = 1 + count // every
     needed = moments * (len(kept) * _PER_BODY + _PER_MOMENT)
     if needed > memory:
+        least = every * needed / memory
+        remedy = f"give every >= {math.ceil(least)}, or more memory" if least < count else "give more"
         raise ValueError(
-            f"{moments} moments of {len(kept)} bodies take {needed:.2g} bytes, more than memory = {memory:.2g}: "
-            f"give every >= {int(np.ceil(every * needed / memory))}, or more memory"
+            f"{moments} moments of {len(kept)} bodies take {needed:.2g} bytes, and memory = {memory:.2g}: {remedy}"
         )
     if isinstance(stepper, RunningStepper) and stepper.compiles():
         recording = _record_compiled(stepper, kept, count, dt, every, progress)

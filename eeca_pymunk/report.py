@@ -185,7 +185,7 @@ class RunReport:
     Attributes:
         time: at its end, as `StepReport.time`.
         steps: number of steps taken.
-        ledger: sum of the ledgers of all steps; None if the stepper has none.
+        ledger: sum of the ledgers of all steps; None if the stepper has none, or has taken no step.
         impacts: number of impacts, without persistent contacts.
         unmet: number of steps that did not meet all budgets and tolerances, see `StepReport.converged`.
         iterations: number of iterations of the solver in all steps.

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from tqdm import tqdm
 
+from .arguments import check_count
 from .arrays import FloatArray
 from .compiled.targets import processors
 from .datasets import Rollouts
@@ -23,7 +24,7 @@ from .rolling import Copy, Job, Rolling, roll_in_python
 from .runs import RunningStepper
 from .space.bodies import moving
 from .space.constraints import ratchets_of
-from .stepper import check_dt, check_steps
+from .stepper import check_dt
 
 _PIECES_PER_THREAD = 8  # largest number of pieces of work for each thread, so that threads end at about the same time
 _STEPS_PER_PIECE = 4096  # least number of steps of a piece, unless there would be fewer pieces than threads
@@ -76,7 +77,7 @@ def rollout(
     if not isinstance(stepper, RunningStepper):
         raise TypeError(f"{type(stepper).__name__} has no rollouts: give an EECA")
     refuse_within(stepper.space)
-    steps, every, dt = check_steps(steps), check_steps(every), check_dt(dt)
+    steps, every, dt = check_count("steps", steps), check_count("every", every), check_dt(dt)
     if steps == 0 or every == 0 or dt == 0.0 or steps < every:
         raise ValueError(f"steps = {steps}, every = {every}, dt = {dt}: give numbers > 0, every <= steps")
     bodies = moving(stepper.space)
@@ -94,9 +95,7 @@ def rollout(
         if array is not None and not np.isfinite(array).all():
             at = tuple(np.argwhere(~np.isfinite(array))[0].tolist())
             raise ValueError(f"{name}[{at}] is {array[at]}: give finite numbers")
-    count = processors() if threads is None else check_steps(threads)
-    if count == 0:
-        raise ValueError(f"threads = {threads}: give a whole number > 0, or None")
+    count = processors() if threads is None else check_count("threads", threads, 1)
     job = Job(
         start, push, T * every, every, dt, np.zeros((K, T, b, 6)), np.zeros((K, T, 6)), np.zeros(K, np.int64), full
     )

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from tqdm import tqdm
 
+from .arguments import check_count
 from .arrays import FloatArray, IntArray
 from .impacts.edits import FILTER, Changes, Edits, write_edits
 from .impacts.run import RunBuffers
@@ -22,7 +23,7 @@ from .reentry import Entered, refuse_within
 from .report import RunReport
 from .space.world import World
 from .states import get_state, set_state
-from .stepper import check_dt, check_steps
+from .stepper import check_dt
 
 if TYPE_CHECKING:
     import pymunk
@@ -163,7 +164,7 @@ class RunningStepper(PackedStepper):
 
     def run(self, steps: int, dt: float, progress: bool = False) -> RunReport:
         refuse_within(self.space)
-        steps, dt = check_steps(steps), check_dt(dt)
+        steps, dt = check_count("steps", steps), check_dt(dt)
         if steps == 0 or dt == 0.0 or not self.compiles():
             return super().run(steps, dt, progress)
         buffers = self.buffered_run(steps, dt, progress=progress)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import operator
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Protocol
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from tqdm import tqdm
 
+from .arguments import check_count
 from .arrays import IntArray
 from .compiled import Table
 from .energy.ledger import Ledger, as_array
@@ -26,14 +26,6 @@ def check_dt(dt: float) -> float:
     if not (dt >= 0 and math.isfinite(dt)):
         raise ValueError(f"dt = {dt}: give a finite time step >= 0 (0 does nothing)")
     return dt
-
-
-def check_steps(steps: int) -> int:
-    """A number of steps; ValueError unless it is a whole number >= 0."""
-    count = operator.index(steps)
-    if count < 0:
-        raise ValueError(f"steps = {steps}: give a whole number >= 0")
-    return count
 
 
 class Stepper(ABC):
@@ -70,7 +62,7 @@ class Stepper(ABC):
 
         If a step raises, or after an interrupt, the space is at the end of the last complete step.
         """
-        steps, dt = check_steps(steps), check_dt(dt)
+        steps, dt = check_count("steps", steps), check_dt(dt)
         total, impacts, unmet, iterations, lock, done = np.zeros(6), 0, 0, 0, 1.0, 0
         for _ in tqdm(range(steps if dt > 0.0 else 0), desc=type(self).__name__, unit="step", disable=not progress):
             report = self.step(dt)
@@ -79,7 +71,7 @@ class Stepper(ABC):
             impacts += int(np.count_nonzero((contacts.duration == 0.0) & (report.impulse != 0.0)))
             unmet, iterations, done = unmet + (not report.converged), iterations + report.iterations, done + 1
             lock = max(lock, report.lock, key=lambda scale: abs(scale - 1.0))
-        ledger = None if np.isnan(total).any() else Ledger(*total.tolist())
+        ledger = None if done == 0 or np.isnan(total).any() else Ledger(*total.tolist())
         return RunReport(self.time, done, ledger, impacts, unmet, iterations, lock)
 
     @property

@@ -152,6 +152,27 @@ def test_queries_see_the_new_positions(make: Make) -> None:
     assert hit.shape.body is body
 
 
+def test_native_refuses_what_it_cannot_step_and_is_as_before() -> None:
+    space, body = one_disk(velocity=(0.3, -1.0))
+    native = ep.Native(space)
+    for value, said in ((math.nan, "nan"), (math.inf, "inf")):
+        space.gravity = (0.0, value)
+        with pytest.raises(ValueError, match=rf"space\.gravity = .*{said}"):
+            native.step(0.1)
+    space.gravity, body.force = (0.0, 0.0), (1e308, 0.0)
+    before = body.position, body.velocity, body.force
+    with pytest.raises(ValueError, match=r"(position|velocity)\.x of .* is inf: the step would overflow"):
+        native.step(1e3)
+    assert (body.position, body.velocity, body.force) == before
+    assert native.time == 0.0
+    body.force = (0.0, 0.0)
+    native.step(0.1)
+    assert body.position == pytest.approx(before[0] + 0.1 * before[1])
+    hit = space.point_query_nearest(body.position, 0.0, pymunk.ShapeFilter())
+    assert hit is not None
+    assert hit.shape.body is body
+
+
 def test_native_may_follow_eeca_and_the_other_way_round() -> None:
     space, body = one_disk(velocity=(0.3, -1.0), gravity=9.81)
     eeca, native = ep.EECA(space), ep.Native(space)
@@ -290,6 +311,28 @@ def test_bad_stiffness(stiffness: float) -> None:
 def test_bad_newmark_parameters(beta: float, gamma: float) -> None:
     with pytest.raises(ValueError, match=r"(beta|gamma) = "):
         ep.Newmark(one_disk()[0], 1e6, beta, gamma)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("tolerance", math.nan), ("tolerance", -1.0), ("tolerance", 0.0), ("max_iterations", 0), ("max_iterations", 1.5)],
+)
+def test_bad_arguments_of_the_dashpot(name: str, value: float) -> None:
+    with pytest.raises((ValueError, TypeError), match=f"{name} = {value}: give"):
+        ep.Dashpot(1e6, 1.0, **{name: value})
+
+
+@pytest.mark.parametrize("most", [-1, 1.5, math.nan, 10**19])
+def test_bad_numbers_of_impacts(most: int) -> None:
+    with pytest.raises((ValueError, TypeError), match=r"max_impacts = .*: give a whole number from 0"):
+        ep.TimeOfImpact(most)
+    ep.EECA(one_disk(velocity=(0.0, -1.0))[0], ep.TimeOfImpact(2**31 - 1)).run(100, 0.01)
+
+
+@pytest.mark.parametrize("closure", [ep.TimeOfImpact, "midstep", 3])
+def test_closures_are_instances(closure: object) -> None:
+    with pytest.raises(TypeError, match=r"closure = .*: give an instance"):
+        ep.EECA(one_disk()[0], closure)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("ratio", [-1.0, math.nan, math.inf])

@@ -41,6 +41,31 @@ def test_bad_arguments(duration: float, dt: float, every: int) -> None:
         ep.record(ep.EECA(scene.space), duration, dt, every)
 
 
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ({"duration": -1.0}, r"duration = -1\.0: give a finite number > 0"),
+        ({"duration": math.inf}, "duration = inf"),
+        ({"duration": None}, "duration = None: give"),
+        ({"dt": -0.1}, r"dt = -0\.1: give"),
+        ({"duration": 1e300, "dt": 1e-300}, r"inf steps, give 1e\+15 at most"),
+        ({"every": 1.5}, r"every = 1\.5: give a whole number >= 1"),
+        ({"every": -1}, "every = -1"),
+        ({"memory": 0}, "memory = 0: give"),
+        ({"memory": math.nan}, "memory = nan: give"),
+        ({"memory": 1e-300}, "memory = 1e-300: give more"),
+        ({"memory": 1000.0}, r"give every >= 2, or more"),
+    ],
+)
+def test_bad_arguments_are_named(arguments: dict[str, float], said: str) -> None:
+    scene = scenes.build("carom")
+    before = [(b.position, b.velocity) for b in scene.bodies]
+    given = {"duration": 1.0, "dt": 0.1, **arguments}
+    with pytest.raises((ValueError, TypeError), match=said):
+        ep.record(ep.EECA(scene.space), **given)  # type: ignore[arg-type]
+    assert [(b.position, b.velocity) for b in scene.bodies] == before
+
+
 def test_measure_counts_rotation_gravity_and_offset_mass() -> None:
     space = pymunk.Space()
     space.gravity = (0.0, -10.0)

@@ -209,12 +209,17 @@ def test_bad_arguments_are_named() -> None:
         ({"states": good, "steps": 1, "dt": 0.0}, "give numbers > 0"),
         ({"states": good, "steps": 1, "dt": 0.1, "every": 2}, "every <= steps"),
         ({"states": good, "steps": 2, "dt": 0.1, "controls": np.zeros((1, 2, 5))}, r"give \(1, 2, 5, 3\)"),
-        ({"states": good, "steps": 2, "dt": 0.1, "threads": 0}, "give a whole number > 0"),
+        ({"states": good, "steps": 2, "dt": 0.1, "threads": 0}, "threads = 0: give a whole number >= 1"),
+        ({"states": good, "steps": 2, "dt": 0.1, "threads": -1}, "threads = -1"),
+        ({"states": good, "steps": 2, "dt": 0.1, "every": -1}, "every = -1"),
         ({"states": 1e200 * good, "steps": 2, "dt": 0.1}, "rollout 0, after 0 steps"),
     ):
         with pytest.raises(ValueError, match=said):
             ep.rollout(stepper, **arguments)  # type: ignore[call-overload]
         np.testing.assert_array_equal(stepper.get_state(), before)
+    for name in ("steps", "every", "threads"):
+        with pytest.raises(TypeError, match=rf"{name} = 1\.5: give a whole number"):
+            ep.rollout(stepper, **{"states": good, "steps": 2, "dt": 0.1, name: 1.5})  # type: ignore[call-overload]
     with pytest.raises(TypeError, match="give an EECA"):
         ep.rollout(ep.Native(stepper.space), good, 1, 0.1)  # type: ignore[call-overload]
     assert ep.rollout(stepper, good[:0], 3, 0.1).shape == (0, 3, 5, 6)

@@ -17,7 +17,7 @@ PACKAGE = Path(eeca_pymunk.__file__).parent
 FILES = sorted(PACKAGE.rglob("*.py"))
 # From the bottom to the top; a room may import what stands on an earlier line, and itself.
 FLOORS = (
-    "arrays layout errors files reentry",
+    "arguments arrays layout errors files reentry",
     "compiled",
     "model",
     "energy",

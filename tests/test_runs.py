@@ -177,8 +177,8 @@ def test_bad_numbers_change_nothing(steps: int, dt: float) -> None:
     for stepper in (ep.EECA(space), ep.Native(space)):
         with pytest.raises(ValueError, match="give"):
             stepper.run(steps, dt)
-    with pytest.raises(TypeError):
-        ep.EECA(space).run(1.5, dt)  # type: ignore[arg-type]
+        with pytest.raises(TypeError, match=r"steps = 1\.5: give a whole number >= 0"):
+            stepper.run(1.5, dt)  # type: ignore[arg-type]
     assert state(space) == before
 
 
@@ -186,8 +186,9 @@ def test_nothing_to_do() -> None:
     space, _ = ball()
     before = state(space)
     for steps, dt in ((0, 0.1), (3, 0.0)):
-        report = ep.EECA(space).run(steps, dt)
-        assert (report.steps, report.time, report.converged) == (0, 0.0, True)
+        for stepper in (ep.EECA(space), ep.EECA(space, ep.Dashpot(1e6, 1.0)), ep.Native(space)):
+            report = stepper.run(steps, dt)
+            assert (report.steps, report.time, report.converged, report.ledger) == (0, 0.0, True, None)
     assert state(space) == before
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..arguments import check_count, check_finite
 from ..arrays import FloatArray
 from ..energy import balance
 from ..energy.complementarity import solve
@@ -32,8 +33,8 @@ class Dashpot:
     Args:
         stiffness: K > 0, mass/time².
         damping_ratio: xi >= 0.
-        tolerance: of the change of the impulses between iterations, relative to the largest, and of psi2.
-        max_iterations: of the fixed point; `StepReport.converged` is False if they do not suffice.
+        tolerance: of the change of the impulses between iterations, relative to the largest, and of psi2; > 0.
+        max_iterations: of the fixed point, >= 1; `StepReport.converged` is False if they do not suffice.
     """
 
     stiffness: float
@@ -43,8 +44,9 @@ class Dashpot:
 
     def __post_init__(self) -> None:
         check_stiffness(self.stiffness)
-        if not (self.damping_ratio >= 0 and math.isfinite(self.damping_ratio)):
-            raise ValueError(f"damping_ratio = {self.damping_ratio}: give a finite number >= 0")
+        check_finite("damping_ratio", self.damping_ratio, zero=True)
+        check_finite("tolerance", self.tolerance)
+        check_count("max_iterations", self.max_iterations, 1)
 
     def prepare(self, world: World) -> Disks:
         """The disks of a world of single disks and static shapes, which was just read."""
@@ -125,5 +127,4 @@ def locked_motion(
 
 def check_stiffness(stiffness: float) -> None:
     """Raise ValueError unless the penalty stiffness K is positive and finite."""
-    if not (stiffness > 0 and math.isfinite(stiffness)):
-        raise ValueError(f"stiffness = {stiffness}: give a finite number > 0, in mass/time²")
+    check_finite("stiffness", stiffness, unit="mass/time²")

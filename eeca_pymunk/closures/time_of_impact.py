@@ -5,11 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ..arguments import check_count
 from ..impacts.scene import EventLoop
 from ..joints.workspace import NO_LINKAGE
 
 if TYPE_CHECKING:
     from ..space.world import World
+
+_MOST = 2**31 - 1  # impacts, which compiled code counts as integers
 
 
 @dataclass(frozen=True)
@@ -22,10 +25,13 @@ class TimeOfImpact:
     contacts on curved shapes.
 
     Args:
-        max_impacts: of a body in a step. Further ones are ignored, and `report.converged` is False.
+        max_impacts: of a body in a step, >= 0. Further ones are ignored, and `report.converged` is False.
     """
 
     max_impacts: int = 100_000
+
+    def __post_init__(self) -> None:
+        check_count("max_impacts", self.max_impacts, most=_MOST)
 
     def prepare(self, world: World) -> EventLoop:
         """The event loop of a world that was just read."""
