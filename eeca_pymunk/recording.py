@@ -67,5 +67,7 @@ class Recording(ArrayFile):
         return len(self.time)
 
     def _repr_html_(self) -> str:
+        if len(self.outlines) == 0:
+            return f"<p>{len(self)} moments of {self.position.shape[1]} bodies, without shapes</p>"
         # The only import of a higher room: a recording in a notebook is shown as a player.
         return str(import_module(".render", __package__).player(self))

@@ -13,6 +13,7 @@ import numpy as np
 import pymunk
 import pytest
 from matplotlib.colors import to_rgb
+from matplotlib.quiver import Quiver
 from PIL import Image
 
 import eeca_pymunk as ep
@@ -124,8 +125,19 @@ def test_html_needs_nothing_else_and_shows_every_frame(recording: ep.Recording, 
     ("arguments", "told"),
     [
         ({"path": "film.avi"}, "choose one of .gif, .mp4, .html"),
-        ({"fps": 0}, "fps = 0: give a number > 0"),
+        ({"fps": 0}, "fps = 0: give a finite number > 0"),
+        ({"fps": math.inf}, "fps = inf: give"),
+        ({"fps": 1e-3}, "fps = 0.001: give a number from 0.002 to 1000"),
         ({"frames": 0}, "frames = 0"),
+        ({"frames": 2.0}, "frames = 2.0: give a whole number >= 1"),
+        ({"dpi": 0}, "dpi = 0: give"),
+        ({"dpi": math.nan}, "dpi = nan: give"),
+        ({"dpi": 1e6}, "dpi = 1e+06: frames of 4000000 x"),
+        ({"view": (0.0, 1.0, 2.0, 2.0)}, "view = (0.0, 1.0, 2.0, 2.0): give four finite numbers"),
+        ({"view": (0.0, 1.0, 0.0)}, "view = (0.0, 1.0, 0.0): give four finite numbers"),
+        ({"view": (0.0, math.inf, 0.0, 1.0)}, "give four finite numbers"),
+        ({"exact": lambda t: np.zeros((7, 2))}, "exact(0) has shape (7, 2): return (1, 2) positions"),
+        ({"path": "a" * 300 + ".gif"}, "too long"),
         ({"arrow": "spin"}, "arrow = 'spin': choose one of velocity, momentum"),
         ({"titles": ["a", "b"]}, "2 titles for 1 recordings"),
         ({"recordings": []}, "0 recordings: give one to 4"),
@@ -135,9 +147,67 @@ def test_bad_films_are_refused_before_anything_is_written(
     arguments: dict[str, object], told: str, recording: ep.Recording, tmp_path: Path
 ) -> None:
     path = tmp_path / str(arguments.pop("path", "film.gif"))
-    with pytest.raises(ValueError, match=re.escape(told)):
+    with pytest.raises((ValueError, TypeError, OSError), match=re.escape(told)):
         render.animate(**{"recordings": recording, "path": path, **arguments})  # type: ignore[arg-type]
     assert not list(tmp_path.iterdir())
+
+
+def test_bad_pictures_and_players_are_refused(recording: ep.Recording, tmp_path: Path) -> None:
+    ax = render.figure(2.0, 2.0).add_subplot()
+    for arguments, told in (
+        ({"path": tmp_path / "snap"}, "snap': give a name that ends in one of"),
+        ({"path": tmp_path / "snap.xyz"}, "snap.xyz': give a name that ends in one of"),
+        ({"view": (0.0, 0.0, 0.0, 1.0)}, "view = (0.0, 0.0, 0.0, 1.0): give four"),
+    ):
+        with pytest.raises(ValueError, match=re.escape(told)):
+            render.snapshot(recording, ax, **arguments)  # type: ignore[arg-type]
+        with pytest.raises(ValueError, match=re.escape(told)):
+            render.strip(recording, [0.0], **arguments)  # type: ignore[arg-type]
+    assert not ax.has_data()
+    assert not list(tmp_path.iterdir())
+    with pytest.raises(ValueError, match="fps = 0: give"):
+        render.player(recording, fps=0)
+
+
+def test_points_and_what_was_removed_are_drawn(tmp_path: Path) -> None:
+    space = pymunk.Space()
+    body = pymunk.Body(1.0, 1.0)
+    body.position = (3.0, 1e6)
+    space.add(body, pymunk.Circle(body, 0.0))
+    ax = render.snapshot(space, velocity=True, momentum=True, path=tmp_path / "point.png")  # arrows without length
+    assert ax.get_xlim() == pytest.approx((2.0, 4.0))
+    stepper = ep.EECA(space)
+    still = ep.record(stepper, 0.1, 0.05)
+    render.animate(still, tmp_path / "point.gif", arrow="velocity")
+    assert len(frames(tmp_path / "point.gif")) == 3
+    space.add_post_step_callback(lambda space, key: space.remove(body, *body.shapes), "remove")
+    gone = ep.record(stepper, 0.1, 0.05)
+    assert np.isnan(gone.position[-1]).all()
+    render.strip(gone, [0.0, 0.1], velocity=True)
+    render.animate(gone, tmp_path / "gone.gif", arrow="momentum")
+    with pytest.raises(ValueError, match="no shape is there at these moments"):
+        render.snapshot(gone, time=0.1)
+    render.snapshot(gone, time=0.1, view=(0.0, 1.0, 0.0, 1.0))
+
+
+def test_recordings_without_shapes_are_shown_as_text() -> None:
+    space = pymunk.Space()
+    space.add(pymunk.Body(1.0, 1.0))
+    assert ep.record(ep.EECA(space), 0.1, 0.05)._repr_html_() == "<p>3 moments of 1 bodies, without shapes</p>"
+
+
+def test_kinematic_bodies_have_no_momentum_to_draw(tmp_path: Path) -> None:
+    """One that stands too: 0 times infinity."""
+    space = pymunk.Space()
+    floor, ball = pymunk.Body(body_type=pymunk.Body.KINEMATIC), pymunk.Body(2.0, 1.0)
+    ball.position, ball.velocity = (3.0, 0.0), (1.0, 0.0)
+    space.add(floor, ball, pymunk.Circle(floor, 0.3), pymunk.Circle(ball, 0.3))
+    ax = render.snapshot(space, momentum=True, path=tmp_path / "momenta.png")
+    (drawn,) = [one for one in ax.collections if isinstance(one, Quiver)]
+    assert drawn.U.tolist() == [0.0, 2.0]
+    shown = film.Film(ep.record(ep.EECA(space), 0.1, 0.05), arrow="momentum")
+    assert shown.panels[0].vectors[0].tolist() == [[0.0, 0.0], [2.0, 0.0]]
+    assert len(list(shown.images())) == 3
 
 
 def test_without_ffmpeg_mp4_says_what_to_install(

@@ -14,6 +14,7 @@ from eeca_pymunk.space.outlines import Outlines, to_world
 MOVING_COLOR, STATIC_COLOR, SENSOR_COLOR = "#0072b2", "#444444", "#cc79a7"
 ARROW_COLOR, GHOST_COLOR = "#d55e00", "#e69f00"
 COLORS = (MOVING_COLOR, STATIC_COLOR, SENSOR_COLOR, ARROW_COLOR, GHOST_COLOR)
+_POINT = 1e-9  # of the distance from the origin: largest size of what is drawn as a point
 _ARC = 7  # points of the rounding of a corner
 
 
@@ -103,7 +104,8 @@ def _rounded(vertices: FloatArray, radius: float) -> FloatArray:
 
 
 def bounds(outlines: Outlines, position: FloatArray, angle: FloatArray) -> tuple[float, float, float, float]:
-    """(left, right, bottom, top) of all shapes with the bodies at (T, N, 2) positions and (T, N) angles."""
+    """(left, right, bottom, top) of all shapes with the bodies at (T, N, 2) positions and (T, N) angles; NaN leaves a
+    body out. ValueError if no shape is left."""
     if len(outlines) == 0:
         raise ValueError("there are no shapes to draw: the space, or the recording, has none")
     radius = np.repeat(outlines.radius, outlines.count)[:, None]
@@ -113,5 +115,9 @@ def bounds(outlines: Outlines, position: FloatArray, angle: FloatArray) -> tuple
         here = np.isfinite(world).all(axis=1)
         low = np.minimum(low, (world - radius)[here].min(axis=0, initial=np.inf))
         high = np.maximum(high, (world + radius)[here].max(axis=0, initial=-np.inf))
-    pad = 0.03 * float(np.max(high - low))
+    size, far = float(np.max(high - low)), float(np.max(np.maximum(np.abs(low), np.abs(high))))
+    if size < 0.0:
+        raise ValueError("no shape is there at these moments, all bodies were removed: give others, or a view")
+    # Nothing but a point has no size: any scale shows it.
+    pad = 0.03 * size if size > _POINT * far else max(1.0, 2.0 * _POINT * far)
     return float(low[0]) - pad, float(high[0]) + pad, float(low[1]) - pad, float(high[1]) + pad

@@ -15,9 +15,12 @@ import numpy.typing as npt
 from matplotlib.colors import to_rgb
 from PIL import Image
 
+from eeca_pymunk.arguments import check_finite
+
 from .drawing import COLORS
 
 Frames = Iterable[npt.NDArray[np.uint8]]
+_SLOWEST, _FASTEST = 0.002, 1000.0  # frames per second; a GIF has delays up to 655 s, a page whole milliseconds
 _SHADES = 9  # of each colour towards white, for smooth edges; few colours make small files
 
 
@@ -29,6 +32,13 @@ def encoder(suffix: str) -> Callable[[Frames, Path, float], None]:
     if suffix == ".mp4" and find_spec("imageio_ffmpeg") is None:
         raise ValueError("MP4 needs ffmpeg: pip install 'eeca-pymunk[video]', or choose .gif or .html")
     return _ENCODERS[suffix]
+
+
+def check_fps(fps: float) -> float:
+    """A number of frames per second; ValueError unless all formats and players can show so many, or so few."""
+    if not _SLOWEST <= check_finite("fps", fps) <= _FASTEST:
+        raise ValueError(f"fps = {fps}: give a number from {_SLOWEST:g} to {_FASTEST:g}")
+    return float(fps)
 
 
 def _gif(frames: Frames, path: Path, fps: float) -> None:

@@ -16,19 +16,21 @@ from matplotlib.lines import Line2D
 from matplotlib.quiver import Quiver
 from tqdm import tqdm
 
+from eeca_pymunk.arguments import check_count, check_finite
 from eeca_pymunk.arrays import FloatArray
 from eeca_pymunk.files import check_writable, whole_file
 from eeca_pymunk.recording import Recording
 
 from .drawing import MOVING_COLOR, Drawing, bounds
-from .encode import encoder, html_player
-from .pictures import ARROWS, View, arrows, figure, frame
+from .encode import check_fps, encoder, html_player
+from .pictures import ARROWS, View, arrows, check_view, figure, frame, momenta
 from .traces import FONT, Trace, readable, trace
 
 Image = npt.NDArray[np.uint8]  # (height, width, 3)
 Exact = Callable[[float], FloatArray | None]
 _MOST = 4  # panels
 _ABREAST = 3  # panels in one row; more are shown in two rows
+_LEAST_PIXELS, _PIXELS = 16, 1 << 16  # of a frame's height and width, which matplotlib can draw
 _PREVIEW = 60  # frames of a notebook's player
 _TRAILED = 5  # number of bodies up to which paths are drawn
 
@@ -47,22 +49,21 @@ def animate(
     Args:
         recordings: one to four.
         titles: of the panels; stepper and dt if None.
-        fps: frames per second, > 0; delays of a GIF are multiples of 10 ms.
+        fps: frames per second, .002 to 1000; delays of a GIF are multiples of 10 ms.
         exact: function of time that returns the (N, 2) exact positions, None where unknown (`Scene.exact`): drawn as
             outlines.
         view: (left, right, bottom, top) lengths; by default all shapes at all moments of all recordings.
         frames: number of frames, evenly spaced in time; by default the largest number of moments.
         arrow: "velocity" or "momentum" of every body.
-        dpi: dots per inch; a panel is 4 inches wide.
+        dpi: dots per inch, > 0; a panel is 4 inches wide.
         progress: show a progress bar.
 
-    Raises ValueError or OSError, before anything is drawn, for bad arguments, a path that cannot be written, or an MP4
-    without ffmpeg (`pip install eeca-pymunk[video]`). The file is whole or absent.
+    Raises ValueError, TypeError or OSError, before anything is drawn, for bad arguments, a path that cannot be written,
+    or an MP4 without ffmpeg (`pip install eeca-pymunk[video]`). The file is whole or absent.
     """
     path = Path(path)
     encode = encoder(path.suffix)
-    if not fps > 0:
-        raise ValueError(f"fps = {fps}: give a number > 0")
+    fps = check_fps(fps)
     film = Film(recordings, titles=titles, exact=exact, view=view, frames=frames, arrow=arrow, dpi=dpi)
     check_writable(path)
     shots = tqdm(film.images(), desc=path.name, unit="frame", total=len(film), disable=not progress)
@@ -73,6 +74,7 @@ def animate(
 
 def player(recording: Recording, fps: float = 20) -> str:
     """Self-contained HTML of a small player of the recording."""
+    fps = check_fps(fps)
     film = Film(recording, frames=min(len(recording), _PREVIEW), dpi=60)
     name = html.escape(str(recording.parameters.get("stepper", "recording")))
     return html_player(film.images(), fps, f"{name}, {len(recording)} frames")
@@ -92,8 +94,10 @@ class Film:
         titles = [_title(r) for r in shown] if titles is None else list(titles)
         if len(titles) != len(shown):
             raise ValueError(f"{len(titles)} titles for {len(shown)} recordings: give one for each")
-        if frames is not None and frames < 1:
-            raise ValueError(f"frames = {frames}: give a whole number >= 1")
+        if frames is not None:
+            frames = check_count("frames", frames, 1)
+        dpi = check_finite("dpi", dpi)
+        check_view(view)
         if arrow not in (None, *ARROWS):
             raise ValueError(f"arrow = {arrow!r}: choose one of {', '.join(ARROWS)}, or None")
         if view is None:
@@ -105,10 +109,14 @@ class Film:
         # Digits that resolve a hundredth of the film; their fixed number keeps the text in place.
         self.digits = min(max(2 - math.floor(math.log10(end)), 0), 9) if end > 0.0 else 0
         # Even numbers of pixels, which video codecs require.
-        tall = min(max(4.0 * (view[3] - view[2]) / (view[1] - view[0]), 2.0), 8.0) + 1.9
+        tall = min(max(4.0 * abs((view[3] - view[2]) / (view[1] - view[0])), 2.0), 8.0) + 1.9
         rows = 1 if len(shown) <= _ABREAST else 2
         across = -(-len(shown) // rows)
         pixels = [2 * round(0.5 * dpi * inches) for inches in (4.0 * across, tall * rows)]
+        if not _LEAST_PIXELS <= min(pixels) <= max(pixels) < _PIXELS:
+            raise ValueError(
+                f"dpi = {dpi:g}: frames of {pixels[0]} x {pixels[1]} pixels, give one for {_LEAST_PIXELS} to {_PIXELS}"
+            )
         self.figure = figure(pixels[0] / dpi, pixels[1] / dpi, dpi)
         axes = self.figure.subplots(2 * rows, across, squeeze=False, height_ratios=(tall - 1.6, 1.2) * rows)
         traces = [trace(ax, r) for ax, r in zip(axes[1::2].flat, shown, strict=True)]
@@ -165,16 +173,17 @@ class _Panel:
                 ax.plot([], [], color=MOVING_COLOR, linewidth=0.8)[0] for _ in range(recording.position.shape[1])
             ]
             self.moving += self.trails
-        self.exact = exact if exact is not None and exact(0.0) is not None else None
-        if self.exact is not None:
+        self.exact = exact
+        if self._exact_at(0.0) is None:
+            self.exact = None
+        else:
             self.ghost = Drawing(ax, recording.outlines, ghost=True)
             self.moving += self.ghost.artists
         self.arrows: Quiver | None = None
         if arrow is not None:
-            mass = recording.mass[:, None]
-            self.vectors = recording.velocity * mass if arrow == "momentum" else recording.velocity
+            self.vectors = momenta(recording.velocity, recording.mass) if arrow == "momentum" else recording.velocity
             self.vectors = np.where(np.isfinite(self.vectors), self.vectors, 0.0)
-            longest = float(np.linalg.norm(self.vectors, axis=2).max(initial=0.0))
+            longest = float(np.hypot(self.vectors[..., 0], self.vectors[..., 1]).max(initial=0.0))
             self.arrows = arrows(ax, recording.position[0], self.vectors[0], longest)
             self.moving.append(self.arrows)
 
@@ -185,7 +194,7 @@ class _Panel:
         self.drawing.move(x, angle)
         if self.exact is not None:
             # The exact solution at the recorded moment that is shown, not at the time of the frame.
-            there = self.exact(float(self.recording.time[i]))
+            there = self._exact_at(float(self.recording.time[i]))
             self.ghost.move(np.full_like(x, np.nan) if there is None else there, angle)
         if self.arrows is not None:
             self.arrows.set_offsets(x)
@@ -193,6 +202,14 @@ class _Panel:
         for k, trail in enumerate(self.trails):
             trail.set_data(*self.recording.position[: i + 1, k].T)
         self.trace.show(i)
+
+    def _exact_at(self, t: float) -> FloatArray | None:
+        """(N, 2) exact positions at the time t, None if they are not known; ValueError for another shape."""
+        there = None if self.exact is None else self.exact(t)
+        bodies = self.recording.position.shape[1]
+        if there is not None and np.shape(there) != (bodies, 2):
+            raise ValueError(f"exact({t:g}) has shape {np.shape(there)}: return ({bodies}, 2) positions, or None")
+        return there
 
 
 def _title(recording: Recording) -> str:

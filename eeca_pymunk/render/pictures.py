@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 View = tuple[float, float, float, float]
 _COLORS = 128
 ARROWS = ("velocity", "momentum")
+_NO_LENGTH = 1e-200  # longest vector, if the longest one is none: scales of arrows would overflow
 _LEAST = 0.1  # widths of its shaft: what is drawn of an arrow without length is a dot of this size
 
 
@@ -52,7 +53,8 @@ def snapshot(
         report: of the step that led here: its contacts are drawn, each impulse as a pair of arrows along the normal.
         view: (left, right, bottom, top) lengths; all shapes if None.
     """
-    ax = figure(5.0, 5.0).add_subplot() if ax is None else ax
+    check_view(view)
+    check_picture(path)
     if isinstance(subject, Recording):
         i = moment(subject, time)
         outlines, mass = subject.outlines, subject.mass
@@ -63,10 +65,11 @@ def snapshot(
         x, v = (np.array(a, float).reshape(-1, 2) for a in ([b.position for b in bodies], [b.velocity for b in bodies]))
         angle = np.array([b.angle for b in bodies])
     box = bounds(outlines, x[None], angle[None]) if view is None else view
+    ax = figure(5.0, 5.0).add_subplot() if ax is None else ax
     frame(ax, box, title)
     Drawing(ax, outlines).move(x, angle)
     if velocity or momentum:
-        arrows(ax, x, v * mass[:, None] if momentum else v)
+        arrows(ax, x, momenta(v, mass) if momentum else v)
     if report is not None:
         _impulses(ax, report)
     if path is not None:
@@ -83,6 +86,8 @@ def strip(
     """Several moments of a recording in a row, as in the paper's Fig. 12, with one scale; see `snapshot`."""
     if len(times) == 0:
         raise ValueError("times is empty: give one or more times to show")
+    check_view(view)
+    check_picture(path)
     shown = [moment(recording, t) for t in times]
     box = bounds(recording.outlines, recording.position[shown], recording.angle[shown]) if view is None else view
     row = figure(3.2 * len(times), 3.6)
@@ -97,12 +102,29 @@ def strip(
 
 def save_picture(figure: Figure, path: str | Path) -> None:
     """Write a figure, whole or not at all; format by suffix. PNGs get a palette: a third of the size."""
+    check_picture(path)
     with whole_file(path) as partial:
         figure.savefig(partial)
         if partial.suffix == ".png":
             with Image.open(partial) as full:
                 small = full.convert("RGB").quantize(_COLORS, dither=Image.Dither.NONE)
             small.save(partial, optimize=True)
+
+
+def check_picture(path: str | Path | None) -> None:
+    """ValueError if pictures cannot be written to files with this suffix."""
+    known = sorted(FigureCanvasAgg.get_supported_filetypes())
+    if path is not None and Path(path).suffix.lower()[1:] not in known:
+        raise ValueError(f"path = {str(path)!r}: give a name that ends in one of .{', .'.join(known)}")
+
+
+def check_view(view: View | None) -> None:
+    """ValueError unless a view is None, or four finite numbers that enclose an area."""
+    if view is None:
+        return
+    box = np.asarray(view, float)
+    if box.shape != (4,) or not np.isfinite(box).all() or box[0] == box[1] or box[2] == box[3]:
+        raise ValueError(f"view = {view}: give four finite numbers, left, right, bottom, top, that enclose an area")
 
 
 def moment(recording: Recording, time: float) -> int:
@@ -125,14 +147,23 @@ def arrows(ax: Axes, x: FloatArray, vector: FloatArray, longest: float | None = 
     """An arrow for each (N, 2) vector at (N, 2) positions. A vector of length `longest`, by default the longest one
     here, spans two fifths of the axes. Vectors of no length, and those that are not finite (the momentum of a
     kinematic body), have no arrow."""
-    size = np.linalg.norm(vector, axis=1)
+    size = np.hypot(*vector.T)
     shown = np.where(np.isfinite(size)[:, None], vector, 0.0)
-    length = float(np.linalg.norm(shown, axis=1).max(initial=0.0)) if longest is None else longest
-    scale = 2.5 * max(length, np.finfo(float).tiny)
+    length = float(np.hypot(*shown.T).max(initial=0.0)) if longest is None else longest
     return ax.quiver(
-        x[:, 0], x[:, 1], shown[:, 0], shown[:, 1], color=ARROW_COLOR, width=0.006, scale=scale, scale_units="width",
-        minlength=_LEAST, zorder=3,
+        x[:, 0], x[:, 1], shown[:, 0], shown[:, 1], color=ARROW_COLOR, width=0.006, scale=2.5 * _scale(length),
+        scale_units="width", minlength=_LEAST, zorder=3,
     )  # fmt: skip
+
+
+def momenta(velocity: FloatArray, mass: FloatArray) -> FloatArray:
+    """(..., N, 2) momenta of bodies from velocities (..., N, 2) and masses (N,); 0 for infinite masses."""
+    return velocity * np.where(np.isfinite(mass), mass, 0.0)[:, None]
+
+
+def _scale(longest: float) -> float:
+    """The length of the longest arrow, 1 if it has none."""
+    return longest if longest > _NO_LENGTH else 1.0
 
 
 def _impulses(ax: Axes, report: StepReport) -> None:
@@ -140,7 +171,7 @@ def _impulses(ax: Axes, report: StepReport) -> None:
     contacts, lam = report.contacts, report.impulse
     acted = lam > 0
     point, push = contacts.point[acted], (lam[:, None] * contacts.normal)[acted]
-    scale = 5.0 * max(float(lam.max(initial=0.0)), np.finfo(float).tiny)
+    scale = 5.0 * _scale(float(lam.max(initial=0.0)))
     for sign in (1.0, -1.0):
         ax.quiver(
             point[:, 0], point[:, 1], sign * push[:, 0], sign * push[:, 1],
