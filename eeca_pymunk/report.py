@@ -153,7 +153,8 @@ class StepReport:
 
     @property
     def ledger(self) -> Ledger | None:
-        """Energy balance of the step; None if the stepper has none."""
+        """Energy balance of the step; None if dt is 0, and for steppers that have none: `Native`, the penalty steppers,
+        and EECA with `Dashpot`."""
         return None if self._book is None else ledger(self._book)
 
     @property

@@ -271,6 +271,18 @@ def test_damping_decays_as_pymunk_s() -> None:
     assert body.position.x == pytest.approx(exact, abs=1e-4)
 
 
+def test_damping_above_one_is_a_negative_loss() -> None:
+    space = pymunk.Space()
+    space.damping = 1.5
+    body = pymunk.Body(1.0, 1.0)
+    body.velocity = (1.0, 0.0)
+    space.add(body)
+    ledger = ep.EECA(space).step(0.1).ledger
+    assert ledger is not None
+    assert ledger.damping == pytest.approx(-ledger.change, rel=1e-13)
+    assert ledger.change == pytest.approx(0.5 * (1.5**0.2 - 1.0), rel=1e-13)
+
+
 def test_forces_act_and_are_reset() -> None:
     space, body = ball_in_a_room()
     step = eeca(space)

@@ -120,6 +120,7 @@ def test_ledger_of_a_recording_is_the_sum_of_the_steps(tmp_path: Path) -> None:
 
 
 def test_a_stepper_without_ledger_has_none(tmp_path: Path) -> None:
+    assert ep.EECA(scenes.build("carom").space, ep.Dashpot(1e6, 1.0)).step(0.01).ledger is None
     recording = ep.record(ep.Native(lossy()), 0.1, 1 / 60)
     assert not recording.ledger.kept
     assert recording.ledger.friction.shape == recording.time.shape

@@ -27,9 +27,11 @@ class Ledger:
     """Energies of one step, mass length²/time².
 
     Attributes:
-        change: of kinetic and potential energy, that of springs included.
+        change: of kinetic and potential energy, that of springs included, but for rotary springs that cannot turn
+            either body.
         external: work of forces on bodies, of velocity functions, of kinematic bodies and moving surfaces.
-        restitution, friction, damping: losses, >= 0. Bounces too small for a step count as restitution at once.
+        restitution, friction, damping: losses, >= 0; damping is negative, a gain, with `space.damping` above 1. Bounces
+            too small for a step count as restitution at once.
         residual: change less the other entries: round-off.
     """
 
@@ -52,7 +54,7 @@ def ledger(book: list[float]) -> Ledger:
 @dataclass
 class LedgerTrace:
     """Sums of the ledgers of all steps up to each of T moments, zero at the start; names as of `Ledger`. NaN from the
-    first step without a ledger on: pymunk's own solver and the penalty steppers have none.
+    first step without a ledger on: pymunk's own solver, the penalty steppers and EECA with `Dashpot` have none.
 
     Attributes:
         change, external, restitution, friction, damping, residual: (T,) mass length²/time².
