@@ -9,24 +9,45 @@ A pair has the geometry now instead if it moves too far in half an interval (an 
 has another number of contact points at the middle. How far it moves is measured in the frame of a wall that turns
 (`turning_walls.py`) if it has one. Arms are then those now too. In a free island they must be those at the middle, for
 its angular momentum: there the points of the pair are displaced by the mean of the displacements of its two bodies.
+So has a pair that closes within the interval and passes a corner (`..pairs.passing`).
 """
 
 from __future__ import annotations
 
 from ..arrays import FloatArray
-from ..compiled import kernel
-from ..compiled.records import empty
+from ..compiled import kernel, nonallocating
+from ..compiled.records import Rows, empty
+from ..geometry.flight import opening_rate_at
 from ..geometry.manifold import manifold
 from ..geometry.sides import note_side
 from ..geometry.widths import smaller
-from ..model.contacts import CONTACT_POINT
+from ..model.contacts import CONTACT_POINT, ContactPoint
 from ..model.islands import Island, IslandContacts
-from ..model.parameters.intervals import INTERVAL_WAY, MANIFOLD_ROUND_OFF, MIDPOINT_SAME
+from ..model.parameters.intervals import (
+    INTERVAL_DEPTH_LEAST,
+    INTERVAL_WAY,
+    MANIFOLD_ROUND_OFF,
+    MIDPOINT_SAME,
+    TRAVEL_MARGIN,
+)
 from ..model.scene import Scene
+from ..pairs.passing import pass_corner
 from ..pairs.rules import law
 from ..rows.build import place_row
 from .forces import key_of
 from .turning_walls import follow_rotation, spin_of_wall, way_about
+
+
+@nonallocating
+def may_pass(isle: Island, a: int, b: int, POINTS: Rows[ContactPoint], count: int, h: float, deep: float) -> bool:
+    """Whether the contact of local bodies a and b may close in an interval h, by present velocities and by
+    accelerations without contacts, and is no face wider than `deep`."""
+    one, other, ACC = POINTS[0], POINTS[1], isle.ACC
+    if count == 2 and (one.px - other.px) ** 2 + (one.py - other.py) ** 2 > deep * deep:
+        return False
+    u = opening_rate_at(isle.POSE, isle.V, a, b, one.nx, one.ny, one.px, one.py)
+    pulled = one.nx * (ACC[b, 0] - ACC[a, 0]) + one.ny * (ACC[b, 1] - ACC[a, 1])
+    return bool(one.gap + TRAVEL_MARGIN * (u + min(pulled, 0.0) * h) * h <= deep)
 
 
 @kernel
@@ -59,8 +80,11 @@ def gather_contacts(A: Scene, isle: Island, contacts: IslandContacts, REACH: Flo
         centre = MIDDLE
         # Normals rotate as circles move around each other, slowly around a large one.
         far = SHAPE[s].rounding + SHAPE[r].rounding if LINK[s].vertices == 1 and LINK[r].vertices == 1 else small
+        since, deep = max(A.BODY[isle.WHO[a]].since, A.BODY[isle.WHO[b]].since), INTERVAL_DEPTH_LEAST * small
+        passes = may_pass(isle, a, b, NOW, count, h, deep) and pass_corner(A, s, r, since, NOW[0])
+        count = 1 if passes else count
         # ahead: normal and point are those of the middle.
-        ahead = MIDPOINT_SAME * small < way and about <= 0.5 * INTERVAL_WAY * far
+        ahead = not passes and MIDPOINT_SAME * small < way and about <= 0.5 * INTERVAL_WAY * far
         if ahead:
             again = manifold(A, s, r, MIDDLE, a, b, reach + about, MANIFOLD_ROUND_OFF * small, THEN)
             ahead = again == count

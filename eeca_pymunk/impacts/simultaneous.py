@@ -16,7 +16,7 @@ from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, empty
 from ..contacts.single import touches
 from ..contacts.targets import hardly_bounces
-from ..geometry.flight import move_to, pose, rate
+from ..geometry.flight import move_to, opening_rate_at, pose, rate
 from ..geometry.manifold import face
 from ..geometry.sides import note_side, pair_of, shapes_of_pair
 from ..islands.accounting import end_rest_or_interval
@@ -24,6 +24,7 @@ from ..islands.membership import budget_spent, fixed_support, in_large_island, r
 from ..model.contacts import CONTACT_POINT, ROW, Row
 from ..model.parameters.impulses import BLOCK_BODIES
 from ..model.scene import Scene
+from ..pairs.passing import pass_corner
 from ..pairs.rules import barred, face_tolerance, law
 from ..rows.build import normal_rate, place_row
 from ..rows.inplace import sort
@@ -183,6 +184,9 @@ def make_block(A: Scene, n: int, m: int, PAIRS: IntArray, hit: int, lasts: bool,
         load = remembered_force(A, sa, sb, A.PAR.stamp - 1.0)[1]
         count = face(A, sa, sb, POSE, p, q, face_tolerance(A, sa, sb), found)
         note_side(A, sa, sb, found[0].nx, found[0].ny, True)
+        one = found[0]
+        if opening_rate_at(POSE, V, p, q, one.nx, one.ny, one.px, one.py) < 0.0 and pass_corner(A, sa, sb, t, one):
+            count = 1
         for c in range(count):
             row, point = ROWS[rows], found[c]
             nx, ny = point.nx, point.ny

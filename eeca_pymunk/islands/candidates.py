@@ -15,6 +15,7 @@ from ..model.contacts import Row
 from ..model.parameters import intervals
 from ..model.parameters.events import PAIR_LOOKS, RESOLUTION
 from ..model.scene import Scene
+from ..pairs.passing import flush_at
 from ..pairs.rules import barred, far_apart, law
 from ..rows.build import tangent_rate
 from .membership import approach, fixed_support, persists, remembered_force
@@ -38,8 +39,8 @@ def travel_bound(A: Scene, i: int, h: float) -> float:
 def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: IntArray) -> IntArray:
     """Contact candidates of an island: (p, 2) pairs of shapes that its solve over h from instant t includes.
 
-    These touch, or persist within the interval; for `busy` bodies all that come near; for `Midstep` all that may meet.
-    Other pairs meet at their times of impact.
+    These touch, or persist within the interval, or pass a corner; for `busy` bodies all that come near; for `Midstep`
+    all that may meet. Other pairs meet at their times of impact.
 
     Args:
         lossy: whether any shape of the island has an elasticity below 1.  MINE: its bodies.
@@ -86,14 +87,14 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                         reach = min(reach, 2.0 * intervals.INTERVAL_WAY * small)
                     if g > reach:
                         continue
-                    e = law(A, s, o)[0]
+                    e, meets = law(A, s, o)[0], False
                     if e >= 1.0 and not lossy and not together:
-                        if not persists(A, s, o, t):
-                            continue
+                        meets = not persists(A, s, o, t)
                     elif g > intervals.TOUCH * small and not (together or busy):
                         load = remembered_force(A, s, o, since)[1] if lossy else 0.0
-                        if not hardly_bounces(e, u, max(closing, load / mass) * h):
-                            continue
+                        meets = not hardly_bounces(e, u, max(closing, load / mass) * h)
+                    if meets and not flush_at(A, s, o, t):
+                        continue
                 if p == found.shape[0]:
                     more = np.empty((2 * p, 2), np.int64)
                     for c in range(p):
