@@ -7,8 +7,7 @@ lies in the surface of the first shape. So a pair of shapes S and O has the norm
 * along m the two are neither apart nor deep in each other, by more than d, and
 * S touches a third shape along m, which contains the corner, the closest point of O, both within d.
 
-d is INTERVAL_DEPTH_LEAST of the smaller shape: up to that depth an interval leaves bodies in each other. Then the pair
-does not meet at the corner, and its contact in an interval has the normal m.
+d is INTERVAL_DEPTH_LEAST of the smaller shape: up to that depth an interval leaves bodies in each other.
 """
 
 from __future__ import annotations

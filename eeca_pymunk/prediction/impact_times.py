@@ -18,7 +18,6 @@ from ..model.bodies import Body
 from ..model.parameters.detection import GAP_ROUND_OFF
 from ..model.parameters.events import APPROACH_ROUND_OFF, DISTANCE_ROUND_OFF, MISS_DISTANCE, PATH_REACH
 from ..model.scene import Scene
-from ..pairs.passing import flush_at
 from .circles import circle_circle, circle_outline
 from .roots import disks_meet
 from .search import general
@@ -108,12 +107,9 @@ def time_of_impact(A: Scene, a: int, b: int, horizon: float, latest: float) -> t
     if a > b:
         a, b = b, a
     disks = A.COUNT.disks
-    if b < disks:
-        return disk_disk(A.BODY, a, b, horizon)
-    if a < disks and A.LINK[b].owner == A.BODY.shape[0] - 1:
-        t, certain = disk_wall(A, a, b, horizon)
-    else:
-        t, certain = general(A, a, b, horizon, latest)
-    if certain and t <= horizon and flush_at(A, a, b, t):
-        return horizon, False
-    return t, certain
+    if a < disks:
+        if b < disks:
+            return disk_disk(A.BODY, a, b, horizon)
+        if A.LINK[b].owner == A.BODY.shape[0] - 1:
+            return disk_wall(A, a, b, horizon)
+    return general(A, a, b, horizon, latest)
