@@ -7,7 +7,9 @@ lies in the surface of the first shape. So a pair of shapes S and O has the norm
 * along m the two are neither apart nor deep in each other, by more than d, and
 * S touches a third shape along m, which contains the corner, the closest point of O, both within d.
 
-d is INTERVAL_DEPTH_LEAST of the smaller shape: up to that depth an interval leaves bodies in each other.
+d is INTERVAL_DEPTH_LEAST of the smaller shape: up to that depth an interval leaves bodies in each other. Thin shapes
+pass only corners where two shapes of one body meet: in stacks of rods that lie on one another, ends are in the surfaces
+of others everywhere.
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ from ..compiled import nonallocating
 from ..geometry.convex import place_vertices, point_core
 from ..geometry.flight import pose
 from ..geometry.gap import gap
+from ..geometry.sides import remembers
 from ..geometry.widths import smaller
 from ..model.contacts import ContactPoint
 from ..model.parameters.detection import ALIGNED, FACE_PASSES, SAME_NORMAL
@@ -90,12 +93,13 @@ def support_vertex(P: FloatArray, p: int, mx: float, my: float, deep: float, x: 
 @nonallocating
 def continues(A: Scene, s: int, o: int, t: float, mx: float, my: float, x: float, y: float, deep: float) -> bool:
     """Whether shape s of a body that moves touches another one than o along m, which (x, y) is in, both within
-    `deep`."""
+    `deep`; if s and o are thin, one of the same body as o."""
     if s >= A.LIST.shape[0]:
         return False
+    thin = remembers(A, s, o)
     for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
         k = int(A.POOL[w])
-        if k == o or barred(A, s, k) or far_apart(A, s, k, t, deep):
+        if k == o or (thin and A.LINK[k].owner != A.LINK[o].owner) or barred(A, s, k) or far_apart(A, s, k, t, deep):
             continue
         g, nx, ny, _, _ = gap(A, s, k, t)
         if g > deep or nx * mx + ny * my < 1.0 - ALIGNED:

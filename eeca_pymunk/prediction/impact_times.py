@@ -18,6 +18,7 @@ from ..model.bodies import Body
 from ..model.parameters.detection import GAP_ROUND_OFF
 from ..model.parameters.events import APPROACH_ROUND_OFF, DISTANCE_ROUND_OFF, MISS_DISTANCE, PATH_REACH
 from ..model.scene import Scene
+from ..pairs.passing import flush_at
 from .circles import circle_circle, circle_outline
 from .roots import disks_meet
 from .search import general
@@ -103,13 +104,17 @@ def disk_wall(A: Scene, i: int, b: int, horizon: float) -> tuple[float, bool]:
 @nonallocating
 def time_of_impact(A: Scene, a: int, b: int, horizon: float, latest: float) -> tuple[float, bool]:
     """(t, certain) of shapes a and b, see the module; searched up to a finite instant `horizon`. A search ends at
-    instant `latest`, with a later lower bound: it does not matter to the caller what comes after."""
+    instant `latest`, with a later lower bound: it does not matter to the caller what comes after. Shapes that pass a
+    corner of one another do not meet there."""
     if a > b:
         a, b = b, a
     disks = A.COUNT.disks
-    if a < disks:
-        if b < disks:
-            return disk_disk(A.BODY, a, b, horizon)
-        if A.LINK[b].owner == A.BODY.shape[0] - 1:
-            return disk_wall(A, a, b, horizon)
-    return general(A, a, b, horizon, latest)
+    if b < disks:
+        return disk_disk(A.BODY, a, b, horizon)
+    if a < disks and A.LINK[b].owner == A.BODY.shape[0] - 1:
+        t, certain = disk_wall(A, a, b, horizon)
+    else:
+        t, certain = general(A, a, b, horizon, latest)
+    if certain and t <= horizon and flush_at(A, a, b, t):
+        return horizon, False  # an impact there would have no impulse, and be the next one for ever
+    return t, certain
