@@ -143,6 +143,8 @@ class PackedSpace(Stepper):
         if self._sleep is not None and self.space.sleep_time_threshold == math.inf:
             self._sleep.wake()
             self._sleep, anew = None, True
+        if self._sleep is not None and past is not None and tuple(self.space.gravity) != tuple(past.gravity):
+            self._sleep.wake()  # pymunk has woken only every second group
         if past is not None and past.same_things():
             if not (anew or past.edited()):
                 return self._update_settings(past)

@@ -273,6 +273,21 @@ def test_what_wakes_a_body_wakes_its_group_in_the_same_step(change, falls: bool)
         assert abs(body.velocity.y) == pytest.approx(10.0 * DT if falls else 0.0, abs=1e-9)
 
 
+@pytest.mark.parametrize("groups", [1, 2, 3, 6])
+def test_changed_gravity_wakes_all_groups(groups: int) -> None:
+    space, bodies = stack(1)
+    bodies += [box(space, 3.0 * k, 0.6) for k in range(1, groups)]
+    stepper = ep.EECA(space)
+    for _ in range(30):
+        stepper.step(DT)
+    assert all(body.is_sleeping for body in bodies)
+    space.gravity = 0.0, 10.0
+    stepper.step(DT)
+    for body in bodies:
+        assert not body.is_sleeping
+        assert body.velocity.y == pytest.approx(10.0 * DT, abs=1e-9)
+
+
 def test_a_sleeping_body_that_is_moved_wakes_alone() -> None:
     space, bodies = stack(1)
     bodies.append(box(space, 3.0, 0.6))  # a group of its own
