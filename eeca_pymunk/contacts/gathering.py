@@ -43,8 +43,11 @@ def may_pass(isle: Island, a: int, b: int, POINTS: Rows[ContactPoint], count: in
     """Whether the contact of local bodies a and b may close in an interval h, by present velocities and by
     accelerations without contacts, and is no face wider than `deep`."""
     one, other, ACC = POINTS[0], POINTS[1], isle.ACC
-    if count == 2 and (one.px - other.px) ** 2 + (one.py - other.py) ** 2 > deep * deep:
-        return False
+    if count == 2 and max(one.gap, other.gap) <= deep:
+        if (one.px - other.px) ** 2 + (one.py - other.py) ** 2 > deep * deep:
+            return False
+    if count == 2 and other.gap < one.gap:
+        one = other
     u = opening_rate_at(isle.POSE, isle.V, a, b, one.nx, one.ny, one.px, one.py)
     pulled = one.nx * (ACC[b, 0] - ACC[a, 0]) + one.ny * (ACC[b, 1] - ACC[a, 1])
     return bool(one.gap + TRAVEL_MARGIN * (u + min(pulled, 0.0) * h) * h <= deep)

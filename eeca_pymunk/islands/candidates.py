@@ -93,7 +93,7 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                     elif g > intervals.TOUCH * small and not (together or busy):
                         load = remembered_force(A, s, o, since)[1] if lossy else 0.0
                         meets = not hardly_bounces(e, u, max(closing, load / mass) * h)
-                    if meets and not flush_at(A, s, o, t):
+                    if meets and not flush_at(A, s, o, t).passes:
                         continue
                 if p == found.shape[0]:
                     more = np.empty((2 * p, 2), np.int64)

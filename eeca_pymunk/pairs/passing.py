@@ -7,9 +7,9 @@ lies in the surface of the first shape. So a pair of shapes S and O has the norm
 * along m the two are neither apart nor deep in each other, by more than d, and
 * S touches a third shape along m, which contains the corner, the closest point of O, both within d.
 
-d is INTERVAL_DEPTH_LEAST of the smaller shape: up to that depth an interval leaves bodies in each other. Thin shapes
-pass only corners where two shapes of one body meet: in stacks of rods that lie on one another, ends are in the surfaces
-of others everywhere.
+d is INTERVAL_DEPTH_LEAST of the smaller shape: up to that depth an interval leaves bodies in each other. The third
+shape is one of a body that impulses do not move if O is. Thin shapes pass only corners where two shapes of one body
+meet: in stacks of rods that lie on one another, ends are in the surfaces of others everywhere.
 """
 
 from __future__ import annotations
@@ -91,15 +91,24 @@ def support_vertex(P: FloatArray, p: int, mx: float, my: float, deep: float, x: 
 
 
 @nonallocating
-def continues(A: Scene, s: int, o: int, t: float, mx: float, my: float, x: float, y: float, deep: float) -> bool:
-    """Whether shape s of a body that moves touches another one than o along m, which (x, y) is in, both within
-    `deep`; if s and o are thin, one of the same body as o."""
+def goes_on(A: Scene, o: int, k: int, one_body: bool) -> bool:
+    """Whether shape k may continue the surface of o: it is of the same body, or, unless they must be of `one_body`, it
+    is not one of a body that impulses move while they do not move o."""
+    i, j = A.LINK[o].owner, A.LINK[k].owner
+    return bool(i == j or not (one_body or (A.BODY[i].inv_mass == 0.0 and A.BODY[j].inv_mass > 0.0)))
+
+
+@nonallocating
+def continues(
+    A: Scene, s: int, o: int, t: float, mx: float, my: float, x: float, y: float, deep: float, one_body: bool
+) -> bool:  # fmt: skip
+    """Whether shape s of a body that moves touches another one than o along m, which (x, y) is in, both within `deep`.
+    one_body: see `goes_on`."""
     if s >= A.LIST.shape[0]:
         return False
-    thin = remembers(A, s, o)
     for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
         k = int(A.POOL[w])
-        if k == o or (thin and A.LINK[k].owner != A.LINK[o].owner) or barred(A, s, k) or far_apart(A, s, k, t, deep):
+        if k == o or not goes_on(A, o, k, one_body) or barred(A, s, k) or far_apart(A, s, k, t, deep):
             continue
         g, nx, ny, _, _ = gap(A, s, k, t)
         if g > deep or nx * mx + ny * my < 1.0 - ALIGNED:
@@ -116,11 +125,12 @@ def along(
 ) -> Flush:  # fmt: skip
     """`flush` for the normal m from a to b, along which their gap is g. near: closest points of a and b (2 each)."""
     ax, ay, bx, by = near
-    if continues(A, a, b, t, mx, my, bx, by, deep):
+    thin = remembers(A, a, b)
+    if continues(A, a, b, t, mx, my, bx, by, deep, thin):
         away, p = A.SHAPE[a].rounding + 0.5 * g, place(A, a, t, A.CORE[0])
         i = support_vertex(A.CORE[0], p, mx, my, deep, ax, ay)
         return Flush(True, mx, my, g, A.CORE[0][i, 0] + away * mx, A.CORE[0][i, 1] + away * my)
-    if continues(A, b, a, t, -mx, -my, ax, ay, deep):
+    if continues(A, b, a, t, -mx, -my, ax, ay, deep, thin):
         away, q = A.SHAPE[b].rounding + 0.5 * g, place(A, b, t, A.CORE[1])
         j = support_vertex(A.CORE[1], q, -mx, -my, deep, bx, by)
         return Flush(True, mx, my, g, A.CORE[1][j, 0] - away * mx, A.CORE[1][j, 1] - away * my)
@@ -135,6 +145,10 @@ def flush(A: Scene, a: int, b: int, t: float, g: float, nx: float, ny: float, px
         return Flush(False, 0.0, 0.0, 0.0, 0.0, 0.0)
     deep, extent = INTERVAL_DEPTH_LEAST * smaller(A, a, b), A.SHAPE[a].rounding + A.SHAPE[b].rounding
     near = (px - 0.5 * g * nx, py - 0.5 * g * ny, px + 0.5 * g * nx, py + 0.5 * g * ny)
+    none = Flush(False, 0.0, 0.0, 0.0, 0.0, 0.0)
+    ax, ay, bx, by = near
+    if continues(A, a, b, t, nx, ny, bx, by, deep, True) or continues(A, b, a, t, -nx, -ny, ax, ay, deep, True):
+        return none  # the closest points are on a surface that goes on
     P, Q, first, second = A.CORE[0], A.CORE[1], -1, -1
     p, q = place(A, a, t, P), place(A, b, t, Q)
     most = FACE_PASSES if has_normal(P, p, nx, ny) or has_normal(Q, q, -nx, -ny) else 1.0 - SAME_NORMAL
@@ -143,7 +157,7 @@ def flush(A: Scene, a: int, b: int, t: float, g: float, nx: float, ny: float, px
         if first >= p:
             second, apart = next_flush_edge(Q, q, P, p, second, extent, -nx, -ny, most, deep)
             if second >= q:
-                return Flush(False, 0.0, 0.0, 0.0, 0.0, 0.0)
+                return none
             found = along(A, a, b, t, -Q[second, 2], -Q[second, 3], apart, near, deep)
         else:
             found = along(A, a, b, t, P[first, 2], P[first, 3], apart, near, deep)
@@ -153,17 +167,17 @@ def flush(A: Scene, a: int, b: int, t: float, g: float, nx: float, ny: float, px
 
 
 @nonallocating
-def flush_at(A: Scene, a: int, b: int, t: float) -> bool:
-    """Whether one of shapes a and b passes a corner of the other at instant t."""
+def flush_at(A: Scene, a: int, b: int, t: float) -> Flush:
+    """`flush` of shapes a and b at instant t."""
     g, nx, ny, px, py = gap(A, a, b, t)
-    return flush(A, a, b, t, g, nx, ny, px, py).passes
+    return flush(A, a, b, t, g, nx, ny, px, py)
 
 
 @nonallocating
 def pass_corner(A: Scene, a: int, b: int, t: float, point: ContactPoint) -> bool:
     """Set the contact of shapes a and b at instant t to `flush`, if one of them passes a corner of the other. Returns
     whether it does."""
-    found = flush(A, a, b, t, point.gap, point.nx, point.ny, point.px, point.py)
+    found = flush_at(A, a, b, t)
     if found.passes:
         point.nx, point.ny, point.gap, point.px, point.py = found.nx, found.ny, found.g, found.px, found.py
     return found.passes

@@ -115,6 +115,6 @@ def time_of_impact(A: Scene, a: int, b: int, horizon: float, latest: float) -> t
         t, certain = disk_wall(A, a, b, horizon)
     else:
         t, certain = general(A, a, b, horizon, latest)
-    if certain and t <= horizon and flush_at(A, a, b, t):
+    if certain and t <= horizon and flush_at(A, a, b, t).passes:
         return horizon, False  # an impact there would have no impulse, and be the next one for ever
     return t, certain

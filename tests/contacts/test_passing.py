@@ -201,3 +201,45 @@ def test_what_lies_beside_a_wall_does_not_pass_it() -> None:
         stepper.step(DT)
     assert body.position == pytest.approx((4.5, 0.5), abs=1e-6)
     assert body.velocity == pytest.approx((0.0, 0.0), abs=1e-6)
+
+
+@pytest.mark.parametrize("apart", [0.0, 1e-6, 5e-5, 1e-3])
+@pytest.mark.parametrize("e", [0.0, 0.5])
+def test_rows_of_crates_on_a_grid_are_pushed(apart: float, e: float) -> None:
+    """The corners of two crates and two tiles meet in one point."""
+    space = pymunk.Space()
+    space.gravity = 3.0, -G
+    for one in pave(space, "tiles", turned(0.0)):
+        one.elasticity = e
+    crates = [mover(space, "box", 0.5) for _ in range(3)]
+    for k, crate in enumerate(crates):
+        crate.position = 0.5 + k * (1.0 + apart), 0.5
+        next(iter(crate.shapes)).elasticity = e
+    stepper = ep.EECA(space)
+    for k in range(60):
+        stepper.step(DT)
+        for crate in crates:
+            assert crate.velocity == pytest.approx((3.0 * (k + 1) * DT, 0.0), abs=1e-9)
+
+
+@pytest.mark.parametrize("degrees", [20, 45, 60, 70, 80])
+@pytest.mark.parametrize("e", [0.0, 0.5])
+@pytest.mark.parametrize("kind", ["tiles", "segments"])
+def test_bevelled_crates_slide_over_joints(kind: str, e: float, degrees: float) -> None:
+    for start in STARTS:
+        space = pymunk.Space()
+        space.gravity = 0.0, -G
+        for one in pave(space, kind, turned(0.0)):
+            one.elasticity = e
+        body, bevel = pymunk.Body(1.0, 0.1), 0.1
+        up = bevel * math.tan(math.radians(degrees))
+        corners = [(0.3, 0.3), (-0.3, 0.3), (-0.3, up - 0.3), (bevel - 0.3, -0.3), (0.3 - bevel, -0.3), (0.3, up - 0.3)]
+        crate = pymunk.Poly(body, corners)
+        crate.elasticity = e
+        body.center_of_gravity = 0.0, -0.1
+        body.position, body.velocity = (start, 0.3), (3.0, 0.0)
+        space.add(body, crate)
+        stepper = ep.EECA(space)
+        for _ in range(60):
+            stepper.step(DT)
+            assert body.velocity == pytest.approx((3.0, 0.0), abs=1e-9)

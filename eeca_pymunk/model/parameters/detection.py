@@ -29,7 +29,7 @@ SAME_SIDE = heuristic(0.9, "cosine", "Normals above which the shapes of a body a
 CORNER_MEET = round_off(1e-9, "of the segments' size", "Distance within which ends of segments form a corner.")
 ALIGNED = round_off(1e-6, "1 - cosine", "Angle up to which the surfaces of two shapes are flush.")
 SAME_NORMAL = round_off(1e-12, "1 - cosine", "Angle up to which a normal is that of an edge.")
-FACE_PASSES = accuracy(0.5, "cosine",
+FACE_PASSES = accuracy(0.99, "cosine",
     "Angle between the face along which a pair is nearest and the surface along which it passes a corner. Larger: what "
     "lies on shapes that are turned a little against each other sinks into them.")
 STRAIGHT = round_off(1e-6, "sine", "Angle between segments that meet below which they form one straight wall.")
