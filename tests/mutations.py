@@ -509,7 +509,7 @@ MUTATIONS = (
     Mutation("passing: impacts on corners", "impacts/simultaneous.py", "< 0.0 and pass_corner(",
              "< 0.0 and False and pass_corner(", "contacts/test_passing.py", "pushed"),
     Mutation("passing: elastic bodies leave the first shape before they are on the second", "islands/candidates.py",
-             "if meets and not flush_at(A, s, o, t).passes:", "if meets:", "contacts/test_passing.py",
+             "if meets and not flush(A, s, o, t).passes:", "if meets:", "contacts/test_passing.py",
              "keeps_its_velocity"),
     Mutation("passing: crates are surfaces of the floor", "pairs/passing.py",
              "if k == o or not goes_on(A, o, k, one_body) or", "if k == o or", "contacts/test_passing.py", "rows"),

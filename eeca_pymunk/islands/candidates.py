@@ -15,7 +15,7 @@ from ..model.contacts import Row
 from ..model.parameters import intervals
 from ..model.parameters.events import PAIR_LOOKS, RESOLUTION
 from ..model.scene import Scene
-from ..pairs.passing import flush_at
+from ..pairs.passing import flush
 from ..pairs.rules import barred, far_apart, law
 from ..rows.build import tangent_rate
 from .membership import approach, fixed_support, persists, remembered_force
@@ -93,7 +93,7 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                     elif g > intervals.TOUCH * small and not (together or busy):
                         load = remembered_force(A, s, o, since)[1] if lossy else 0.0
                         meets = not hardly_bounces(e, u, max(closing, load / mass) * h)
-                    if meets and not flush_at(A, s, o, t).passes:
+                    if meets and not flush(A, s, o, t).passes:
                         continue
                 if p == found.shape[0]:
                     more = np.empty((2 * p, 2), np.int64)

@@ -138,46 +138,41 @@ def along(
 
 
 @nonallocating
-def flush(A: Scene, a: int, b: int, t: float, g: float, nx: float, ny: float, px: float, py: float) -> Flush:
-    """The contact of shapes a and b at instant t, if one of the two passes a corner of the other. Their gap g, normal n
-    from a to b, and point p halfway between the closest points are those of `..geometry.gap`."""
-    if A.LINK[a].vertices == 1 and A.LINK[b].vertices == 1:
-        return Flush(False, 0.0, 0.0, 0.0, 0.0, 0.0)
-    deep, extent = INTERVAL_DEPTH_LEAST * smaller(A, a, b), A.SHAPE[a].rounding + A.SHAPE[b].rounding
-    near = (px - 0.5 * g * nx, py - 0.5 * g * ny, px + 0.5 * g * nx, py + 0.5 * g * ny)
+def flush(A: Scene, a: int, b: int, t: float) -> Flush:
+    """The contact of shapes a and b at instant t, if one of the two passes a corner of the other."""
     none = Flush(False, 0.0, 0.0, 0.0, 0.0, 0.0)
-    ax, ay, bx, by = near
-    if continues(A, a, b, t, nx, ny, bx, by, deep, True) or continues(A, b, a, t, -nx, -ny, ax, ay, deep, True):
-        return none  # the closest points are on a surface that goes on
-    P, Q, first, second = A.CORE[0], A.CORE[1], -1, -1
+    if A.LINK[a].vertices == 1 and A.LINK[b].vertices == 1:
+        return none
+    g, nx, ny, px, py = gap(A, a, b, t)
+    ax, ay, bx, by = px - 0.5 * g * nx, py - 0.5 * g * ny, px + 0.5 * g * nx, py + 0.5 * g * ny
+    deep, extent = INTERVAL_DEPTH_LEAST * smaller(A, a, b), A.SHAPE[a].rounding + A.SHAPE[b].rounding
+    P, Q, first, second, looked = A.CORE[0], A.CORE[1], -1, -1, False
     p, q = place(A, a, t, P), place(A, b, t, Q)
     most = FACE_PASSES if has_normal(P, p, nx, ny) or has_normal(Q, q, -nx, -ny) else 1.0 - SAME_NORMAL
     while True:
         first, apart = next_flush_edge(P, p, Q, q, first, extent, nx, ny, most, deep)
-        if first >= p:
+        if first < p:
+            mx, my = P[first, 2], P[first, 3]
+        else:
             second, apart = next_flush_edge(Q, q, P, p, second, extent, -nx, -ny, most, deep)
             if second >= q:
                 return none
-            found = along(A, a, b, t, -Q[second, 2], -Q[second, 3], apart, near, deep)
-        else:
-            found = along(A, a, b, t, P[first, 2], P[first, 3], apart, near, deep)
+            mx, my = -Q[second, 2], -Q[second, 3]
+        if not looked:
+            looked = True
+            if continues(A, a, b, t, nx, ny, bx, by, deep, True) or continues(A, b, a, t, -nx, -ny, ax, ay, deep, True):
+                return none  # the closest points are on a surface that goes on
+        found = along(A, a, b, t, mx, my, apart, (ax, ay, bx, by), deep)
         if found.passes:
             return found
-        p, q = place(A, a, t, P), place(A, b, t, Q)  # `along` has placed others there
-
-
-@nonallocating
-def flush_at(A: Scene, a: int, b: int, t: float) -> Flush:
-    """`flush` of shapes a and b at instant t."""
-    g, nx, ny, px, py = gap(A, a, b, t)
-    return flush(A, a, b, t, g, nx, ny, px, py)
+        p, q = place(A, a, t, P), place(A, b, t, Q)  # `continues` has placed others there
 
 
 @nonallocating
 def pass_corner(A: Scene, a: int, b: int, t: float, point: ContactPoint) -> bool:
     """Set the contact of shapes a and b at instant t to `flush`, if one of them passes a corner of the other. Returns
     whether it does."""
-    found = flush_at(A, a, b, t)
+    found = flush(A, a, b, t)
     if found.passes:
         point.nx, point.ny, point.gap, point.px, point.py = found.nx, found.ny, found.g, found.px, found.py
     return found.passes

@@ -18,7 +18,7 @@ from ..model.bodies import Body
 from ..model.parameters.detection import GAP_ROUND_OFF
 from ..model.parameters.events import APPROACH_ROUND_OFF, DISTANCE_ROUND_OFF, MISS_DISTANCE, PATH_REACH
 from ..model.scene import Scene
-from ..pairs.passing import flush_at
+from ..pairs.passing import flush
 from .circles import circle_circle, circle_outline
 from .roots import disks_meet
 from .search import general
@@ -115,6 +115,6 @@ def time_of_impact(A: Scene, a: int, b: int, horizon: float, latest: float) -> t
         t, certain = disk_wall(A, a, b, horizon)
     else:
         t, certain = general(A, a, b, horizon, latest)
-    if certain and t <= horizon and flush_at(A, a, b, t).passes:
+    if certain and t <= horizon and flush(A, a, b, t).passes:
         return horizon, False  # an impact there would have no impulse, and be the next one for ever
     return t, certain

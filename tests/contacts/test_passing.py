@@ -36,12 +36,32 @@ def pave(space: pymunk.Space, kind: str, place: Place, scale: float = 1.0) -> li
     return found
 
 
-def mover(space: pymunk.Space, shape: str, size: float) -> pymunk.Body:
+def paved(kind: str, e: float, pull: float = 0.0) -> pymunk.Space:
+    """A space with a level floor of pieces of elasticity e, and a horizontal acceleration."""
+    space = pymunk.Space()
+    space.gravity = pull, -G
+    for one in pave(space, kind, turned(0.0)):
+        one.elasticity = e
+    return space
+
+
+def mover(space: pymunk.Space, shape: str, size: float, e: float = 0.0) -> pymunk.Body:
     inertia = 0.5 * size * size if shape == "disk" else size * size / 6.0
     body = pymunk.Body(1.0, inertia)
     one = pymunk.Circle(body, size) if shape == "disk" else pymunk.Poly.create_box(body, (2.0 * size, 2.0 * size))
+    one.elasticity = e
     space.add(body, one)
     return body
+
+
+def check_velocities(space: pymunk.Space, bodies: list[pymunk.Body], speed: float, pull: float = 0.0) -> None:
+    """Take a second in which these bodies must slide with this speed, to round-off, more by `pull` dt after each
+    step."""
+    stepper = ep.EECA(space)
+    for k in range(60):
+        stepper.step(DT)
+        for body in bodies:
+            assert body.velocity == pytest.approx((speed + pull * (k + 1) * DT, 0.0), abs=1e-9)
 
 
 STARTS = [1.0 + 0.137 * k for k in range(8)]
@@ -53,12 +73,8 @@ STARTS = [1.0 + 0.137 * k for k in range(8)]
 @pytest.mark.parametrize("speed", [-5.0, 1.0, 5.0])
 def test_what_slides_over_joints_keeps_its_velocity(shape: str, kind: str, e: float, speed: float) -> None:
     for start in STARTS:
-        space = pymunk.Space()
-        space.gravity = 0.0, -G
-        for one in pave(space, kind, turned(0.0)):
-            one.elasticity = e
-        body = mover(space, shape, 0.3)
-        next(iter(body.shapes)).elasticity = e
+        space = paved(kind, e)
+        body = mover(space, shape, 0.3, e)
         body.position, body.velocity = (start, 0.3), (speed, 0.0)
         stepper = ep.EECA(space)
         for k in range(int(4.0 / abs(speed) / DT)):
@@ -153,17 +169,10 @@ def test_free_bodies_that_are_passed_keep_momenta(shape: str) -> None:
 @pytest.mark.parametrize(("pull", "speed"), [(3.0, 0.0), (0.0, 1e-4), (0.0, 0.01)])
 def test_a_crate_that_stands_on_a_grid_is_pushed(kind: str, e: float, pull: float, speed: float) -> None:
     """Its sides are where two pieces of the floor meet."""
-    space = pymunk.Space()
-    space.gravity = pull, -G
-    for one in pave(space, kind, turned(0.0)):
-        one.elasticity = e
-    body = mover(space, "box", 0.5)
-    next(iter(body.shapes)).elasticity = e
+    space = paved(kind, e, pull)
+    body = mover(space, "box", 0.5, e)
     body.position, body.velocity = (2.5, 0.5), (speed, 0.0)
-    stepper = ep.EECA(space)
-    for k in range(60):
-        stepper.step(DT)
-        assert body.velocity == pytest.approx((speed + pull * (k + 1) * DT, 0.0), abs=1e-9)
+    check_velocities(space, [body], speed, pull)
 
 
 @pytest.mark.parametrize("e", [0.0, 0.5, 1.0])
@@ -171,27 +180,19 @@ def test_a_crate_that_stands_on_a_grid_is_pushed(kind: str, e: float, pull: floa
 def test_capsules_slide_over_segments(e: float, upright: bool) -> None:
     """Thin shapes on thin shapes: a character that cannot turn, and a lying rod."""
     for start in STARTS:
-        space = pymunk.Space()
-        space.gravity = 0.0, -G
-        for one in pave(space, "segments", turned(0.0)):
-            one.elasticity = e
+        space = paved("segments", e)
         body = pymunk.Body(1.0, math.inf if upright else 0.05)
         end = (0.0, 0.5) if upright else (0.3, 0.0)
         rod = pymunk.Segment(body, (0.0 if upright else -0.3, 0.0), end, 0.1)
         rod.elasticity = e
         body.position, body.velocity = (start, 0.1), (3.0, 0.0)
         space.add(body, rod)
-        stepper = ep.EECA(space)
-        for _ in range(60):
-            stepper.step(DT)
-            assert body.velocity == pytest.approx((3.0, 0.0), abs=1e-9)
+        check_velocities(space, [body], 3.0)
 
 
 def test_what_lies_beside_a_wall_does_not_pass_it() -> None:
     """A crate that is pushed along tiles into a wall of tiles that stands on them."""
-    space = pymunk.Space()
-    space.gravity = 3.0, -G
-    pave(space, "tiles", turned(0.0))
+    space = paved("tiles", 0.0, 3.0)
     for y in range(3):
         space.add(pymunk.Poly(space.static_body, [(5.0, y), (6.0, y), (6.0, y + 1.0), (5.0, y + 1.0)]))
     body = mover(space, "box", 0.5)
@@ -207,19 +208,11 @@ def test_what_lies_beside_a_wall_does_not_pass_it() -> None:
 @pytest.mark.parametrize("e", [0.0, 0.5])
 def test_rows_of_crates_on_a_grid_are_pushed(apart: float, e: float) -> None:
     """The corners of two crates and two tiles meet in one point."""
-    space = pymunk.Space()
-    space.gravity = 3.0, -G
-    for one in pave(space, "tiles", turned(0.0)):
-        one.elasticity = e
-    crates = [mover(space, "box", 0.5) for _ in range(3)]
+    space = paved("tiles", e, 3.0)
+    crates = [mover(space, "box", 0.5, e) for _ in range(3)]
     for k, crate in enumerate(crates):
         crate.position = 0.5 + k * (1.0 + apart), 0.5
-        next(iter(crate.shapes)).elasticity = e
-    stepper = ep.EECA(space)
-    for k in range(60):
-        stepper.step(DT)
-        for crate in crates:
-            assert crate.velocity == pytest.approx((3.0 * (k + 1) * DT, 0.0), abs=1e-9)
+    check_velocities(space, crates, 0.0, 3.0)
 
 
 @pytest.mark.parametrize("degrees", [20, 45, 60, 70, 80])
@@ -227,10 +220,7 @@ def test_rows_of_crates_on_a_grid_are_pushed(apart: float, e: float) -> None:
 @pytest.mark.parametrize("kind", ["tiles", "segments"])
 def test_bevelled_crates_slide_over_joints(kind: str, e: float, degrees: float) -> None:
     for start in STARTS:
-        space = pymunk.Space()
-        space.gravity = 0.0, -G
-        for one in pave(space, kind, turned(0.0)):
-            one.elasticity = e
+        space = paved(kind, e)
         body, bevel = pymunk.Body(1.0, 0.1), 0.1
         up = bevel * math.tan(math.radians(degrees))
         corners = [(0.3, 0.3), (-0.3, 0.3), (-0.3, up - 0.3), (bevel - 0.3, -0.3), (0.3 - bevel, -0.3), (0.3, up - 0.3)]
@@ -239,7 +229,4 @@ def test_bevelled_crates_slide_over_joints(kind: str, e: float, degrees: float) 
         body.center_of_gravity = 0.0, -0.1
         body.position, body.velocity = (start, 0.3), (3.0, 0.0)
         space.add(body, crate)
-        stepper = ep.EECA(space)
-        for _ in range(60):
-            stepper.step(DT)
-            assert body.velocity == pytest.approx((3.0, 0.0), abs=1e-9)
+        check_velocities(space, [body], 3.0)
